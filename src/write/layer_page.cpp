@@ -88,6 +88,7 @@ void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, Pla
     const Nesting nested = nesting(all);
     facts.misoriented +=
         static_cast<std::uint64_t>(std::count(nested.kind.begin(), nested.kind.end(), RingKind::misoriented));
+    facts.measure.holes -= std::min(facts.measure.holes, facts.misoriented); // they run clockwise, too
     facts.overlapping +=
         static_cast<std::uint64_t>(std::count(nested.kind.begin(), nested.kind.end(), RingKind::overlapping));
 }

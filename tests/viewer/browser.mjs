@@ -56,7 +56,7 @@ export async function open(name, { width = 1400, height = 900, colorScheme = 'li
   complaints = [];
   await page.emulateMedia({ colorScheme });
   await page.setViewportSize({ width: view ? narrow : width, height });
-  await page.goto(pathToFileURL(file(name)).href);
+  await page.goto(addressOf(name));
   await page.waitForSelector('canvas[data-layer], canvas[data-ready], .trouble');
   if (view) {
     await page.setViewportSize({ width, height });
@@ -68,6 +68,54 @@ export async function open(name, { width = 1400, height = 900, colorScheme = 'li
     await button.blur(); // keys are for the page again
   }
   return { page, complaints };
+}
+
+/** Of a page of the folder; "name.html#layer=3" is a layer of it. */
+function addressOf(name) {
+  const [path, ...rest] = name.split('#');
+  return [pathToFileURL(file(path)).href, ...rest].join('#');
+}
+
+/** Opens a page of the folder in a browser of its own kind. @param {(page) => Promise} prepare what is done to it before */
+async function openAlone(name, options, prepare = () => {}) {
+  const context = await browser.newContext({ viewport: { width: 1400, height: 900 }, offline: true, reducedMotion: 'reduce', ...options });
+  const other = await context.newPage();
+  other.setDefaultTimeout(120000);
+  await prepare(other);
+  await other.goto(addressOf(name));
+  await other.waitForSelector('canvas[data-layer]');
+  return other;
+}
+
+/** Opens a page of the folder where nothing can be drawn in space. */
+export const openWithoutWebGL = (name) =>
+  openAlone(name, {}, (page) =>
+    page.addInitScript(() => {
+      const { getContext } = HTMLCanvasElement.prototype;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+        return kind.startsWith('webgl') ? null : getContext.call(this, kind, ...rest);
+      };
+    }),
+  );
+
+/**
+ * Opens a page of the folder on a small screen with fingers.
+ * @returns `swipe(from, to)` moves fingers from some positions to as many others, and lets them go
+ */
+export async function openOnPhone(name) {
+  const phone = await openAlone(name, { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  const session = await phone.context().newCDPSession(phone);
+  const touch = (type, positions) => session.send('Input.dispatchTouchEvent', { type, touchPoints: positions.map(([x, y], id) => ({ x, y, id })) });
+  const swipe = async (from, to, steps = 12) => {
+    await touch('touchStart', from);
+    for (let i = 1; i <= steps; ++i) {
+      await touch('touchMove', from.map((p, k) => p.map((value, at) => value + ((to[k][at] - value) * i) / steps)));
+      await phone.waitForTimeout(16);
+    }
+    await touch('touchEnd', []);
+    await phone.waitForTimeout(500); // what goes on scrolling comes to rest
+  };
+  return { page: phone, swipe };
 }
 
 /** Waits until what was asked for is drawn: a page draws the layer in the next frame. */

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { colourOf, file, lamella, open, pixelsNear, redrawn, settled, shown, startBrowser, stopBrowser, tasks, until } from './browser.mjs';
+import { colourOf, file, lamella, open, openOnPhone, openWithoutWebGL, pixelsNear, redrawn, settled, shown, startBrowser, stopBrowser, tasks, until } from './browser.mjs';
 
 const scanOptions = ['--layer-height', '2.5', '--scan', '--hatch-distance', '0.5', '--skin-layers', '1', '--contours', '2'];
 
@@ -91,7 +91,7 @@ test('the slider, the buttons, the keys, the number and the plots go from layer 
   }
   await slider.fill('99');
   assert.equal(await shown(page), 99);
-  assert.match(await slider.getAttribute('aria-valuetext'), /^99 of 0 to \d+, z = 9\.95 mm$/);
+  assert.match(await slider.getAttribute('aria-valuetext'), /^Layer 99 \(0 to \d+\), z = 9\.95 mm$/);
   await page.getByRole('button', { name: 'Layer above' }).click();
   assert.equal(await shown(page), 100);
   await page.getByRole('spinbutton', { name: 'Number of the layer' }).fill('7');
@@ -107,7 +107,7 @@ test('the slider, the buttons, the keys, the number and the plots go from layer 
   assert.equal(await shown(page), last);
   await plot.click({ position: { x: 8, y: 10 } });
   assert.equal(await shown(page), 0);
-  await until(page, () => /^Layer 0 of 0 to/.test(document.getElementById('live').textContent));
+  await until(page, () => /^Layer 0 \(0 to/.test(document.getElementById('live').textContent));
 });
 
 test('layers of a share of a part have the numbers that commands give them', async () => {
@@ -115,14 +115,14 @@ test('layers of a share of a part have the numbers that commands give them', asy
   const { page } = await open('share.html');
   await page.keyboard.press('Home');
   await shown(page);
-  await until(page, () => /^Layer 40 of 40 to 49,/.test(document.getElementById('live').textContent));
+  await until(page, () => /^Layer 40 \(40 to 49\),/.test(document.getElementById('live').textContent));
   const number = page.getByRole('spinbutton', { name: 'Number of the layer' });
   assert.equal(await number.inputValue(), '40');
   await number.fill('47');
   await page.keyboard.press('Enter');
   assert.equal(await shown(page), 7);
   assert.ok(await page.getByRole('complementary').getByRole('heading', { name: 'Layer 47', exact: true }).isVisible());
-  assert.match(await page.locator('canvas[data-layer]').getAttribute('aria-label'), /^Layer 47 of 40 to 49 at z = /);
+  assert.match(await page.locator('canvas[data-layer]').getAttribute('aria-label'), /^Layer 47 \(40 to 49\) at z = /);
 });
 
 test('layers whose numbers have holes are found by them', async () => {
@@ -395,7 +395,7 @@ test('an open contour is seen in red, counted, and listed', async () => {
     assert.ok(red.near > 500, `${red.near} red pixels`);
     assert.match(await page.locator('#verdict').textContent(), /100 layers with faults/);
     const aside = page.getByRole('complementary');
-    assert.match(await aside.textContent(), /100 open contours in every layer, the lowest at z = 0\.05 mm/);
+    assert.match(await aside.textContent(), /100 open contours in total, in all 100 layers, the lowest at z = 0\.05 mm/);
     assert.match(await aside.textContent(), /The longest gap is 30 mm, all together 3,000 mm/);
     assert.match(await aside.locator('section', { hasText: 'Cut at z' }).textContent(), /Gaps30 mm/);
     assert.match(await page.locator('.row', { hasText: /^Gap/ }).textContent(), /Gap30 mm/);
@@ -441,6 +441,157 @@ test('what gaps there are differs from layer to layer, and what steps dropped is
   assert.match(await aside.locator('section', { hasText: 'Cut at z' }).textContent(), /Rings dropped0Area before400 mm²/);
   assert.deepEqual(complaints, []);
   if (process.env.LAMELLA_SCREENSHOTS) await page.screenshot({ path: `${process.env.LAMELLA_SCREENSHOTS}/gaps.png` });
+});
+
+/** The box of 20 x 30 x 10 mm, and beside it one of 20 x 20 x 10 mm that is inside out. */
+function insideOutStl() {
+  const other = boxTriangles().map(([a, b, c]) => [a, c, b].map(([x, y, z]) => [x + 30, (y * 2) / 3, z]));
+  return stl([...boxTriangles(), ...other]);
+}
+
+test('a body inside out is drawn as no material, with marks of its own', async () => {
+  writeFileSync(file('inside_out.stl'), insideOutStl());
+  lamella('view', 'inside_out.stl', '--layer-height', '1');
+  for (const colorScheme of ['light', 'dark']) {
+    const { page, complaints } = await open('inside_out.html', { colorScheme });
+    await shown(page);
+    for (const name of ['Contours', 'Direction']) await page.getByRole('button', { name, exact: true }).click();
+    await redrawn();
+    const canvas = page.locator('canvas[data-layer]');
+    const filled = await pixelsNear(canvas, await colourOf(page, '--fill-0'), 6);
+    const striped = await pixelsNear(canvas, await colourOf(page, '--open'), 30);
+    const mm = await page.locator('.scale').evaluate((node) => parseFloat(node.textContent) / node.lastChild.getBoundingClientRect().width);
+    assert.ok(Math.abs(filled.near * mm ** 2 - 600) < 6, `${filled.near * mm ** 2} mm2 instead of 600`);
+    assert.ok(striped.near * mm ** 2 > 50 && striped.near * mm ** 2 < 300, `${striped.near * mm ** 2} mm2 of 400 in red`);
+    assert.equal((await pixelsNear(canvas, await colourOf(page, '--crossing'), 20)).near, 0);
+    const aside = page.getByRole('complementary');
+    assert.match(await aside.textContent(), /10 rings inside out in total, in all 10 layers, the lowest at z = 0\.5 mm/);
+    assert.match(await aside.locator('section', { hasText: 'Cut at z' }).textContent(), /Contours2Holes0Points/);
+    assert.deepEqual(complaints, []);
+  }
+  const { page } = await open('inside_out.html', { view: 'stack' });
+  const canvas = page.locator('canvas[data-built]');
+  await canvas.waitFor();
+  await page.keyboard.press('End');
+  const { blue, red } = await huesOf(page, canvas);
+  assert.ok(red > 2000 && blue > 5000, `${red} red pixels, ${blue} blue ones`);
+});
+
+test('the address names the layer: it survives a reload, and is a link', async () => {
+  const { page, complaints } = await open('share.html#layer=43');
+  assert.equal(await shown(page), 3);
+  await page.keyboard.press('ArrowUp');
+  await until(page, () => location.hash === '#layer=44');
+  await page.reload();
+  await page.waitForSelector('canvas[data-layer]');
+  assert.equal(await shown(page), 4);
+  await page.evaluate(() => (location.hash = '#layer=49'));
+  await until(page, () => document.getElementById('layer').value === '9');
+  assert.deepEqual(complaints, []);
+});
+
+test('the first view of the stack shows all of the plate and the names of its axes', async () => {
+  for (const name of ['coarse.html', 'box.html'])
+    for (const width of [1400, 390]) {
+      const { page } = await open(name, { view: 'stack', width });
+      await page.keyboard.press('Home');
+      const canvas = page.locator('canvas[data-built]');
+      await canvas.waitFor();
+      await settled(page);
+      const rims = await rimsOf(page, canvas, ['--bed', '--bed-line', '--soft']);
+      assert.ok(rims.every((far) => far > 6) && Math.min(...rims) < 0.3 * width, `${name}, ${width}: ${rims}`);
+      const { near } = await pixelsOnScreen(page, canvas, '--soft');
+      assert.ok(near > 20, `${name}, ${width}: ${near} pixels of axes and their names`);
+    }
+});
+
+/** How far what is drawn in some colours stays from the left, upper, right and lower edge of a canvas, in pixels. */
+const rimsOf = async (page, canvas, names) => {
+  const { width, height, hits } = await pixelsOnScreen(page, canvas, ...names);
+  const [xs, ys] = [hits.map(([x]) => x), hits.map(([, y]) => y)];
+  return [Math.min(...xs), Math.min(...ys), width - 1 - Math.max(...xs), height - 1 - Math.max(...ys)];
+};
+
+/** Where the screenshot of a canvas has one of these colours: at most one position for each row and end. */
+async function pixelsOnScreen(page, canvas, ...names) {
+  const colours = await Promise.all(names.map((name) => colourOf(page, name)));
+  const picture = (await canvas.screenshot()).toString('base64');
+  return page.evaluate(
+    async ([colours, picture]) => {
+      const image = new Image();
+      image.src = `data:image/png;base64,${picture}`;
+      await image.decode();
+      const { width, height } = image;
+      const ctx = new OffscreenCanvas(width, height).getContext('2d');
+      ctx.drawImage(image, 0, 0);
+      const { data } = ctx.getImageData(0, 0, width, height);
+      const found = { width, height, near: 0, hits: [] };
+      const border = 4; // pixels, which the frame of the picture is blended into
+      for (let y = border; y < height - border; ++y) {
+        let [first, last] = [null, null];
+        for (let x = border; x < width - border; ++x) {
+          const at = 4 * (y * width + x);
+          if (!colours.some((colour) => [0, 1, 2].every((k) => Math.abs(data[at + k] - colour[k]) <= 4))) continue;
+          ++found.near;
+          first ??= x;
+          last = x;
+        }
+        if (first !== null) found.hits.push([first, y], [last, y]);
+      }
+      return found;
+    },
+    [colours, picture],
+  );
+}
+
+test('the stack is called coarse until it is drawn in full', async () => {
+  const { page, complaints } = await open('rook.html', { view: 'stack' });
+  const texts = new Set();
+  for (const end = Date.now() + 60000; Date.now() < end; await page.waitForTimeout(20)) {
+    const { text, settled, built } = await page.evaluate(() => {
+      const { settled, built } = document.querySelector('.pane:not([hidden]) .drawing')?.dataset ?? {};
+      return { text: document.querySelector('.caption').textContent, settled: settled !== undefined, built: built !== undefined };
+    });
+    texts.add(text.replace(/\d+/, 'n'));
+    if (built && settled) break;
+    if (built) assert.match(text, /coarse/);
+  }
+  await until(page, () => !/coarse|Building/.test(document.querySelector('.caption').textContent));
+  assert.ok(texts.has('Building the stack: n %'), [...texts].join('; '));
+  assert.deepEqual(complaints, []);
+});
+
+test('a browser that draws nothing in space shows the layer alone', async () => {
+  const page = await openWithoutWebGL('coarse.html');
+  await until(page, () => document.querySelectorAll('.pane')[1].hidden && !document.querySelectorAll('.pane')[0].hidden);
+  await page.keyboard.press('3');
+  assert.deepEqual(await page.locator('#views [aria-pressed=true]').allTextContents(), ['Layer']);
+  await page.keyboard.press('2');
+  assert.match(await page.locator('.caption').textContent(), /WebGL is missing/);
+});
+
+test('on a phone, swipes scroll the page, and fingers that move sideways or pinch are for the drawings', async () => {
+  const { page, swipe } = await openOnPhone('rook.html');
+  const state = () => page.evaluate(() => ({ scrolled: scrollY, layer: document.getElementById('layer').value, scale: document.querySelector('.scale').innerHTML }));
+  const before = await state();
+  const canvas = await page.locator('canvas[data-layer]').boundingBox();
+  const [x, y] = [canvas.x + canvas.width / 2, canvas.y + canvas.height / 2];
+  await swipe([[x, y]], [[x, y - 200]]);
+  const scrolled = await state();
+  assert.ok(scrolled.scrolled > 100, `${scrolled.scrolled} pixels`);
+  const plot = await page.locator('canvas.plot').first().boundingBox();
+  await swipe([[plot.x + 100, plot.y + 10]], [[plot.x + 100, plot.y - 150]]);
+  const further = await state();
+  assert.ok(further.scrolled > scrolled.scrolled + 80, `${further.scrolled} pixels`);
+  assert.equal(further.layer, before.layer);
+  const moved = await page.locator('canvas.plot').first().boundingBox();
+  await swipe([[moved.x + 30, moved.y + 10]], [[moved.x + moved.width - 12, moved.y + 14]]);
+  assert.ok(Number((await state()).layer) > Number(before.layer) + 100, (await state()).layer);
+  await page.evaluate(() => scrollTo(0, 0));
+  await swipe([[x - 40, y], [x + 40, y]], [[x - 120, y], [x + 120, y]]);
+  const pinched = await state();
+  assert.equal(pinched.scrolled, 0);
+  assert.notEqual(pinched.scale, before.scale);
 });
 
 test('the defects of a mesh are listed and can be gone to', async () => {

@@ -288,6 +288,7 @@ TEST(LayerPage, FindsFaults) {
     EXPECT_EQ(table["crossings"][0], 1);
     EXPECT_GE(table["misoriented"][0], 1);
     EXPECT_EQ(table["overlapping"][0], 1);
+    EXPECT_EQ(table["holes"][0], 0); // the ring that runs clockwise is none
     const PageLayer read = layers_of(written.page).front();
     ASSERT_EQ(read.crossings.size(), 1U);
     EXPECT_NEAR(read.crossings[0].x, 5, 0.01);

@@ -24,7 +24,7 @@ export const faults = [
     column: 'misoriented',
     name: 'rings inside out',
     one: 'ring inside out',
-    meaning: 'rings that run the wrong way round, as if there were no material in them',
+    meaning: 'rings that run the wrong way round and bound no material; areas count what they enclose as negative',
   },
 ];
 
@@ -40,10 +40,11 @@ export function faultText(table, i) {
     .join(', ');
 }
 
-/** "in 3 layers, the lowest at z = 1.25 mm" */
+/** "in 3 of 20 layers, the lowest at z = 1.25 mm" */
 function where(table, affected) {
-  const layers = affected.length === table.z.length ? 'in every layer' : `in ${counted(affected.length, 'layer')}`;
-  return `${layers}, the lowest at z = ${mm(table.z[affected[0]])} mm`;
+  const all = table.z.length;
+  const layers = affected.length < all ? `${count(affected.length)} of ${counted(all, 'layer')}` : all > 1 ? `all ${count(all)} layers` : 'the only layer';
+  return `in ${layers}, ${affected.length > 1 ? 'the lowest ' : ''}at z = ${mm(table.z[affected[0]])} mm`;
 }
 
 const layersWith = (column) => column.flatMap((n, i) => (n > 0 ? [i] : []));
@@ -57,7 +58,8 @@ export function findings(page) {
   for (const { column, one, name, meaning } of faults) {
     const affected = layersWith(table[column]);
     if (affected.length === 0) continue;
-    const text = `${counted(sum(table[column]), one, name)} ${where(table, affected)}: ${meaning}.`;
+    const total = affected.length > 1 ? ' in total,' : '';
+    const text = `${counted(sum(table[column]), one, name)}${total} ${where(table, affected)}: ${meaning}.`;
     found.push({ tone: 'bad', text, layer: affected[0] });
   }
   const [widest] = widestGaps(table, 1);

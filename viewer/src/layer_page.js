@@ -1,6 +1,7 @@
 import { element } from './element.js';
 import { hasMaterial, hasVectors } from './data/exposures.js';
 import { LayerShelf } from './data/page.js';
+import { nearest } from './extremes.js';
 import { faultText, faultsOf, firstLayer, layerText, verdict } from './findings.js';
 import { LayerView } from './layer/layer_view.js';
 import { layerPanels, middleOf } from './panels/panels.js';
@@ -9,6 +10,7 @@ import { Player } from './player.js';
 import { Timeline } from './timeline/timeline.js';
 import { layerNumber, layerNumbers, mm } from './text.js';
 import { switchTheme } from './theme.js';
+import { keepLayerInAddress, layerInAddress } from './address.js';
 
 /** Tells screen readers where one is, once the layer stays. */
 function announce(page, store) {
@@ -73,7 +75,7 @@ function keyTable(page, store, player, orderPlayer, layerView, stackView, help) 
     { keys: ['+', '='], label: '+', help: 'zoom in', act: () => zoom(1.5) },
     { keys: ['-'], label: '−', help: 'zoom out', act: () => zoom(1 / 1.5) },
     { keys: ['0'], label: '0', help: 'show all', act: () => (inStack() ? stackView : layerView).fit() },
-    { keys: ['Shift+ArrowLeft'], label: 'Shift + arrows', help: 'move the layer, turn the stack', act: () => move(-1, 0) },
+    { keys: ['Shift+ArrowLeft'], label: 'Shift + arrows', help: 'move the layer, rotate the stack', act: () => move(-1, 0) },
     { keys: ['Shift+ArrowRight'], act: () => move(1, 0) },
     { keys: ['Shift+ArrowUp'], act: () => move(0, 1) },
     { keys: ['Shift+ArrowDown'], act: () => move(0, -1) },
@@ -86,13 +88,20 @@ function keyTable(page, store, player, orderPlayer, layerView, stackView, help) 
   ];
 }
 
+/** What drawings mean, for the list of keys. */
+export const signsOfLayers = [
+  'Red lines are open contours; red lines with red stripes are rings inside out. A cross in a circle marks a crossing of contours, ' +
+    'a square on its corner a defect of the mesh.',
+];
+
 /** Builds the page of a stack of layers. Returns its table of keys. */
 export function buildLayerPage(page, store, main, help) {
   if (page.head.layers === 0) {
     main.append(element('p', { className: 'trouble' }, 'There are no layers in this file.'));
     return [];
   }
-  store.set({ layer: firstLayer(page) });
+  store.set({ layer: layerInAddress(page.table) ?? firstLayer(page) });
+  keepLayerInAddress(page.table, store, (layer) => player.go(layer));
   store.on(['layer'], () => store.set({ order: Infinity, executing: false }));
   const shelf = new LayerShelf(page);
   const player = new Player(store, 'layer', 'playing', () => page.head.layers - 1);
@@ -101,8 +110,7 @@ export function buildLayerPage(page, store, main, help) {
   const timeline = new Timeline(page, store, player);
   const show = (place) => {
     const [x, y, z] = middleOf(place);
-    const near = page.table.z.reduce((best, at, i) => (Math.abs(at - z) < Math.abs(page.table.z[best] - z) ? i : best), 0);
-    player.go(near);
+    player.go(nearest(page.table.z, z));
     layerView.lookAt(x, y);
     stackView.lookAt([x, y, z]);
   };

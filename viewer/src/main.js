@@ -2,11 +2,12 @@ import './styles.css';
 import { readPage } from './data/page.js';
 import { element } from './element.js';
 import { listenToKeys } from './keys.js';
-import { buildLayerPage } from './layer_page.js';
+import { buildLayerPage, signsOfLayers } from './layer_page.js';
 import { buildMeshPage } from './mesh_page.js';
 import { helpDialog } from './panels/help.js';
 import { Store } from './store.js';
 import { firstTheme, followTheme, switchTheme } from './theme.js';
+import { watchScrolling } from './touch.js';
 import { nextTurn } from './turn.js';
 
 /**
@@ -46,14 +47,15 @@ async function build() {
     shell: null,
   });
   followTheme(store);
+  watchScrolling();
   document.title = `${page.head.title} – Lamella`;
   const title = document.getElementById('title');
   title.textContent = title.title = page.head.title; // there may be no room for all of it
   document.getElementById('theme').addEventListener('click', () => switchTheme(store));
   let help;
-  const buildPage = page.head.kind === 'mesh' ? buildMeshPage : buildLayerPage;
-  const keys = await buildPage(page, store, document.getElementById('main'), () => help);
-  help = helpDialog(keys);
+  const isMesh = page.head.kind === 'mesh';
+  const keys = await (isMesh ? buildMeshPage : buildLayerPage)(page, store, document.getElementById('main'), () => help);
+  help = helpDialog(keys, isMesh ? [] : signsOfLayers);
   document.getElementById('help').addEventListener('click', () => help.showModal());
   listenToKeys(keys);
 }

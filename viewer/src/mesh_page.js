@@ -46,7 +46,7 @@ export async function buildMeshPage(page, store, main, help) {
   }
   const turn = 0.2;
   return [
-    { keys: ['ArrowLeft'], label: '← → ↑ ↓', help: 'turn the mesh', act: () => view?.turnBy(turn, 0) },
+    { keys: ['ArrowLeft'], label: '← → ↑ ↓', help: 'rotate the mesh', act: () => view?.turnBy(turn, 0) },
     { keys: ['ArrowRight'], act: () => view?.turnBy(-turn, 0) },
     { keys: ['ArrowUp'], act: () => view?.turnBy(0, turn) },
     { keys: ['ArrowDown'], act: () => view?.turnBy(0, -turn) },

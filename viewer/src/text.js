@@ -27,11 +27,14 @@ export function duration(seconds) {
   return minutes < 60 ? `${minutes} min ${two(whole % 60)} s` : `${count(Math.floor(minutes / 60))} h ${two(minutes % 60)} min`;
 }
 
-/** As commands number layers: from 0, and those of a share of a part as in the whole. */
-export const layerNumber = (table, layer) => count(table.index[layer]);
+/** As commands number layers: from 0, and those of a share of a part as in the whole. Written as for `--layers`, without commas. */
+export const layerNumber = (table, layer) => String(table.index[layer]);
 
-/** "of 0 to 99": the numbers that there are. */
-export const layerNumbers = ({ index }) => (index.length > 0 ? `of ${count(index[0])} to ${count(index.at(-1))}` : '');
+/** "(0 to 99)": the numbers that there are. */
+export const layerNumbers = ({ index }) => (index.length > 0 ? `(${index[0]} to ${index.at(-1)})` : '');
+
+/** A text of the program with its measures written as the page writes them: "19158.8 mm³" becomes "19,159 mm³". */
+export const withBriefMeasures = (text) => text.replace(/(?<![\w.,])\d{4,}(\.\d+)?(?= mm)/g, (number) => brief(Number(number)));
 
 const rounded = (value, digits) => new Intl.NumberFormat('en', { maximumFractionDigits: digits }).format(value);
 const noise = 1e-9; // mm: what sums leave where there should be 0

@@ -4,7 +4,7 @@ import { kinds, regions } from './data/exposures.js';
 
 const names = [
   'paper', 'grid', 'gridStrong', 'outer', 'hole', 'open', 'crossing', 'place', 'hatch', 'accent',
-  'plot', 'plotFill', 'fault', 'bed', 'bedLine', 'wallCut', 'inside', 'jump', 'outline',
+  'plot', 'plotFill', 'fault', 'bed', 'bedLine', 'soft', 'wallCut', 'inside', 'jump', 'outline',
 ];
 const mostParts = 8;
 const remembered = 'lamella-theme';

@@ -6,6 +6,7 @@ import { NumberReader } from '../src/data/number_reader.js';
 import { readLayer } from '../src/data/layer.js';
 import { readMesh } from '../src/data/mesh.js';
 import { bodiesOf, bodyOfParts, kindsOf, switchGroup } from '../src/data/exposures.js';
+import { insideOutOf } from '../src/data/inside_out.js';
 import { LayerShelf } from '../src/data/page.js';
 import { unpack } from '../src/data/unpack.js';
 import { jumpsTo, partOf, vectorsOf } from '../src/data/vectors.js';
@@ -90,6 +91,37 @@ test('a mesh is read', () => {
   assert.deepEqual([...mesh.shells], [0, 1]);
 });
 
+/** A part as readLayer makes it: each ring a square from (left, bottom), clockwise where its edge is below 0. */
+function squares(...rings) {
+  const contours = rings.map(([left, bottom, edge]) => {
+    const [right, top] = [left + Math.abs(edge), bottom + Math.abs(edge)];
+    const points = [[left, bottom], [right, bottom], [right, top], [left, top]];
+    return edge > 0 ? points : points.reverse();
+  });
+  return {
+    points: new Float32Array(contours.flat(2)),
+    ends: Uint32Array.from(rings, (_, i) => 4 * (i + 1)),
+    rings: rings.length,
+    boxes: new Float32Array(rings.flatMap(([left, bottom, edge]) => [left, bottom, left + Math.abs(edge), bottom + Math.abs(edge)])),
+    areas: Float32Array.from(rings, ([, , edge]) => Math.sign(edge) * edge * edge),
+  };
+}
+
+test('rings are inside out where they run clockwise and take no material away', () => {
+  const find = (parts, bounds = () => true) => {
+    const { rings, deepest } = insideOutOf(parts, bounds, 0.5);
+    return [rings.map((set) => [...set]), deepest];
+  };
+  assert.deepEqual(find([squares([0, 0, 20], [5, 5, -4], [30, 0, 20])]), [[[]], 0]);
+  assert.deepEqual(find([squares([0, 0, 20], [30, 0, -10])]), [[[1]], 1]);
+  // Within a body inside out: one that is right, and one that is inside out, too.
+  assert.deepEqual(find([squares([0, 0, -20], [2, 2, 5], [10, 10, -5])]), [[[0, 2]], 2]);
+  // A hole of another part's material is one; a hole that touches its body from inside is one, too.
+  assert.deepEqual(find([squares([0, 0, 20]), squares([0, 0, -5])]), [[[], []], 0]);
+  // Scan vectors bound nothing.
+  assert.deepEqual(find([squares([0, 0, -20])], () => false), [[[]], 0]);
+});
+
 test('the shelf decodes a layer once, and lets go of old ones', async () => {
   const text = deflateRawSync(layerBytes).toString('base64');
   let read = 0;
@@ -99,7 +131,7 @@ test('the shelf decodes a layer once, and lets go of old ones', async () => {
       return text;
     },
   }));
-  const page = { head: { layers: 5, parts: [{}], step_mm: 0.5 }, table: { shown: [9, 9, 9, 9, 2e6], hatches_shown: [1, 1, 1, 1, 1e6] }, data };
+  const page = { head: { layers: 5, parts: [{}], step_mm: 0.5 }, table: { shown: [9, 9, 9, 9, 2e6], hatches_shown: [1, 1, 1, 1, 1e6], misoriented: [0, 0, 0, 0, 0], crossings: [0, 0, 0, 0, 0] }, data };
   const shelf = new LayerShelf(page);
   assert.equal(await shelf.layer(0), await shelf.layer(0));
   await shelf.layer(1);

@@ -2,13 +2,14 @@ import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { largest, least } from '../src/extremes.js';
 import { faultText, findings, firstLayer, gapText, layerText, remarkableLayers, totals, verdict, widestGaps, worstLayers } from '../src/findings.js';
+import { layerInAddress } from '../src/address.js';
 import { Camera } from '../src/layer/camera.js';
 import { roundStep } from '../src/layer/round_step.js';
 import { levelsOf } from '../src/stack/levels.js';
 import { Walls, lineKinds, linesOfRow, spacingFor } from '../src/stack/walls.js';
 import { Store } from '../src/store.js';
 import { LayerAxis, columnsOf, drawTicks } from '../src/timeline/plot.js';
-import { brief, coordinate, counted, duration, mm } from '../src/text.js';
+import { brief, coordinate, counted, duration, layerNumber, layerNumbers, mm, withBriefMeasures } from '../src/text.js';
 
 test('stacks of more layers than a call takes arguments are summed up and plotted', () => {
   const n = 300_000;
@@ -74,11 +75,24 @@ test('faults are told, the worst layers first', () => {
   const page = pageOf([{}, { open_chains: 2 }, { crossings: 5, open_chains: 1 }, { misoriented: 1 }, {}]);
   const told = findings(page);
   assert.deepEqual(told.slice(0, 3).map(({ tone, layer }) => [tone, layer]), [['bad', 1], ['bad', 2], ['bad', 3]]);
-  assert.match(told[0].text, /^3 open contours in 2 layers, the lowest at z = 1\.5 mm/);
-  assert.match(told[2].text, /^1 ring inside out in 1 layer,/);
+  assert.match(told[0].text, /^3 open contours in total, in 2 of 5 layers, the lowest at z = 1\.5 mm:/);
+  assert.match(told[2].text, /^1 ring inside out in 1 of 5 layers, at z = 3\.5 mm:/);
   assert.deepEqual(worstLayers(page.table).map(({ layer }) => layer), [2, 1, 3]);
   assert.equal(verdict(page).text, '3 layers with faults');
   assert.equal(firstLayer(page), 2);
+});
+
+test('faults of every layer are told as the number in all of them', () => {
+  const [twenty] = findings(pageOf(Array.from({ length: 10 }, () => ({ misoriented: 2 }))));
+  assert.match(twenty.text, /^20 rings inside out in total, in all 10 layers, the lowest at z = 0\.5 mm:/);
+  const [single] = findings(pageOf([{ crossings: 3 }]));
+  assert.match(single.text, /^3 crossings in the only layer, at z = 0\.5 mm:/);
+});
+
+test('the address names a layer by the number that commands give it, or the nearest one', () => {
+  const table = { index: [40, 41, 45, 60] };
+  for (const [address, layer] of [['#layer=45', 2], ['#layer=47', 2], ['#layer=9999', 3], ['#layer=0', 0], ['#layer=', undefined], ['', undefined], ['#layer=x', undefined]])
+    assert.equal(layerInAddress(table, address), layer, address);
 });
 
 test('gaps are told, the longest first', () => {
@@ -210,7 +224,7 @@ test('which layers are without their hatches is said, and the page begins at ano
 /** A square of 10 mm with one open chain beside it. */
 function squareLayer() {
   const points = new Float32Array([0, 0, 10, 0, 10, 10, 0, 10, 20, 0, 21, 0]);
-  return { parts: [{ points, ends: new Uint32Array([4, 6]), rings: 1 }] };
+  return { parts: [{ points, ends: new Uint32Array([4, 6]), rings: 1 }], insideOut: { rings: [new Set(), new Set()], deepest: 0 } };
 }
 
 test('walls stand on every line, with normals that point out of the material', () => {
@@ -230,7 +244,7 @@ test('walls stand on every line, with normals that point out of the material', (
 test('only chains of material are faults', () => {
   const walls = new Walls([{}, { exposure: { region: 'core', kind: 'contour' } }]);
   const [square] = squareLayer().parts;
-  walls.add({ parts: [square, square] }, 0, 0);
+  walls.add({ ...squareLayer(), parts: [square, square] }, 0, 0);
   const kinds = Array.from({ length: 10 }, (_, i) => walls.rows[8 * i + 5]);
   const { ring, vectors, fault } = lineKinds;
   assert.deepEqual(kinds.map((number) => [number >> 2, number & 3]), [
@@ -239,11 +253,18 @@ test('only chains of material are faults', () => {
   ]);
 });
 
+test('walls of rings inside out are faults', () => {
+  const walls = new Walls([{}]);
+  walls.add({ ...squareLayer(), insideOut: { rings: [new Set([0])], deepest: 1 } }, 0, 0);
+  assert.equal(walls.size, 5);
+  for (let line = 0; line < 5; ++line) assert.equal(walls.rows[8 * line + 5], lineKinds.fault);
+});
+
 test('lines that turn by little have a normal in common', () => {
   const n = 36;
   const circle = Array.from({ length: n }, (_, i) => [Math.cos((2 * Math.PI * i) / n), Math.sin((2 * Math.PI * i) / n)]);
   const walls = new Walls([{}]);
-  walls.add({ parts: [{ points: new Float32Array(circle.flat()), ends: new Uint32Array([n]), rings: 1 }] }, 0, 0);
+  walls.add({ ...squareLayer(), parts: [{ points: new Float32Array(circle.flat()), ends: new Uint32Array([n]), rings: 1 }] }, 0, 0);
   for (let i = 0; i < n; ++i) {
     assert.equal(walls.rows[8 * i + 7], walls.rows[8 * ((i + 1) % n) + 6]);
     const [x, y] = [(walls.rows[8 * i + 6] << 16) >> 16, walls.rows[8 * i + 6] >> 16].map((c) => c / 32767);
@@ -276,7 +297,7 @@ test('points are left out by their distance until enough are', () => {
   const n = 1000;
   const points = new Float32Array(2 * n);
   for (let i = 0; i < n; ++i) points.set([10 * Math.cos((2 * Math.PI * i) / n), 10 * Math.sin((2 * Math.PI * i) / n)], 2 * i);
-  const layer = { parts: [{ points, ends: new Uint32Array([n]), rings: 1 }] };
+  const layer = { ...squareLayer(), parts: [{ points, ends: new Uint32Array([n]), rings: 1 }] };
   assert.equal(spacingFor(layer, 1000, 0.01), 0);
   const apart = spacingFor(layer, 100, 0.01);
   assert.ok(apart > 0.3 && apart < 1.5, `${apart}`);
@@ -301,6 +322,9 @@ test('numbers read well', () => {
   assert.deepEqual([4.8712, 59, 187, 3600, 7512].map(duration), ['4.871 s', '59 s', '3 min 07 s', '1 h 00 min', '2 h 05 min']);
   assert.deepEqual([53.1375, 0.1 + 0.2, 0.0125, 1e-4, 2e-8, -1e-16, 1234.5].map(mm), ['53.1375', '0.3', '0.0125', '0.0001', '0.00000002', '0', '1,234.5']);
   assert.deepEqual([0.05, 1e-5].map((pixel) => coordinate(1.23456789, pixel)), ['1.235', '1.23457']);
+  assert.deepEqual(['19158.8 mm³', '115,343 mm²', '4 × 5 × 1234.56 mm', '12.5 mm', 'part 20231105.1'].map(withBriefMeasures), ['19,159 mm³', '115,343 mm²', '4 × 5 × 1,235 mm', '12.5 mm', 'part 20231105.1']);
+  const table = { index: [1000, 1003, 2005] };
+  assert.deepEqual([layerNumber(table, 1), layerNumbers(table), layerNumbers({ index: [] })], ['1003', '(1000 to 2005)', '']);
   assert.equal(counted(1, 'layer'), '1 layer');
   assert.equal(counted(1200, 'layer'), '1,200 layers');
 });

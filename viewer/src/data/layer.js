@@ -12,7 +12,8 @@ import { NumberReader } from './number_reader.js';
  *
  * @typedef {object} Layer
  * @property {Contours[]} parts
- * @property {Float32Array} crossings the places of the first of them
+ * @property {Float32Array} crossings the positions of the first of them
+ * @property {import('./inside_out.js').InsideOut} insideOut
  */
 
 class PointReader {

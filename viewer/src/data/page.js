@@ -1,3 +1,5 @@
+import { isVectors } from './exposures.js';
+import { insideOutOf } from './inside_out.js';
 import { readLayer } from './layer.js';
 import { readMesh } from './mesh.js';
 import { unpack } from './unpack.js';
@@ -61,7 +63,11 @@ export class LayerShelf {
 
   /** The same without being kept. */
   async decode(i) {
-    const { head, data } = this.#page;
-    return readLayer(await unpack(data[i].textContent), head.parts.length, head.step_mm);
+    const { head, table, data } = this.#page;
+    const layer = readLayer(await unpack(data[i].textContent), head.parts.length, head.step_mm);
+    const bounds = (part) => table.misoriented[i] + table.crossings[i] > 0 && !isVectors(head.parts[part]);
+    layer.insideOut = insideOutOf(layer.parts, bounds, head.step_mm);
+    if (table.crossings[i] > 0) layer.insideOut.deepest += 1; // a ring that crosses itself runs both ways
+    return layer;
   }
 }

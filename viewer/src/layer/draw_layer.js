@@ -72,6 +72,47 @@ export function pathOf(contours, camera) {
   return joined(pathsOf(contours, 0, contours.rings, camera, () => true));
 }
 
+/** Diagonal lines with nothing between them. */
+function stripes(ctx, colour) {
+  const size = 8;
+  const tile = document.createElement('canvas');
+  [tile.width, tile.height] = [size, size];
+  const tileCtx = tile.getContext('2d');
+  tileCtx.strokeStyle = colour;
+  tileCtx.lineWidth = 2;
+  for (const x of [-size, 0, size]) {
+    tileCtx.moveTo(x - 1, size + 1);
+    tileCtx.lineTo(x + size + 1, -1);
+  }
+  tileCtx.stroke();
+  return ctx.createPattern(tile, 'repeat');
+}
+
+/**
+ * Fills a path where its rings run counter-clockwise around a point once or more; where they run clockwise around it, up to
+ * `deepest` times, there are stripes.
+ */
+export function fillMaterial(ctx, path, { width, height }, colour, deepest, faultColour) {
+  ctx.save();
+  if (deepest > 0) {
+    ctx.fillStyle = stripes(ctx, faultColour);
+    ctx.fill(path, 'nonzero');
+  }
+  // A path is filled where its winding number is not 0. With n frames around the canvas, that is where it was not -n.
+  const framed = new Path2D(path);
+  for (let frames = 1; frames <= deepest; ++frames) {
+    framed.moveTo(-1, -1);
+    framed.lineTo(-1, height + 1);
+    framed.lineTo(width + 1, height + 1);
+    framed.lineTo(width + 1, -1);
+    framed.closePath();
+    ctx.clip(framed, 'nonzero');
+  }
+  ctx.fillStyle = colour;
+  ctx.fill(path, 'nonzero');
+  ctx.restore();
+}
+
 function joined(paths) {
   const all = new Path2D();
   for (const path of paths) all.addPath(path);
@@ -118,12 +159,12 @@ function drawHatches(ctx, contours, camera, colour) {
 }
 
 /** An arrow head in the middle of a line's way, every so many pixels along a contour. */
-function drawDirections(ctx, contours, camera, colours) {
+function drawDirections(ctx, contours, camera, colours, colourOf) {
   const every = 90;
   const head = 4.5;
   const most = 1500; // on a canvas; beyond it nobody sees where they point
   let left = most;
-  const { points, ends, rings, boxes, areas } = contours;
+  const { points, ends, rings, boxes } = contours;
   for (let i = 0; i < ends.length && left > 0; ++i) {
     if (!camera.sees(boxes, 4 * i)) continue;
     const span = Math.max(boxes[4 * i + 2] - boxes[4 * i], boxes[4 * i + 3] - boxes[4 * i + 1]) * camera.scale;
@@ -156,7 +197,7 @@ function drawDirections(ctx, contours, camera, colours) {
       }
       until -= way;
     }
-    ctx.strokeStyle = i >= rings ? colours.open : areas[i] > 0 ? colours.outer : colours.hole;
+    ctx.strokeStyle = i >= rings ? colours.open : colourOf(i);
     ctx.lineWidth = 1.6;
     ctx.stroke();
   }
@@ -180,21 +221,31 @@ function drawOpenChains(ctx, contours, camera, colours) {
   }
 }
 
-/** Crosses in circles. @param {Float32Array|number[]} places x and y in turn */
-function drawMarks(ctx, places, camera, colour) {
+/** A cross in a circle. */
+function addCrossing(ctx, x, y) {
+  ctx.moveTo(x + 9, y);
+  ctx.arc(x, y, 9, 0, 2 * Math.PI);
+  ctx.moveTo(x - 4, y - 4);
+  ctx.lineTo(x + 4, y + 4);
+  ctx.moveTo(x + 4, y - 4);
+  ctx.lineTo(x - 4, y + 4);
+}
+
+/** A square on its corner. */
+function addDefect(ctx, x, y) {
+  ctx.moveTo(x, y - 10);
+  ctx.lineTo(x + 10, y);
+  ctx.lineTo(x, y + 10);
+  ctx.lineTo(x - 10, y);
+  ctx.closePath();
+}
+
+/** @param {Float32Array|number[]} positions x and y in turn @param {(ctx, x: number, y: number) => void} add a mark there */
+function drawMarks(ctx, positions, camera, colour, add) {
   ctx.strokeStyle = colour;
   ctx.lineWidth = 2;
   ctx.beginPath();
-  for (let i = 0; i < places.length; i += 2) {
-    const x = camera.toPixelX(places[i]);
-    const y = camera.toPixelY(places[i + 1]);
-    ctx.moveTo(x + 9, y);
-    ctx.arc(x, y, 9, 0, 2 * Math.PI);
-    ctx.moveTo(x - 4, y - 4);
-    ctx.lineTo(x + 4, y + 4);
-    ctx.moveTo(x + 4, y - 4);
-    ctx.lineTo(x - 4, y + 4);
-  }
+  for (let i = 0; i < positions.length; i += 2) add(ctx, camera.toPixelX(positions[i]), camera.toPixelY(positions[i + 1]));
   ctx.stroke();
 }
 
@@ -215,25 +266,25 @@ export function drawLayer(ctx, camera, layer, options) {
   layer.parts.forEach((contours, part) => {
     if (options.hidden.has(part)) return;
     const { rings, areas, ends } = contours;
-    const outer = pathsOf(contours, 0, rings, camera, (i) => areas[i] > 0);
-    const holes = pathsOf(contours, 0, rings, camera, (i) => !(areas[i] > 0));
+    const insideOut = layer.insideOut.rings[part];
+    const colourOf = (i) => (insideOut.has(i) ? colours.open : areas[i] > 0 ? colours.outer : colours.hole);
+    const lines = [colours.outer, colours.hole, colours.open].map((colour) => [colour, pathsOf(contours, 0, rings, camera, (i) => colourOf(i) === colour)]);
     if (options.fill) {
-      ctx.fillStyle = options.partColours[part % options.partColours.length];
-      ctx.fill(joined([...outer, ...holes]), 'nonzero');
+      const colour = options.partColours[part % options.partColours.length];
+      fillMaterial(ctx, joined(lines.flatMap(([, paths]) => paths)), camera, colour, layer.insideOut.deepest, colours.open);
     }
     if (options.hatches) drawHatches(ctx, contours, camera, colours.hatch);
     if (options.lines) {
       ctx.lineWidth = 1.5;
-      stroke(ctx, outer, colours.outer);
-      stroke(ctx, holes, colours.hole);
+      for (const [colour, paths] of lines) stroke(ctx, paths, colour);
     }
-    if (options.directions) drawDirections(ctx, contours, camera, colours);
+    if (options.directions) drawDirections(ctx, contours, camera, colours, colourOf);
     if (ends.length > rings) drawOpenChains(ctx, contours, camera, colours);
   });
 }
 
-/** Marks crossings and places of defects: over all else. The options are those of drawLayer. */
+/** Marks crossings of contours, and defects of the mesh: over all else. The options are those of drawLayer. */
 export function drawFaults(ctx, camera, layer, { colours, marks }) {
-  drawMarks(ctx, layer.crossings, camera, colours.crossing);
-  drawMarks(ctx, marks, camera, colours.place);
+  drawMarks(ctx, layer.crossings, camera, colours.crossing, addCrossing);
+  drawMarks(ctx, marks, camera, colours.place, addDefect);
 }

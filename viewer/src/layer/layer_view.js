@@ -4,6 +4,7 @@ import { element } from '../element.js';
 import { hasHatches, layerText } from '../findings.js';
 import { iconButton } from '../icon.js';
 import { coordinate, layerNumber, layerNumbers, mm } from '../text.js';
+import { scrollOrPinch } from '../touch.js';
 import { Camera } from './camera.js';
 import { drawFaults, drawLayer } from './draw_layer.js';
 import { drawBeam, drawOutline, drawVectorDirections, drawVectors } from './draw_vectors.js';
@@ -171,6 +172,13 @@ export class LayerView {
       },
       { passive: false },
     );
+    scrollOrPinch(canvas, () => {
+      const { x, y, scale, fitted } = this.#camera;
+      return () => {
+        Object.assign(this.#camera, { x, y, scale, fitted });
+        this.redraw();
+      };
+    });
     const fingers = new Map();
     canvas.addEventListener('pointerdown', (event) => {
       canvas.setPointerCapture(event.pointerId);
@@ -184,7 +192,9 @@ export class LayerView {
       const other = [...fingers].find(([id]) => id !== event.pointerId)?.[1];
       if (other) {
         const spread = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]);
-        this.#camera.zoomBy(spread(now) / Math.max(1, spread(before)), other[0], other[1]);
+        const middle = (p) => [(p[0] + other[0]) / 2, (p[1] + other[1]) / 2];
+        this.#camera.zoomBy(spread(now) / Math.max(1, spread(before)), ...middle(before));
+        this.#camera.moveBy((now[0] - before[0]) / 2, (now[1] - before[1]) / 2);
       } else {
         this.#camera.moveBy(now[0] - before[0], now[1] - before[1]);
       }

@@ -76,7 +76,7 @@ export class MeshView {
   }
 
   #bulk() {
-    return [{ mesh: this.#surface, first: 0, count: this.#mesh.shells.length, vertices: 3 }];
+    return { bulk: [{ mesh: this.#surface, first: 0, count: this.#mesh.shells.length, vertices: 3 }], coarse: false };
   }
 
   /** All shells, or one of them with the others greyed. */
@@ -135,6 +135,6 @@ export class MeshView {
   }
 
   fit() {
-    this.#space.look('Aslant');
+    this.#space.fit();
   }
 }

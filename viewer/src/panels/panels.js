@@ -1,7 +1,7 @@
 import { bodiesOf, hasMaterial, hasVectors, isVectors, switchGroup } from '../data/exposures.js';
 import { element } from '../element.js';
 import { icon } from '../icon.js';
-import { brief, count, counted, duration, layerNumber, mm } from '../text.js';
+import { brief, count, counted, duration, layerNumber, mm, withBriefMeasures } from '../text.js';
 import { faultText, findings, gapText, hasHatches, isTold, remarkableLayers, totals, widestGaps, worstLayers } from '../findings.js';
 
 /** The column beside the drawings: what is known, in words and figures. */
@@ -49,7 +49,7 @@ function layerCard(page, store) {
     ['Area', (i) => `${brief(table.area_mm2[i])} mm²`],
     ['Perimeter', (i) => `${brief(table.perimeter_mm[i])} mm`],
     ['Contours', (i) => count(table.contours[i])],
-    ['of them holes', (i) => count(table.holes[i])],
+    ['Holes', (i) => count(table.holes[i])],
     ['Points', (i) => count(table.points[i])],
   ];
   if (hasVectors(head)) rows.push(...rowsOfVectors(table));
@@ -105,7 +105,7 @@ function partsCard({ parts }, bodies, store) {
 /** What the program told beside the data. */
 function noteCards(page) {
   return page.notes.sections.map(({ title, facts: told }) =>
-    card(title, facts(told.map(({ name, value, tone }) => [name, value, tone]))),
+    card(title, facts(told.map(({ name, value, tone }) => [name, withBriefMeasures(value), tone]))),
   );
 }
 

@@ -1,6 +1,6 @@
 import { CanvasTexture, DoubleSide, LinearFilter, Mesh, MeshBasicMaterial, PlaneGeometry } from 'three';
 import { Camera } from '../layer/camera.js';
-import { pathOf } from '../layer/draw_layer.js';
+import { fillMaterial, pathOf } from '../layer/draw_layer.js';
 
 const longest = 1024; // pixels
 const margin = 4;
@@ -36,16 +36,16 @@ export class Cap {
    * @param {number} z mm above the bottom of the scene
    * @param {string[]} colours of the parts
    * @param {Set<number>} hidden parts
+   * @param {string} faultColour of what is inside out
    * @param {string|null} rim colour of its edge, where it shall have one
    */
-  show(layer, z, colours, hidden, rim = null) {
+  show(layer, z, colours, hidden, faultColour, rim = null) {
     const ctx = this.canvas.getContext('2d');
     ctx.clearRect(0, 0, this.canvas.width, this.canvas.height);
     layer.parts.forEach((contours, part) => {
       if (hidden.has(part)) return;
-      ctx.fillStyle = colours[part];
       const path = pathOf(contours, this.camera);
-      ctx.fill(path, 'nonzero');
+      fillMaterial(ctx, path, this.camera, colours[part], layer.insideOut.deepest, faultColour);
       if (rim === null) return;
       ctx.strokeStyle = rim;
       ctx.lineWidth = 5;

@@ -1,38 +1,22 @@
-import {
-  BufferGeometry,
-  Color,
-  ColorManagement,
-  Float32BufferAttribute,
-  Group,
-  LinearSRGBColorSpace,
-  LineBasicMaterial,
-  LineSegments,
-  Mesh,
-  MeshBasicMaterial,
-  PerspectiveCamera,
-  PlaneGeometry,
-  Scene,
-  ShaderMaterial,
-  Vector3,
-  WebGLRenderer,
-  WebGLRenderTarget,
-} from 'three';
+import { Color, ColorManagement, Group, LinearSRGBColorSpace, Mesh, PerspectiveCamera, PlaneGeometry, Scene, ShaderMaterial, Vector3, WebGLRenderer, WebGLRenderTarget } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { element } from '../element.js';
 import { iconButton } from '../icon.js';
-import { roundStep } from '../layer/round_step.js';
+import { scrollOrPinch } from '../touch.js';
+import { Bed } from './bed.js';
 
 // Colours are those of the style sheet and go to the screen as they are.
 ColorManagement.enabled = false;
 
 /** Directions to look from, by the names of their buttons. */
 const views = {
-  Aslant: [0.62, -1, 0.62],
+  '3D': [0.62, -1, 0.62],
   Top: [0, -0.001, 1],
   Front: [0, -1, 0.001],
   Right: [1, 0, 0.001],
 };
 
+const margin = 1.04; // of what is shown as a whole, at the edges of the canvas
 const millisecondsOfSlice = 80; // that whoever draws shall be busy before the page has its turn
 const leastOfSlice = 2000; // lines or triangles; the first slice has so many, to measure by
 const slicesInMotion = 3; // that a picture may take while something moves
@@ -70,12 +54,14 @@ export class Space {
   #target = new WebGLRenderTarget(1, 1, { samples: 4 });
   #copy = copyOf(this.#target.texture);
   #bed;
-  #listeners = [];
+  #view = '3D'; // that all of the scene is shown from; null once somebody moved
+  #before = [];
+  #after = [];
 
   /**
    * @param {number[][]} box low and high corner of the part, mm; the scene counts from the low one
-   * @param {(most: number) => Bulk[]} bulkOf what there is to draw; no more than `most` lines or triangles if it can be
-   *     shown with less detail. Called when a picture is begun.
+   * @param {(most: number) => {bulk: Bulk[], coarse: boolean}} bulkOf what there is to draw; no more than `most` lines or
+   *     triangles if it can be shown with less detail, `coarse`. Called when a picture is begun.
    */
   constructor(box, label, bulkOf) {
     this.#bulkOf = bulkOf;
@@ -95,7 +81,17 @@ export class Space {
     this.controls = new OrbitControls(this.camera, this.canvas);
     this.controls.zoomToCursor = true;
     this.controls.addEventListener('change', () => this.redraw());
-    this.under.add((this.#bed = bedOf(this.size)));
+    this.controls.addEventListener('start', () => (this.#view = null));
+    scrollOrPinch(this.canvas, () => {
+      const [view, position, target] = [this.#view, this.camera.position.clone(), this.controls.target.clone()];
+      return () => {
+        this.#view = view;
+        this.camera.position.copy(position);
+        this.controls.target.copy(target);
+        this.controls.update();
+      };
+    });
+    this.under.add((this.#bed = new Bed(this.size)));
     this.tools = Object.keys(views).map((name) =>
       element('button', { type: 'button', className: 'toggle', onclick: () => this.look(name) }, name),
     );
@@ -106,11 +102,35 @@ export class Space {
       iconButton('Zoom out', 'minus', () => this.zoomBy(1 / 1.4)),
     );
     new ResizeObserver(() => this.redraw()).observe(this.canvas);
-    this.look('Aslant');
+    this.fit();
   }
 
+  /** Shows the part and the plate, from where one looks at first. */
+  fit() {
+    this.look('3D');
+  }
+
+  /** Shows the part and the plate. */
   look(name) {
-    this.#lookFrom(new Vector3(...views[name]).normalize(), this.middle, this.reach);
+    this.#view = name;
+    const from = new Vector3(...views[name]).normalize();
+    this.#lookFrom(from, this.middle, this.#distanceOfAll(from));
+  }
+
+  /** From where an eye that looks at the middle sees the part and the plate. */
+  #distanceOfAll(from) {
+    const { camera, middle, size } = this;
+    const right = new Vector3(0, 0, 1).cross(from).normalize();
+    const up = from.clone().cross(right);
+    const tangent = Math.tan((camera.fov * Math.PI) / 360) / margin;
+    const corners = [...this.#bed.corners];
+    for (let i = 0; i < 8; ++i) corners.push(new Vector3(i & 1 ? size.x : 0, i & 2 ? size.y : 0, i & 4 ? size.z : 0));
+    const distances = corners.map((corner) => {
+      const offset = corner.clone().sub(middle);
+      const aside = Math.max(Math.abs(offset.dot(right)) / camera.aspect, Math.abs(offset.dot(up)));
+      return aside / tangent + offset.dot(from);
+    });
+    return Math.max(...distances);
   }
 
   /**
@@ -120,12 +140,11 @@ export class Space {
   lookAt(place, reach, from = this.camera.position.clone().sub(this.controls.target)) {
     const direction = from.clone().normalize();
     if (Math.hypot(direction.x, direction.y) < 0.001) direction.y -= 0.001; // what is up on the screen must be known
-    this.#lookFrom(direction, place, reach);
+    this.#view = null;
+    this.#lookFrom(direction, place, (0.54 * reach) / Math.tan((this.camera.fov * Math.PI) / 360) / Math.min(1, this.camera.aspect));
   }
 
-  #lookFrom(direction, target, reach) {
-    const narrow = Math.min(1, this.camera.aspect);
-    const distance = (0.54 * reach) / Math.tan((this.camera.fov * Math.PI) / 360) / narrow;
+  #lookFrom(direction, target, distance) {
     this.controls.target.copy(target);
     this.camera.position.copy(target).addScaledVector(direction, distance);
     this.controls.update();
@@ -134,6 +153,7 @@ export class Space {
 
   /** Turns around the part, by radians. */
   turnBy(sideways, upwards) {
+    this.#view = null;
     const away = this.camera.position.clone().sub(this.controls.target);
     const up = new Vector3(0, 0, 1);
     away.applyAxisAngle(up, sideways);
@@ -146,6 +166,7 @@ export class Space {
   }
 
   zoomBy(factor) {
+    this.#view = null;
     this.camera.position.lerp(this.controls.target, 1 - 1 / factor);
     this.controls.update();
     this.redraw();
@@ -153,14 +174,18 @@ export class Space {
 
   paint(theme) {
     this.renderer.setClearColor(new Color(theme.paper));
-    this.#bed.children[0].material.color.set(theme.bed);
-    this.#bed.children[1].material.color.set(theme.bedLine);
+    this.#bed.paint(theme);
     this.redraw();
   }
 
   /** listen(up) is called before each picture; up is the build direction as the eye sees it. */
   beforeDrawing(listen) {
-    this.#listeners.push(listen);
+    this.#before.push(listen);
+  }
+
+  /** listen(coarse) is called after each picture that comes to the screen. */
+  afterDrawing(listen) {
+    this.#after.push(listen);
   }
 
   redraw() {
@@ -225,20 +250,20 @@ export class Space {
     if (this.camera.aspect !== width / height) {
       this.camera.aspect = width / height;
       this.camera.updateProjectionMatrix();
-      if (this.canvas.dataset.ready === undefined) this.look('Aslant');
+      if (this.#view !== null) this.look(this.#view);
     }
     this.camera.updateMatrixWorld();
     const up = new Vector3(0, 0, 1).transformDirection(this.camera.matrixWorldInverse);
-    for (const listen of this.#listeners) listen(up);
-    let bulk = this.#bulkOf(Infinity);
+    for (const listen of this.#before) listen(up);
+    let { bulk, coarse } = this.#bulkOf(Infinity);
     const quick = totalOf(bulk) <= this.#room;
-    if (!quick && !better) bulk = this.#bulkOf(slicesInMotion * this.#room);
+    if (!quick && !better) ({ bulk, coarse } = this.#bulkOf(slicesInMotion * this.#room));
     const screen = quick || better ? Math.min(2, window.devicePixelRatio || 1) : 1;
     // Thin layers flicker less in finer pictures.
     const density = screen * (better === 'finer' ? 1.5 : 1);
     this.#target.setSize(Math.round(width * density), Math.round(height * density));
     const [since, camera] = [performance.now(), this.camera.clone()];
-    this.#picture = { bulk, quick, better, width, height, density, camera, since, slices: 0 };
+    this.#picture = { bulk, coarse, quick, better, width, height, density, camera, since, slices: 0 };
   }
 
   #drawSlice() {
@@ -287,7 +312,7 @@ export class Space {
   /** Brings the picture to the screen. */
   #show() {
     const { canvas, renderer } = this;
-    const { quick, better, width, height, density, since } = this.#picture;
+    const { coarse, quick, better, width, height, density, since } = this.#picture;
     this.#picture = null;
     if (canvas.width !== this.#target.width || canvas.height !== this.#target.height) {
       renderer.setPixelRatio(density);
@@ -297,6 +322,7 @@ export class Space {
     renderer.render(this.#copy, this.camera);
     if (canvas.dataset.ready === undefined) performance.mark('first picture of the stack');
     canvas.dataset.ready = '';
+    for (const listen of this.#after) listen(coarse);
     const seconds = (performance.now() - since) / 1000;
     if (this.#changed || this.#awaited > 0) return;
     if (quick || better) canvas.dataset.settled = '';
@@ -322,22 +348,4 @@ function copyOf(texture) {
   const mesh = new Mesh(new PlaneGeometry(2, 2), material);
   mesh.frustumCulled = false;
   return new Scene().add(mesh);
-}
-
-/** A plane under the part with lines every 1, 2, 5, 10, ... mm; seen from above only. */
-function bedOf(size) {
-  const step = roundStep(Math.max(size.x, size.y, 1e-6) / 8);
-  const margin = 0.25 * Math.max(size.x, size.y);
-  const begin = -Math.ceil(margin / step) * step;
-  const end = (length) => Math.ceil((length + margin) / step) * step;
-  const [left, right, front, back] = [begin, end(size.x), begin, end(size.y)];
-  const z = -0.0015 * Math.max(size.x, size.y, size.z);
-  const plane = new Mesh(new PlaneGeometry(right - left, back - front), new MeshBasicMaterial({ polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
-  plane.position.set((left + right) / 2, (front + back) / 2, z);
-  const points = [];
-  for (let x = left; x <= right + step / 2; x += step) points.push(x, front, z, x, back, z);
-  for (let y = front; y <= back + step / 2; y += step) points.push(left, y, z, right, y, z);
-  const lines = new LineSegments(new BufferGeometry(), new LineBasicMaterial());
-  lines.geometry.setAttribute('position', new Float32BufferAttribute(points, 3));
-  return new Group().add(plane, lines);
 }

@@ -72,7 +72,11 @@ export class StackView {
   #parts;
   #walls;
   #ghosts;
+  #leftOut = ''; // for good, in words
   #levels = []; // those that are complete, each a list of pieces { layers, counts, solid, ghost }
+  #built = false; // all of them are
+  #coarse = true; // what is on the screen
+  #progress = ''; // of the building
   #stride = 1; // of the first level
   #capsToPaint = new Map(); // by what paints them
   #origin;
@@ -80,6 +84,7 @@ export class StackView {
   #floor;
   #marks;
   #begun = false;
+  #failed = false; // nothing can be drawn in space
   #goOn = () => {};
 
   /** @param {Promise} first all that takes a while waits for this, unless the stack is all that is to be seen */
@@ -87,9 +92,10 @@ export class StackView {
     this.#page = page;
     this.#shelf = shelf;
     this.#store = store;
-    this.caption = element('p', { className: 'caption' });
+    this.caption = element('p', { className: 'caption', role: 'note' });
     this.node = element('section', { className: 'pane', 'aria-label': 'The stack in space' }, this.caption);
     store.on(['view'], ({ view }) => {
+      if (view === 'both' && this.#failed) return void store.set({ view: 'layer' });
       if (view !== 'layer') this.#goOn();
       if (view === 'stack') afterNextPaint(() => this.#begin());
       if (view === 'both') first.then(() => this.#begin());
@@ -106,7 +112,9 @@ export class StackView {
     try {
       this.#space = new Space(box, 'The stack of layers in space. Buttons look at it from several sides.', (most) => this.#bulkOf(most));
     } catch {
+      this.#failed = true;
       this.caption.textContent = 'This browser draws nothing in space: WebGL is missing or switched off.';
+      if (this.#store.state.view === 'both') this.#store.set({ view: 'layer' });
       return;
     }
     this.#bodies = bodyOfParts(head);
@@ -126,6 +134,10 @@ export class StackView {
     this.#space.beforeDrawing((up) => {
       this.#paintCap();
       this.#shine(up);
+    });
+    this.#space.afterDrawing((coarse) => {
+      this.#coarse = coarse;
+      this.#note();
     });
     this.#store.on(['theme'], ({ theme }) => this.#paint(theme));
     this.#store.on(['theme', 'hidden'], ({ theme, hidden }) => this.#paintParts(theme, hidden));
@@ -178,13 +190,13 @@ export class StackView {
     const layer = await this.#space.awaitChange(this.#shelf.layer(number));
     if (this.#store.state.layer !== number) return;
     this.#capToPaint('top', (theme, hidden) =>
-      this.#top.show(layer, this.#page.table.top[number] - this.#origin[2], this.#wallsOf(theme), hidden, theme.wallCut),
+      this.#top.show(layer, this.#page.table.top[number] - this.#origin[2], this.#wallsOf(theme), hidden, theme.open, theme.wallCut),
     );
   }
 
   async #followFloor() {
     const layer = await this.#shelf.decode(0);
-    this.#capToPaint('floor', (theme, hidden) => this.#floor.show(layer, 0, this.#wallsOf(theme), hidden));
+    this.#capToPaint('floor', (theme, hidden) => this.#floor.show(layer, 0, this.#wallsOf(theme), hidden, theme.open));
   }
 
   #capToPaint(name, paint) {
@@ -201,6 +213,12 @@ export class StackView {
       if (this.#capsToPaint.size > 0) this.#space.redraw();
       return;
     }
+  }
+
+  /** What there is to know of the picture on the screen. */
+  #note() {
+    const unfinished = 'The picture is coarse for now: some layers stand for those between them.';
+    this.caption.textContent = !this.#built ? this.#progress : this.#coarse ? unfinished : this.#leftOut;
   }
 
   /** The walls up to the layer that is shown, then the ghosts above it; of fewer levels where that is too much. */
@@ -220,7 +238,7 @@ export class StackView {
       if (below > 0) solids.push({ mesh: solid, first: 0, count: below, vertices: verticesOfLine });
       if (ghosts && all > below) others.push({ mesh: ghost, first: below, count: all - below, vertices: verticesOfLine });
     }
-    return [...solids, ...others];
+    return { bulk: [...solids, ...others], coarse: !this.#built || levels.length < this.#levels.length };
   }
 
   /**
@@ -250,19 +268,22 @@ export class StackView {
           walls = new Walls(head.parts);
         }
         if (performance.now() - since > millisecondsAtWork) {
-          this.caption.textContent = `Building the stack: ${Math.floor((100 * done) / head.layers)} %`;
+          this.#progress = `Building the stack: ${Math.floor((100 * done) / head.layers)} %`;
+          this.#note();
           await nextTurn();
           while (this.#store.state.view === 'layer') await new Promise((resolve) => (this.#goOn = resolve));
           since = performance.now();
         }
       }
       this.#levels = [...this.#levels, pieces];
+      this.#built = done === head.layers;
       if (performance.now() - seen > millisecondsUnseen || done === head.layers) {
         this.#space.redraw();
         seen = performance.now();
       }
     }
-    this.caption.textContent = widest > 0 ? `Without points that are closer than ${brief(widest)} mm to one another.` : '';
+    if (widest > 0) this.#leftOut = `Points closer than ${brief(widest)} mm to one another are left out.`;
+    this.#note();
     this.#space.canvas.dataset.built = '';
   }
 
@@ -288,6 +309,6 @@ export class StackView {
   }
 
   fit() {
-    this.#space?.look('Aslant');
+    this.#space?.fit();
   }
 }

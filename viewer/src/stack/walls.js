@@ -5,7 +5,7 @@ import { isVectors } from '../data/exposures.js';
  * layer. The graphics card reads them from a texture.
  */
 
-/** What the contour of a line is: closed; a chain of scan vectors; or one of material, which is a fault. */
+/** What the contour of a line is: closed; a chain of scan vectors; or a fault: an open chain of material, or a ring inside out. */
 export const lineKinds = { ring: 0, vectors: 1, fault: 2 };
 
 /** Lines that turn by less meet in a round edge. */
@@ -69,8 +69,11 @@ export class Walls {
    */
   add(layer, number, apart) {
     layer.parts.forEach((contours, part) => {
-      for (let i = 0; i < contours.ends.length; ++i)
-        this.#addContour(keepPoints(contours, i, apart), i < contours.rings ? lineKinds.ring : this.#chains[part], number, part);
+      for (let i = 0; i < contours.ends.length; ++i) {
+        const closed = i < contours.rings;
+        const kind = !closed ? this.#chains[part] : layer.insideOut.rings[part].has(i) ? lineKinds.fault : lineKinds.ring;
+        this.#addContour(keepPoints(contours, i, apart), closed, kind, number, part);
+      }
     });
     this.layers.push(number);
     this.counts.push(this.size);
@@ -88,8 +91,7 @@ export class Walls {
   }
 
   /** The first n points kept. */
-  #addContour(n, kind, number, part) {
-    const closed = kind === lineKinds.ring;
+  #addContour(n, closed, kind, number, part) {
     if (n < (closed ? 3 : 2)) return;
     const lines = closed ? n : n - 1;
     this.#makeRoom(lines);

@@ -1,6 +1,6 @@
 import { hasMaterial, hasVectors } from '../data/exposures.js';
 import { element } from '../element.js';
-import { largest, least } from '../extremes.js';
+import { largest, least, nearest } from '../extremes.js';
 import { faultText } from '../findings.js';
 import { iconButton } from '../icon.js';
 import { brief, count, layerNumber, layerNumbers, mm } from '../text.js';
@@ -29,9 +29,6 @@ const rowsFor = ({ head, table }) =>
   [...(hasVectors(head) ? rowsOfVectors : []), ...(hasMaterial(head) ? rowsOfMaterial : [])].filter(
     ({ column, extra }) => !extra || table[column]?.some((value) => value > 0),
   );
-
-/** Where the value nearest to the one wanted stands in an ascending list. */
-const nearest = (values, wanted) => values.reduce((best, value, i) => (Math.abs(value - wanted) < Math.abs(values[best] - wanted) ? i : best), 0);
 
 /** The slider over all layers, and under it what they measure, on the same axis. */
 export class Timeline {
@@ -77,7 +74,7 @@ export class Timeline {
         this.#playButton(),
         iconButton('Layer above (→)', 'forth', () => player.step(1)),
         iconButton('Last layer (End)', 'last', () => player.go(page.head.layers - 1)),
-        this.number,
+        element('label', { className: 'chosen' }, 'Layer ', this.number),
         element('span', { className: 'of' }, layerNumbers(page.table)),
         this.height,
       ),
@@ -109,13 +106,20 @@ export class Timeline {
       const axis = new LayerAxis(this.#page.head.layers, canvas.clientWidth);
       this.#player.go(axis.layerAt(event.offsetX));
     };
+    let finger = null; // where one came down that may be about to scroll the page: it has to move sideways, or to leave there
     canvas.addEventListener('pointerdown', (event) => {
+      finger = event.pointerType === 'touch' ? event : null;
+      if (finger) return;
       canvas.setPointerCapture(event.pointerId);
       go(event);
     });
     canvas.addEventListener('pointermove', (event) => {
-      if (event.buttons > 0) go(event);
+      if (event.buttons === 0) return;
+      if (finger && Math.abs(event.clientX - finger.clientX) <= Math.abs(event.clientY - finger.clientY)) return;
+      finger = null;
+      go(event);
     });
+    canvas.addEventListener('click', go);
     const quiet = row.fault && high === 0;
     const node = element(
       'div',
@@ -131,7 +135,7 @@ export class Timeline {
     const { table } = this.#page;
     this.slider.value = layer;
     const faults = faultText(table, layer);
-    this.slider.setAttribute('aria-valuetext', `${layerNumber(table, layer)} ${layerNumbers(table)}, z = ${mm(table.z[layer])} mm${faults && `, ${faults}`}`);
+    this.slider.setAttribute('aria-valuetext', `Layer ${layerNumber(table, layer)} ${layerNumbers(table)}, z = ${mm(table.z[layer])} mm${faults && `, ${faults}`}`);
     if (document.activeElement !== this.number) this.number.value = table.index[layer];
     this.height.textContent = `z = ${mm(table.z[layer])} mm`;
     for (const plot of this.plots) plot.value.textContent = `${plot.tell(plot.values[layer])} ${plot.unit}`;
