@@ -98,8 +98,8 @@ run() {
     local cache=()
     make_machine || exit "$no_machine"
     bring_compiled
-    # In the folder of the same name, since objects tell of it.
-    mkdir -p "$root$PWD"
+    # In a folder of the same name, since objects contain it; as private as root's own, where users often clone to.
+    mkdir -p "$root$PWD" && chmod 0700 "$root$PWD"
     git -c safe.directory="$PWD" archive "$tree" | tar --extract --directory "$root$PWD"
 
     local target status=0

@@ -5,7 +5,7 @@ import resource
 import subprocess
 import unittest
 
-from program import PROGRAM, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main
+from program import OTHER_USER, PROGRAM, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main
 
 
 class BadInput(ProgramTest):
@@ -94,13 +94,12 @@ class BadInput(ProgramTest):
             with self.subTest(output):
                 self.fail_with(6, output.split("/")[0], "slice", "box.stl", "-o", output)
 
-    @unittest.skipIf(os.geteuid() == 0, "root may write everywhere")
     def test_a_folder_without_permission(self):
         self.box()
         locked = self.path("locked")
         locked.mkdir()
         locked.chmod(0o500)
-        self.fail_with(6, "locked", "slice", "box.stl", "-o", "locked/out.cli")
+        self.fail_with(6, "locked", "slice", "box.stl", "-o", "locked/out.cli", **UNPRIVILEGED)
 
     @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full here")
     def test_a_full_disk(self):
@@ -194,17 +193,15 @@ class BadInput(ProgramTest):
         for limit in [(resource.RLIMIT_NOFILE, 4), (resource.RLIMIT_NPROC, 1)]:
             with self.subTest(limit):
                 self.fail_with(5, "no further threads or files", "info", "box.stl",
-                               preexec_fn=lambda: resource.setrlimit(limit[0], (limit[1], limit[1])), **UNPRIVILEGED)
+                               preexec_fn=lambda: resource.setrlimit(limit[0], (limit[1], limit[1])), **OTHER_USER)
 
     def test_names_that_the_system_cannot_follow_are_not_one_file(self):
         inner = self.path("locked/inner")
         inner.mkdir(parents=True)
         self.box("locked/inner/box.stl")
-        for path in [self.folder, inner]:
-            path.chmod(0o777)
         self.addCleanup(self.path("locked").chmod, 0o700)
-        # Whoever is not root locks his own folder once the program's process is in it.
-        keywords = {"cwd": inner, **(UNPRIVILEGED or {"preexec_fn": lambda: os.chmod("..", 0)})}
+        # The folder is locked once the program's process is in it.
+        keywords = {"cwd": inner, "preexec_fn": lambda: os.chmod("..", 0), **UNPRIVILEGED}
 
         def run(*arguments):
             self.path("locked").chmod(0o700)

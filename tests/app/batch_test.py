@@ -238,7 +238,6 @@ class Batch(ProgramTest):
         self.boxes("parts/a", 1)
         self.boxes("parts/locked", 1)
         self.boxes("parts/z", 1)
-        self.folder.chmod(0o777)
         self.path("parts/locked").chmod(0)
         self.addCleanup(self.path("parts/locked").chmod, 0o700)
         records = self.batch(7, "parts", "-o", "out", "--format", "cli", **UNPRIVILEGED)

@@ -181,7 +181,6 @@ class Shard(ProgramTest):
         locked = self.path("locked")
         locked.mkdir()
         self.path(b).rename(locked / b)
-        self.folder.chmod(0o777)
         locked.chmod(0)
         self.addCleanup(locked.chmod, 0o700)
         result = self.run_program("merge", "n.cli", a, f"locked/{b}", **UNPRIVILEGED)
