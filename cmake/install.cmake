@@ -11,9 +11,12 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/lamella DESTINATION ${CMAKE_INST
 install(EXPORT lamella-targets NAMESPACE lamella:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/LICENSES-third-party.txt
         DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# The pages that headers refer to, without their pictures.
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} FILES_MATCHING PATTERN *.md
-        PATTERN images EXCLUDE)
+# The pages that headers refer to, with all that they show or link to, in the folders of the sources.
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        PATTERN CMakeLists.txt EXCLUDE PATTERN __pycache__ EXCLUDE)
+install(FILES ${PROJECT_SOURCE_DIR}/bench/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench)
+install(FILES ${PROJECT_SOURCE_DIR}/tools/packages.txt ${PROJECT_SOURCE_DIR}/tools/packages-test.txt
+        DESTINATION ${CMAKE_INSTALL_DOCDIR}/tools)
 # PageOptions::viewer: what the program carries in itself. Absent where it could not be built.
 if(LAMELLA_VIEWER_HTML)
     install(FILES ${LAMELLA_VIEWER_HTML} DESTINATION ${CMAKE_INSTALL_DATADIR}/lamella RENAME viewer.html OPTIONAL)
