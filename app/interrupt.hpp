@@ -15,8 +15,7 @@ namespace lamella::app {
 /// SIGINT, SIGTERM and SIGHUP, but for those that the program was started to ignore.
 [[nodiscard]] sigset_t interrupts() noexcept;
 
-/// Keeps these from all threads that are started from now on: for programs that have other threads before
-/// Interrupt.
+/// Keeps these from this thread and all that it starts: what comes before there is an Interrupt waits for it.
 void block_interrupts();
 
 /// While it lives, these signals request cancelling instead of ending the program, so that temporary files

@@ -1,5 +1,6 @@
 #include "commands.hpp"
 #include "crash.hpp"
+#include "interrupt.hpp"
 #include "program.hpp"
 #include "standard_streams.hpp"
 
@@ -7,6 +8,7 @@
 #include <vector>
 
 int main(int argc, char** argv) {
+    lamella::app::block_interrupts(); // from here on they end the program in order
     lamella::app::reserve_standard_streams();
     lamella::app::prepare_for_crashes();
     return lamella::app::run_program(lamella::app::all_commands(),

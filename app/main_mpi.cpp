@@ -14,9 +14,9 @@
 using namespace lamella::app;
 
 int main(int argc, char** argv) {
+    block_interrupts(); // from here on they end the program in order, also by threads of MPI
     reserve_standard_streams();
     prepare_for_crashes();
-    block_interrupts(); // before MPI has threads of its own
     MpiProcesses processes;
     const int code = run_program({slice_command(&processes)}, std::vector<std::string>(argv + 1, argv + argc),
                                  processes.process() == 0);

@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -34,6 +35,42 @@ bool is_mount_point(const fs::path& folder) {
            (status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
 }
 
+/// The owner of hidden folders: all processes of this machine until it is started again. Locks show them
+/// which of the folders have a living process; those of other machines, which may share the disk but not the
+/// locks, have other names. A process, where the system does not say.
+std::string this_machine() {
+    std::ifstream file("/proc/sys/kernel/random/boot_id");
+    std::string id;
+    constexpr std::size_t enough = 8;
+    return std::getline(file, id) && id.size() >= enough ? id.substr(0, enough) : this_process();
+}
+
+/// Not where it has been removed or replaced meanwhile.
+bool is_still(int descriptor, const char* name) {
+    struct stat opened {};
+    struct stat named {};
+    return ::fstat(descriptor, &opened) == 0 && ::lstat(name, &named) == 0 && opened.st_dev == named.st_dev &&
+           opened.st_ino == named.st_ino;
+}
+
+int open_folder(const char* name) {
+    return ::open(name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+}
+
+/// Removes the hidden folder unless its process lives: a lock ends with the process, however that ends.
+/// Whether the name is free then.
+bool remove_abandoned(const char* name) {
+    const int folder = open_folder(name);
+    if (folder < 0)
+        return false;
+    const bool abandoned = ::flock(folder, LOCK_EX | LOCK_NB) == 0 && is_still(folder, name);
+    if (abandoned)
+        remove_folder(name);
+    ::close(folder);
+    struct stat status {};
+    return abandoned && ::lstat(name, &status) != 0;
+}
+
 } // namespace
 
 AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::path&)> may_remove)
@@ -49,7 +86,8 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
         throw Error(ErrorKind::output, "cannot write a folder without a name");
     check_replaceable();
     const UnfinishedName::Creation creation;
-    working_ = take_free_name(target_, [](const char* name) { return ::mkdir(name, 0777) == 0; });
+    working_ =
+        take_free_name(target_, this_machine(), [this](const char* name) { return make_working(name); });
     if (working_.empty())
         throw output_error(target_.string(), errno);
     // The permissions of a new folder are the umask's; those of a replaced one stay, and meanwhile this
@@ -61,6 +99,7 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
     }
     if (!unfinished_.announce(working_.string())) {
         ::rmdir(working_.c_str());
+        ::close(lock_);
         throw Error(ErrorKind::cancelled, "cancelled");
     }
 }
@@ -68,6 +107,28 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
 AtomicDirectory::~AtomicDirectory() {
     if (!working_.empty())
         remove_folder(working_);
+    if (lock_ >= 0)
+        ::close(lock_);
+}
+
+bool AtomicDirectory::make_working(const char* name) {
+    constexpr mode_t everybody = 0777; // less the umask
+    if (::mkdir(name, everybody) != 0) {
+        if (errno == EEXIST)
+            errno = remove_abandoned(name) ? EINTR : EEXIST; // once more, or the next name
+        return false;
+    }
+    lock_ = open_folder(name);
+    const bool taken_away = lock_ < 0 ? errno == ENOENT
+                                      : (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) ||
+                                            !is_still(lock_, name);
+    if (!taken_away)
+        return true; // also where the file system has no locks: then nobody removes it
+    // Another process took it for abandoned before it was locked.
+    if (lock_ >= 0)
+        ::close(std::exchange(lock_, -1));
+    errno = EEXIST;
+    return false;
 }
 
 void AtomicDirectory::check_replaceable() const {
@@ -146,7 +207,7 @@ void AtomicDirectory::commit() {
     }
     // Not every file system can do that. The old folder steps aside; should the new one fail to take its
     // place, it steps back.
-    const fs::path aside = take_free_name(target_, [this](const char* name) {
+    const fs::path aside = take_free_name(target_, this_process(), [this](const char* name) {
         if (!fs::exists(fs::symlink_status(name)))
             return std::rename(target_.c_str(), name) == 0;
         errno = EEXIST;

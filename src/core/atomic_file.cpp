@@ -222,7 +222,7 @@ void AtomicFile::open_unfinished() {
 
 void AtomicFile::open_named(mode_t permissions) {
     const UnfinishedName::Creation creation;
-    temporary_ = take_free_name(target_, [&](const char* name) {
+    temporary_ = take_free_name(target_, this_process(), [&](const char* name) {
         descriptor_ = ::open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, permissions);
         return descriptor_ >= 0;
     });
@@ -233,7 +233,8 @@ void AtomicFile::open_named(mode_t permissions) {
 
 void AtomicFile::give_temporary_name() {
     const UnfinishedName::Creation creation;
-    temporary_ = take_free_name(target_, [this](const char* name) { return name_file(descriptor_, name); });
+    temporary_ = take_free_name(target_, this_process(),
+                                [this](const char* name) { return name_file(descriptor_, name); });
     if (temporary_.empty())
         fail(errno);
     nameless_ = false;

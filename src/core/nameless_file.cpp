@@ -26,11 +26,11 @@ int open_nameless(const std::string& folder, mode_t permissions) {
     return descriptor;
 }
 
-// A name for what is not finished: hidden, beside the target, of one process.
-std::string temporary_name(const std::filesystem::path& target, int attempt) {
+// A name for what is not finished: hidden, beside the target.
+std::string temporary_name(const std::filesystem::path& target, std::string_view owner, int attempt) {
     // Room for the rest of the name: most file systems end at 255 bytes.
     const std::string stem = target.filename().string().substr(0, 200);
-    return (target.parent_path() / fmt::format(".{}.{}-{}.tmp", stem, getpid(), attempt)).string();
+    return (target.parent_path() / fmt::format(".{}.{}-{}.tmp", stem, owner, attempt)).string();
 }
 
 } // namespace
@@ -44,11 +44,11 @@ int create_nameless(const std::string& folder, mode_t permissions) {
     return -1;
 }
 
-std::string take_free_name(const std::filesystem::path& target,
+std::string take_free_name(const std::filesystem::path& target, std::string_view owner,
                            const std::function<bool(const char* name)>& take) {
     constexpr int most_attempts = 10'000;
     for (int attempt = 0; attempt < most_attempts;) {
-        std::string name = temporary_name(target, attempt);
+        std::string name = temporary_name(target, owner, attempt);
         if (take(name.c_str()))
             return name;
         if (errno == EEXIST)
@@ -57,6 +57,10 @@ std::string take_free_name(const std::filesystem::path& target,
             break;
     }
     return {};
+}
+
+std::string this_process() {
+    return std::to_string(getpid());
 }
 
 bool name_file(int descriptor, const char* name) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 
 namespace lamella {
 
@@ -15,10 +16,13 @@ namespace lamella {
 /// where they cannot be named.
 [[nodiscard]] int create_nameless(const std::string& folder, mode_t permissions);
 
-/// The first hidden name beside `target` that `take` makes its own: false and EEXIST say that it is in use.
-/// "" and errno where it fails for another reason.
-[[nodiscard]] std::string take_free_name(const std::filesystem::path& target,
+/// The first hidden name beside `target`, `.NAME.OWNER-N.tmp`, that `take` makes its own: false and EEXIST
+/// mean that it is in use. "" and errno where it fails for another reason.
+[[nodiscard]] std::string take_free_name(const std::filesystem::path& target, std::string_view owner,
                                          const std::function<bool(const char* name)>& take);
+
+/// The owner of names that belong to this process alone.
+[[nodiscard]] std::string this_process();
 
 /// Gives a file of `create_nameless` its name, once. False and errno otherwise: EEXIST where the name is in
 /// use.

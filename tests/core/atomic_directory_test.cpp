@@ -44,6 +44,46 @@ TEST(AtomicDirectory, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
     EXPECT_EQ(folder.entries(), Names{"done"});
 }
 
+TEST(AtomicDirectory, RemovesWhatAProcessThatIsDeadLeftForTheSameName) {
+    const TemporaryFolder folder;
+    const int code = exit_code_of_child([&] {
+        AtomicDirectory left(folder.file("out"), is_layer);
+        left.write("a.svg", "a");
+        const AtomicDirectory another(folder.file("another"), is_layer);
+        _exit(0); // before any destructor
+    });
+    ASSERT_EQ(code, 0);
+    ASSERT_EQ(folder.entries().size(), 2U);
+    {
+        const AtomicDirectory directory(folder.file("out"), is_layer);
+        EXPECT_EQ(folder.entries().size(), 2U) << "its own, and that of another name";
+        EXPECT_TRUE(fs::is_empty(folder.path() / folder.entries().back()));
+    }
+    EXPECT_EQ(folder.entries().size(), 1U);
+    EXPECT_TRUE(folder.entries().front().starts_with(".another."));
+}
+
+TEST(AtomicDirectory, LeavesWhatIsNotItsOwnKindOfLeftoverAlone) {
+    const TemporaryFolder folder;
+    AtomicDirectory living(folder.file("out"), is_layer);
+    living.write("a.svg", "a");
+    const std::string name = folder.entries().front();
+    // Of another machine, or of this one before it was started again.
+    const std::string of_another_machine = ".out.00000000-0.tmp";
+    fs::create_directory(folder.path() / of_another_machine);
+    // A file or a link of the name that would be taken next.
+    const std::string next = name.substr(0, name.size() - std::string("0.tmp").size()) + "1.tmp";
+    fs::create_symlink(of_another_machine, folder.path() / next);
+    {
+        const AtomicDirectory second(folder.file("out"), is_layer);
+        EXPECT_EQ(folder.entries().size(), 4U);
+    }
+    EXPECT_EQ(folder.entries().size(), 3U);
+    living.commit();
+    EXPECT_EQ(folder.entries().size(), 3U);
+    EXPECT_EQ(file_bytes(folder.path() / "out" / "a.svg"), "a");
+}
+
 TEST(AtomicDirectory, AppearsWholeAtTheEnd) {
     const TemporaryFolder folder;
     for (const char* name : {"out", "slashed/"}) {
