@@ -1,6 +1,7 @@
 #include "lamella/contour/measure.hpp"
 
 #include "core/atomic_directory.hpp"
+#include "core/counted.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"
@@ -55,6 +56,17 @@ struct MeasuredRing {
     double area;
 };
 
+// Without `:has`, which older browsers do not know, the first layer stays below the one that the address
+// names.
+constexpr std::string_view screen_style =
+    "  <style>@media screen {\n"
+    "    svg { background: #808080 }\n"
+    "    [id^=layer] { display: none; transform: scale(1, -1); transform-origin: center }\n"
+    "    #layer0, [id^=layer]:target { display: inline }\n"
+    "    svg:has([id^=layer]:target) #layer0:not(:target) { display: none }\n"
+    "    polyline { stroke: red; vector-effect: non-scaling-stroke }\n"
+    "  }</style>\n";
+
 class LayeredSvgWriter final : public SequentialWriter {
   public:
     LayeredSvgWriter(const std::string& path, const LayerFileInfo& info)
@@ -70,24 +82,30 @@ class LayeredSvgWriter final : public SequentialWriter {
     }
 
   private:
-    // Width and height are plain millimetres without a viewBox: importers know Slic3r's files by that.
+    // Importers, which know Slic3r's files, take coordinates as millimetres, and pass over title and style.
+    // Browsers take the style: they show one layer, which the address can name, with y upwards.
     static std::string head(const LayerFileInfo& info) {
         const Box3& box = info.box;
         const auto mm = [](std::int64_t steps) {
             return decimal_text(static_cast<double>(steps) * text_step_mm, 3, 0);
         };
         const GridPoint origin = steps_below(box.min);
-        return fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"yes\"?>\n"
-                           "<svg width=\"{}\" height=\"{}\" xmlns=\"http://www.w3.org/2000/svg\" "
-                           "xmlns:svg=\"http://www.w3.org/2000/svg\" "
-                           "xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
-                           "xmlns:slic3r=\"http://slic3r.org/namespaces/slic3r\" "
-                           "data-lamella-origin=\"{} {}\"{}>\n",
-                           decimal_text(box.max.x - box.min.x, 6, 0),
-                           decimal_text(box.max.y - box.min.y, 6, 0), mm(origin.x), mm(origin.y),
-                           info.rule == PlaneRule::section_above
-                               ? std::string()
-                               : fmt::format(" data-lamella-rule=\"{}\"", plane_rule_name(info.rule)));
+        return fmt::format(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"yes\"?>\n"
+            "<svg width=\"{0}mm\" height=\"{1}mm\" viewBox=\"0 0 {0} {1}\" "
+            "xmlns=\"http://www.w3.org/2000/svg\" "
+            "xmlns:svg=\"http://www.w3.org/2000/svg\" "
+            "xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
+            "xmlns:slic3r=\"http://slic3r.org/namespaces/slic3r\" "
+            "data-lamella-origin=\"{2} {3}\"{4}>\n"
+            "  <title>{5}; a browser shows one of them: add #layer1 to the address for another</title>\n"
+            "{6}",
+            decimal_text(box.max.x - box.min.x, 6, 0), decimal_text(box.max.y - box.min.y, 6, 0),
+            mm(origin.x), mm(origin.y),
+            info.rule == PlaneRule::section_above
+                ? std::string()
+                : fmt::format(" data-lamella-rule=\"{}\"", plane_rule_name(info.rule)),
+            counted(info.layers, "layer"), screen_style);
     }
 
     std::string layer_head(const PlanePlace& place) override {

@@ -173,7 +173,9 @@ class ForeignReaders(ProgramTest):
         self.assertLess(abs(bounds(numpy.concatenate(found)) - expected).max(), tolerance)
 
     def test_svgelements_finds_the_layers_of_one_svg(self):
-        document = svgelements.SVG.parse(self.slice("part.svg"))
+        # A pixel is a millimetre then, but for the digits of an inch that svgelements leaves out.
+        document = svgelements.SVG.parse(self.slice("part.svg"), ppi=25.4)
+        self.assertAlmostEqual(document.width, document.viewbox.width, delta=1e-4)
         corner = numpy.array([float(v) for v in document.values["data-lamella-origin"].split()])
         groups = [e for e in document if isinstance(e, svgelements.Group)]
         self.assertEqual(len(groups), len(self.layers))
@@ -199,7 +201,6 @@ class ForeignReaders(ProgramTest):
         folder = Path(self.slice_pictures())
         found = []
         for layer in self.layers:
-            # A pixel is a millimetre then, but for the digits of an inch that svgelements leaves out.
             document = svgelements.SVG.parse(folder / f"layer_{layer['index']:05}.svg", ppi=25.4)
             box = document.viewbox
             self.assertAlmostEqual(document.width, box.width, delta=1e-4)

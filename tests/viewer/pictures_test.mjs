@@ -4,7 +4,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { colourOf, file, lamella, open, redrawn, settled, shown, startBrowser, stopBrowser } from './browser.mjs';
+import { colourOf, file, lamella, open, openDrawing, redrawn, settled, shown, startBrowser, stopBrowser } from './browser.mjs';
 
 const height = 0.5; // mm, of a layer
 const pitches = { rook: 0.02, calibration: 0.1 }; // mm, of the raster's pixels: finer than those of the screen
@@ -93,6 +93,43 @@ for (const colorScheme of ['light', 'dark'])
       }
     }
   });
+
+test('a layered SVG shows one layer, that of the address, in its true size and y upwards', async () => {
+  lamella('make', 'rook', '-o', 'cut.stl', '--rotate-x', '90'); // its base is at the back
+  lamella('slice', 'cut.stl', '--layer-height', '1', '-o', 'cut.svg');
+  const { layers } = (lamella('convert', 'cut.svg', 'cut.json'), JSON.parse(readFileSync(file('cut.json'), 'utf8')));
+  for (const [address, layer] of [['cut.svg', 0], ['cut.svg#layer15', 15]]) {
+    const seen = await shapesOf(address);
+    const points = layers[layer].parts[0].rings.flat();
+    const range = (k) => points.filter((_, i) => i % 2 === k).reduce(([low, high], p) => [Math.min(low, p), Math.max(high, p)], [Infinity, -Infinity]);
+    const [[left, right], [front, back]] = [range(0), range(1)];
+    const mm = 96 / 25.4; // pixels
+    assert.equal(seen.length, layers[layer].parts[0].rings.length, address);
+    const box = (key, worst) => seen.map((shape) => shape[key]).reduce((a, b) => worst(a, b));
+    assert.ok(Math.abs(box('right', Math.max) - box('left', Math.min) - (right - left) * mm) < 0.1, address);
+    assert.ok(Math.abs(box('bottom', Math.max) - box('top', Math.min) - (back - front) * mm) < 0.1, address);
+  }
+  // The wide base of the rook, at the back of this pose, is at the top of the picture.
+  const [outline] = await shapesOf('cut.svg#layer15');
+  assert.ok(outline.wide_at_top, 'upside down');
+});
+
+/** The boxes of all polygons of a drawing that are seen. */
+async function shapesOf(address) {
+  const { page } = await openDrawing(address);
+  return page.evaluate(() =>
+    [...document.querySelectorAll('polygon')]
+      .map((shape) => ({ box: shape.getBoundingClientRect(), shape }))
+      .filter(({ box }) => box.width > 0)
+      .map(({ box, shape }) => {
+        const matrix = shape.getScreenCTM();
+        const points = [...shape.points].map((p) => p.matrixTransform(matrix));
+        const width = (some) => Math.max(...some.map((p) => p.x)) - Math.min(...some.map((p) => p.x));
+        const [top, bottom] = [points.filter((p) => p.y < box.top + box.height / 10), points.filter((p) => p.y > box.bottom - box.height / 10)];
+        return { left: box.left, right: box.right, top: box.top, bottom: box.bottom, wide_at_top: width(top) > width(bottom) };
+      }),
+  );
+}
 
 /** The leftmost and rightmost pixel of the stack in each row of the screen: what has not the colour of the paper. */
 async function silhouette(page) {

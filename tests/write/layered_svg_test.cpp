@@ -29,9 +29,17 @@ TEST(LayeredSvg, HasTheseBytes) {
     EXPECT_EQ(
         svg(square_with_hole()),
         "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"yes\"?>\n"
-        "<svg width=\"10\" height=\"10\" xmlns=\"http://www.w3.org/2000/svg\" "
+        "<svg width=\"10mm\" height=\"10mm\" viewBox=\"0 0 10 10\" xmlns=\"http://www.w3.org/2000/svg\" "
         "xmlns:svg=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" "
         "xmlns:slic3r=\"http://slic3r.org/namespaces/slic3r\" data-lamella-origin=\"0 0\">\n"
+        "  <title>2 layers; a browser shows one of them: add #layer1 to the address for another</title>\n"
+        "  <style>@media screen {\n"
+        "    svg { background: #808080 }\n"
+        "    [id^=layer] { display: none; transform: scale(1, -1); transform-origin: center }\n"
+        "    #layer0, [id^=layer]:target { display: inline }\n"
+        "    svg:has([id^=layer]:target) #layer0:not(:target) { display: none }\n"
+        "    polyline { stroke: red; vector-effect: non-scaling-stroke }\n"
+        "  }</style>\n"
         "  <g id=\"layer0\" slic3r:z=\"0.5000\" slic3r:slice-z=\"0.2500\" slic3r:layer-height=\"0.5000\">\n" +
             polygons +
             "  <g id=\"layer1\" slic3r:z=\"1.0000\" slic3r:slice-z=\"0.7500\" "
@@ -43,7 +51,7 @@ TEST(LayeredSvg, CountsFromTheCornerOfTheBox) {
     LayerBuilder builder;
     add_contour(builder, {{-5.0004, 20}, {5, 20}, {5, 30.0126}});
     const std::string text = svg({builder.finish(0, 0.5, 0, 1)});
-    EXPECT_TRUE(contains(text, "width=\"10.0004\" height=\"10.0126\""));
+    EXPECT_TRUE(contains(text, "width=\"10.0004mm\" height=\"10.0126mm\" viewBox=\"0 0 10.0004 10.0126\""));
     EXPECT_TRUE(contains(text, "data-lamella-origin=\"-5.001 20\""));
     EXPECT_TRUE(contains(text, "points=\"0.001,0 10.001,0 10.001,10.013\""));
 }
