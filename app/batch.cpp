@@ -93,7 +93,7 @@ Json sliced(const BatchItem& item, const SliceItem& slice, const Execution& exec
         const BatchResult result = slice(item, execution);
         written = true;
         if (!item.stats.empty())
-            write_text_file(item.stats, result.stats);
+            after_output(item.output, [&] { write_text_file(item.stats, result.stats); });
         return record_of(item, result);
     } catch (...) {
         Failure failure = failure_of(std::current_exception());

@@ -71,7 +71,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
         fmt::format("{}: {} from {} ({}) as {}\n", one_line(output_name(arguments.output)),
                     counted(info.layers, "layer"), one_line(file.path), file.format, format.name);
     if (arguments.making.steps().any())
-        text += fmt::format("  {}\n", changes_text(changes, "than before"));
+        text += fmt::format("  changed {}\n", changes_text(arguments.making.steps(), changes));
     context.messages.written(text, arguments.output);
     return 0;
 }

@@ -236,7 +236,7 @@ Command info_command() {
                     "look for triangles that cross, overlap or touch one another, too (takes longer)",
                     arguments->self_intersections),
                output_file("report", "write a page to look at the mesh, its shells and its defects (HTML)",
-                           arguments->report),
+                           arguments->report, page_extensions()),
                unit_option(arguments->placement.unit),
                flag("strict", "exit with code 4 where there is any defect, or in a slice file an open chain",
                     arguments->strict)}},

@@ -181,16 +181,6 @@ OptionGroup shape_options(MakeArguments& target) {
              {"wall", "hole", "split", "shuffle"}, target.order)}};
 }
 
-/// Meshes of these formats are read, but not written.
-void check_extension(const std::string& output) {
-    const std::string extension = extension_of(output);
-    for (const std::string_view written : {".stl", ".ply", ".obj"})
-        if (extension == written)
-            return;
-    if (extension == ".gz" || is_mesh_name(output))
-        throw Error(ErrorKind::usage, fmt::format("{}: bodies are written as .stl, .ply or .obj", output));
-}
-
 /// In the format of the extension: STL unless it is that of another one.
 void write_mesh(const std::string& output, const TriangleSoup& soup, const MakeArguments& arguments) {
     const std::string extension = extension_of(output);
@@ -253,7 +243,6 @@ int run_make(const MakeArguments& arguments, const Context& context) {
 
     check_outputs(context.command, arguments.output.empty() ? std::vector<NamedFile>{{"the body", output}}
                                                             : std::vector<NamedFile>{});
-    check_extension(output);
     const Made made = can_stream(output, arguments) ? stream_lattice(output, arguments, pose)
                                                     : make_whole(output, arguments, body, pose);
     const Box3& extent = made.box;
@@ -273,7 +262,7 @@ Command make_command() {
         "output",
         "the file, STL, or PLY or OBJ by its extension; - is standard output; without it, BODY.stl "
         "here",
-        arguments->output);
+        arguments->output, {".stl", ".ply", ".obj"});
     output.letter = 'o';
     return {
         .name = "make",

@@ -52,10 +52,9 @@ Command merge_command() {
         .summary = "put slice files of consecutive layers together",
         .description =
             "Makes one slice file of several whose layers lie on one another, such as the shards of a job "
-            "(lamella slice --shard); they may be named in any order. Files with gaps between them, that "
-            "overlap "
-            "or are not of one job are refused; but exposures of scan vectors may be missing in some, and in "
-            "ilt, ovf and 3mf-toolpath other parts, too. Files "
+            "(lamella slice --shard); they may be named in any order. Files that overlap, leave gaps "
+            "or come from different jobs are refused. An exposure may be missing in some; in ilt, ovf and "
+            "3mf-toolpath a whole part. Files "
             "in the formats cli and cli-ascii become the file "
             "of a single run, byte for byte, unless other units or the short form are asked for; layers of "
             "other formats are read and written anew.",

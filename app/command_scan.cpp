@@ -10,6 +10,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "config_file.hpp"
+#include "failure.hpp"
 #include "layer_file.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
@@ -134,14 +135,16 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     if (result.thin.rings > 0)
         context.messages.warn(fmt::format("{}: {}", file.path, result.thin.text()));
     context.messages.warn_of(output_name(arguments.output), result.warnings);
-    if (!arguments.stats.empty()) {
+    after_output(arguments.output, [&] {
+        if (arguments.stats.empty())
+            return;
         const std::string text =
             json_text(stats_of(context.command, arguments.input, file, strategy, result));
         if (arguments.stats == "-")
             context.messages.result(text);
         else
             write_text_file(arguments.stats, text);
-    }
+    });
     const std::string text =
         fmt::format("{}: {} from {} ({}) as {}, {}\n  {}\n", one_line(output_name(arguments.output)),
                     counted(info.layers, "layer"), one_line(file.path), file.format, format.name,

@@ -10,6 +10,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "deadline.hpp"
+#include "failure.hpp"
 #include "figures.hpp"
 #include "layering_options.hpp"
 #include "names.hpp"
@@ -98,7 +99,7 @@ OptionGroup output_options(SliceArguments& target) {
         group.options.push_back(std::move(option));
     group.options.push_back(
         output_file("report", "write a page to look at the layers and the figures of the run (HTML), too",
-                    target.report));
+                    target.report, page_extensions()));
     group.options.push_back(output_file("stats",
                                         "write figures of the run and of every layer as JSON, not in a "
                                         "folder that -o makes; - is standard output",
@@ -315,7 +316,7 @@ std::string summary(const FileJob& job, const FileResult& result) {
     if (job.repair.close_gaps_mm)
         text += gaps_text(result.gaps);
     if (result.changes)
-        text += fmt::format("made     {}\n", changes_text(*result.changes, "than sliced"));
+        text += fmt::format("changed  {}\n", changes_text(job.steps, *result.changes));
     if (job.scan)
         text += fmt::format("scan     {}\n", scan_text(result.exposures));
     const Json figures = as_json(run_figures(result));
@@ -455,12 +456,14 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         if (arguments.team != nullptr)
             check_job_of_team(context.command, job, processes);
         check_places(arguments, processes);
+        if (!origin.is_null())
+            remove_stamp_without_output(job.output);
         return slice_file(job, run, processes);
     };
     Deadline deadline(arguments.timeout, one_line(input_name(arguments.inputs.front().path)),
                       context.messages, execution);
     const std::optional<FileResult> outcome = deadline.run(slice);
-    deadline.note_output();
+    deadline.note_output(job.output);
     if (!outcome) {
         context.messages.written(fmt::format("{}: shard {}/{} is finished\n", one_line(job.output),
                                              job.shard->number, job.shard->count),
@@ -472,19 +475,21 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         return 0;
     for (const std::string& warning : run_warnings(job, result))
         context.messages.warn(warning);
-    if (!arguments.stats.empty()) {
-        Json stats = stats_json(context.command, job, result);
-        if (arguments.team != nullptr)
-            stats["processes"] = processes_json(result.processes);
-        const std::string text = json_text(stats);
-        if (arguments.stats == "-")
-            context.messages.result(text);
-        else
-            write_text_file(arguments.stats, text);
-    }
-    // Last: what is stamped is finished, with all that was asked for.
-    if (!origin.is_null())
-        stamp_shard(job, arguments.stats, result, origin, execution);
+    after_output(job.output, [&] {
+        if (!arguments.stats.empty()) {
+            Json stats = stats_json(context.command, job, result);
+            if (arguments.team != nullptr)
+                stats["processes"] = processes_json(result.processes);
+            const std::string text = json_text(stats);
+            if (arguments.stats == "-")
+                context.messages.result(text);
+            else
+                write_text_file(arguments.stats, text);
+        }
+        // Last: what is stamped is finished, with all that was asked for.
+        if (!origin.is_null())
+            stamp_shard(job, arguments.stats, result, origin, execution);
+    });
     const bool to_output = arguments.output == "-" || arguments.stats == "-" || arguments.report == "-";
     context.messages.written(summary(job, result), to_output ? "-" : arguments.output);
     finish_printing(); // while the deadline counts

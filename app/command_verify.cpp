@@ -43,6 +43,8 @@ Json heights_json(const std::optional<CoveredHeights>& heights) {
         return {};
     return {{"layers", {heights->bottom, heights->top}},
             {"mesh", {heights->mesh_bottom, heights->mesh_top}},
+            {"layers_above", heights->layers_above},
+            {"layers_below", heights->layers_below},
             {"gaps", heights->gaps},
             {"gaps_mm", heights->gaps_mm}};
 }
@@ -53,9 +55,16 @@ std::string heights_text(const std::optional<CoveredHeights>& heights) {
     const double whole = heights->mesh_top - heights->mesh_bottom;
     const double covered = std::min(heights->top, heights->mesh_top) -
                            std::max(heights->bottom, heights->mesh_bottom) - heights->gaps_mm;
-    return fmt::format("  layers from z = {} to {} mm, of a mesh from {} to {} mm: {:.4g} % of its height\n",
-                       height(heights->bottom), height(heights->top), height(heights->mesh_bottom),
-                       height(heights->mesh_top), whole > 0 ? 100 * std::max(0.0, covered) / whole : 0);
+    std::string text =
+        fmt::format("  layers from z = {} to {} mm, of a mesh from {} to {} mm: {:.4g} % of its height",
+                    height(heights->bottom), height(heights->top), height(heights->mesh_bottom),
+                    height(heights->mesh_top), whole > 0 ? 100 * std::max(0.0, covered) / whole : 0);
+    for (const auto& [layers, where] :
+         {std::pair{heights->layers_above, "above"}, std::pair{heights->layers_below, "below"}})
+        if (layers > 0)
+            text += fmt::format("; {} {} {} it", grouped(layers), layers == 1 ? "layer lies" : "layers lie",
+                                where);
+    return text + "\n";
 }
 
 Json verification_json(const Verification& found) {
@@ -237,11 +246,11 @@ Command verify_command() {
             "clockwise by their nesting, no contour crossing another or itself. With --mesh the area of "
             "every layer is "
             "compared with the section of that mesh, computed straight from its triangles, and so are their "
-            "centres: a layer that is turned about its centre is not told. Of scan vectors, "
-            "contours are checked so, and all have to lie within the mesh, or without one within the "
-            "outermost contour of their part; with the strategy by which they were made, as far from its "
-            "edges as that says, each contour there, all lines at their distance and angle, none shorter "
-            "than the shortest, and enough of them to fill it. Exit code 4 says that the check failed.",
+            "centres: a layer that is rotated about its centre is not found. Scan vectors are checked alike. "
+            "All must "
+            "lie inside the mesh, or without --mesh inside the part's outermost contour. With --strategy or "
+            "--scan: distance from the edge, missing contours, spacing, angle and length of hatch lines, and "
+            "whether they fill the area. Exit code 4: the check failed.",
         .operands = {{.placeholder = "FILE",
                       .help = "the slice file; - is standard input",
                       .set =

@@ -153,7 +153,7 @@ Command view_command() {
     const auto arguments = std::make_shared<ViewArguments>();
     Option output =
         output_file("output", "the page; without it, FILE's name with .html, here; - is standard output",
-                    arguments->output);
+                    arguments->output, page_extensions());
     output.letter = 'o';
     return {
         .name = "view",

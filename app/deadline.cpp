@@ -40,8 +40,9 @@ Deadline::~Deadline() {
         watcher_.join();
 }
 
-void Deadline::note_output() {
+void Deadline::note_output(std::string output) {
     const std::lock_guard lock(mutex_);
+    output_ = std::move(output);
     told_ = true;
 }
 
@@ -94,7 +95,8 @@ void Deadline::watch() {
 std::string Deadline::message() const {
     std::string text = fmt::format("{}: stopped after {} s (--timeout)", what_, brief(*seconds_));
     if (told_)
-        return text + " while figures were written, after all layers";
+        return text + " while results were written" +
+               (output_.empty() || output_ == "-" ? "" : fmt::format("; {} is complete", output_));
     if (started_) {
         const double part =
             last_.total == 0 ? 1 : static_cast<double>(last_.done) / static_cast<double>(last_.total);

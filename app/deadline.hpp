@@ -42,7 +42,7 @@ class Deadline {
 
     /// The output has its name: what is still to come is to tell of it. Where the time is up before that is
     /// done, the program is ended as if it were stuck.
-    void note_output();
+    void note_output(std::string output);
 
   private:
     [[nodiscard]] Execution execution();
@@ -60,6 +60,7 @@ class Deadline {
     Progress last_;
     bool started_ = false; ///< `last_` is a report
     bool told_ = false;    ///< only telling is left
+    std::string output_;   ///< then; "" or "-" where it is no file
     bool ending_ = false;
     bool expired_ = false;
     std::thread watcher_;

@@ -2,6 +2,10 @@
 
 // What went wrong, as exit codes and results tell it.
 
+#include "lamella/core/error.hpp"
+
+#include <fmt/format.h>
+
 #include <exception>
 #include <string>
 #include <string_view>
@@ -24,5 +28,18 @@ struct Failure {
 
 /// Of a process that ended before it could tell; `status` as of waitpid, `path` the file that it worked on.
 [[nodiscard]] Failure failure_of_process(int status, const std::string& path);
+
+/// Does what is left to do once `output` is complete. An Error of it says so; not of standard output or
+/// nothing.
+template <class Work>
+void after_output(const std::string& output, const Work& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        if (output.empty() || output == "-")
+            throw;
+        throw Error(error.kind(), fmt::format("{}; {} is complete", error.what(), output));
+    }
+}
 
 } // namespace lamella::app

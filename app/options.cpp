@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <limits>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 namespace lamella::app {
@@ -116,10 +117,19 @@ Option input_file(std::string name, std::string help, std::string& target) {
     return option;
 }
 
-Option output_file(std::string name, std::string help, std::string& target) {
-    Option option = text(std::move(name), "FILE", std::move(help), target);
-    option.kind = ValueKind::output;
-    return option;
+Option output_file(std::string name, std::string help, std::string& target,
+                   std::vector<std::string_view> extensions) {
+    return row(std::move(name), ValueKind::output, "FILE", std::move(help),
+               [&target, extensions = std::move(extensions)](const std::string& path) {
+                   const std::string extension = extension_of(path);
+                   if (!extensions.empty() && !extension.empty() &&
+                       std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+                       throw Error(
+                           ErrorKind::usage,
+                           fmt::format("\"{}\" has the extension of another format; what is written is {}",
+                                       path, fmt::join(extensions, " or ")));
+                   target = path;
+               });
 }
 
 Option byte_limit(std::string name, std::string help, std::optional<std::uint64_t>& target) {
@@ -346,14 +356,26 @@ OptionGroup layer_step_options(LayerStepOptions& target) {
              length("simplify", "leave out points, contours moving by so much at most", target.simplify)}};
 }
 
-std::string changes_text(const LayerChanges& changes, std::string_view than) {
-    std::string text =
-        fmt::format("{} other {}: {} united, {} turned, {} dropped, {} left out",
-                    counted(changes.changed_layers, "layer"), than, counted(changes.rings_united, "ring"),
-                    changes.rings_reversed, changes.rings_dropped, counted(changes.points_dropped, "point"));
-    if (changes.rings_vanished > 0)
-        text += fmt::format(", {} vanished", counted(changes.rings_vanished, "ring"));
-    return text;
+std::string changes_text(const LayerSteps& steps, const LayerChanges& changes) {
+    std::string options;
+    for (const auto& [taken, option] :
+         {std::pair{steps.fill != FillRule::none, "--fill"}, std::pair{steps.offset_mm != 0, "--offset"},
+          std::pair{steps.largest_only, "--largest-only"}, std::pair{steps.min_area_mm2 != 0, "--min-area"},
+          std::pair{steps.simplify_mm != 0, "--simplify"}})
+        if (taken)
+            options += fmt::format("{}{}", options.empty() ? "" : ", ", option);
+    std::string text = fmt::format("{} by {}", counted(changes.changed_layers, "layer"), options);
+    if (changes.changed_layers == 0)
+        return text;
+    text += fmt::format(": area {} to {} mm2 in all", brief(changes.area_before_mm2),
+                        brief(changes.area_after_mm2));
+    for (const auto& [n, noun, what] : {std::tuple{changes.rings_united, "ring", "united"},
+                                        std::tuple{changes.rings_reversed, "ring", "reversed"},
+                                        std::tuple{changes.points_dropped, "point", "left out"}})
+        if (n > 0)
+            text += fmt::format(", {} {}", counted(n, noun), what);
+    const std::uint64_t lost = changes.rings_dropped + changes.rings_vanished;
+    return text + (lost == 0 ? "; no ring lost" : fmt::format("; {} lost", counted(lost, "ring")));
 }
 
 std::string nothing_left(std::uint64_t layers, std::uint64_t contours, const LayerChanges& changes) {

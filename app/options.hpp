@@ -39,7 +39,10 @@ namespace lamella::app {
                             std::vector<std::string> choices, std::string& target);
 [[nodiscard]] Option text(std::string name, std::string placeholder, std::string help, std::string& target);
 [[nodiscard]] Option input_file(std::string name, std::string help, std::string& target);
-[[nodiscard]] Option output_file(std::string name, std::string help, std::string& target);
+/// `extensions`, such as ".html": the name may have one of these or none, as another one would promise
+/// another format; of the first one the help may speak. Without any, all names will do.
+[[nodiscard]] Option output_file(std::string name, std::string help, std::string& target,
+                                 std::vector<std::string_view> extensions = {});
 /// A limit in bytes, such as 500M.
 [[nodiscard]] Option byte_limit(std::string name, std::string help, std::optional<std::uint64_t>& target);
 
@@ -123,7 +126,7 @@ struct LayerStepOptions {
 };
 [[nodiscard]] OptionGroup layer_step_options(LayerStepOptions& target);
 /// "3 layers other than sliced: 2 rings united, ..."; `than` says what the layers were before.
-[[nodiscard]] std::string changes_text(const LayerChanges& changes, std::string_view than);
+[[nodiscard]] std::string changes_text(const LayerSteps& steps, const LayerChanges& changes);
 /// A warning where steps left no contour of those that there were; else "".
 [[nodiscard]] std::string nothing_left(std::uint64_t layers, std::uint64_t contours,
                                        const LayerChanges& changes);

@@ -42,6 +42,10 @@ std::string title_of(const std::vector<PlateInput>& inputs) {
     return inputs.size() == 1 ? first : fmt::format("{} and {} more", first, inputs.size() - 1);
 }
 
+std::vector<std::string_view> page_extensions() {
+    return {".html", ".htm"};
+}
+
 PageOptions page_options(const std::string& path) {
     return {.viewer = viewer_page(), .no_viewer = no_viewer(), .title = title_of(path)};
 }

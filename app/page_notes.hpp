@@ -12,6 +12,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lamella::app {
@@ -23,6 +24,9 @@ inline constexpr std::size_t page_places = 500;
 [[nodiscard]] std::string title_of(const std::string& path);
 /// The title of the page of a plate: "rook.stl", "rook.stl and 2 more".
 [[nodiscard]] std::string title_of(const std::vector<PlateInput>& inputs);
+
+/// Of a page's name.
+[[nodiscard]] std::vector<std::string_view> page_extensions();
 
 /// A page with this program's viewer and the title of the page of that file.
 [[nodiscard]] PageOptions page_options(const std::string& path);

@@ -178,6 +178,12 @@ bool is_finished_shard(const FileJob& job, const std::string& stats, const Json&
            has("stats", stats) && has("report", job.report.path);
 }
 
+void remove_stamp_without_output(const std::string& output) {
+    std::error_code ignored;
+    if (std::filesystem::status(output, ignored).type() == std::filesystem::file_type::not_found)
+        std::filesystem::remove(stamp_path(output), ignored);
+}
+
 void stamp_shard(const FileJob& job, const std::string& stats, const FileResult& result, const Json& origin,
                  const Execution& execution) {
     const Json stamp{{"shard", job.shard->number},

@@ -34,6 +34,9 @@ namespace lamella::app {
 [[nodiscard]] bool is_finished_shard(const FileJob& job, const std::string& stats, const Json& origin,
                                      const Execution& execution);
 
+/// Removes the stamp of an output that is gone: a run that ends early leaves no stamp without its output.
+void remove_stamp_without_output(const std::string& output);
+
 /// Stamps the output that has just been written, after the statistics and the report.
 void stamp_shard(const FileJob& job, const std::string& stats, const FileResult& result, const Json& origin,
                  const Execution& execution);

@@ -59,7 +59,8 @@ void register_errors() {
         } catch (const py::builtin_exception&) {
             throw; // likewise
         } catch (const std::bad_alloc&) {
-            raise(ErrorKind::limit, "memory ran out; free some, or slice fewer layers at once (layers)");
+            raise(ErrorKind::limit,
+                  "memory ran out; free some, or work on less at once: fewer parts or fewer layers (layers)");
         } catch (const std::exception& unknown) {
             raise(ErrorKind::internal, unknown.what());
         }

@@ -36,7 +36,7 @@ namespace {
     case EPERM:
         fail(name, "no permission to read this file");
     case EISDIR:
-        fail(name, "is a directory, expected a file");
+        fail(name, "is a folder, expected a file");
     case EBADF:
         fail(name, "is closed, or not open for reading");
     default:

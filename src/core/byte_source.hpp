@@ -32,7 +32,7 @@ struct ByteSource {
 /// unless the process has many open files already. A file of less than 64 KB is read at once, and what cannot
 /// be mapped, such as a pipe, to its end. "-" is standard input.
 ///
-/// Throws Error{input} when the file is missing, empty, a directory, a device or may not be read, and
+/// Throws Error{input} when the file is missing, empty, a folder, a device or may not be read, and
 /// Error{cancelled} soon after a stop is requested, also while it waits for the other end of a pipe.
 ///
 /// Of what cannot be mapped no more than `most_in_memory` bytes are kept in memory: what is longer goes to a

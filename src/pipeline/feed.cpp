@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "core/byte_amount.hpp"
+#include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "core/stopwatch.hpp"
@@ -431,19 +432,20 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
             where = p;
         }
     if (overhead > memory_.limit)
-        throw Error(ErrorKind::limit,
-                    fmt::format("{}: {} layers and `threads` {} take {} of memory, above the {} of "
-                                "`max_memory`; allow more, choose higher layers, or use fewer threads",
-                                plate_.files.front().path, plan.layers.size(), threads, byte_amount(overhead),
-                                byte_amount(memory_.limit)));
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: {} layers on {} take {} of memory, above the {} of `max_memory`; allow more, "
+                        "choose higher layers, or use fewer `threads`",
+                        plate_.files.front().path, plan.layers.size(), counted(threads, "thread"),
+                        byte_amount(overhead), byte_amount(memory_.limit)));
     if (overhead + largest > memory_.limit)
         throw Error(ErrorKind::limit,
-                    fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles; with "
-                                "`threads` {} that takes {} of memory, above the {} of `max_memory`; "
-                                "allow more, or use fewer threads",
+                    fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles, which on {} "
+                                "takes {} of memory, above the {} of `max_memory`; allow more, or use fewer "
+                                "`threads`",
                                 plate_.files.front().path, plan.layers[mine.begin + where].z,
-                                survey.points(where), threads, byte_amount(overhead + largest),
-                                byte_amount(memory_.limit)));
+                                survey.points(where), counted(threads, "thread"),
+                                byte_amount(overhead + largest), byte_amount(memory_.limit)));
     std::vector<PlaneRange> shares =
         divide_to_fit(survey, part_of(plan, mine), slab, memory_.limit - overhead);
     for (PlaneRange& share : shares)

@@ -76,6 +76,11 @@ std::optional<CoveredHeights> covered_heights(std::span<const Layer> layers, con
                          .top = below->top,
                          .mesh_bottom = box.min.z,
                          .mesh_top = box.max.z};
+    for (const Layer& layer : layers) {
+        constexpr double nothing = 1e-6; // what rounding of heights leaves
+        found.layers_above += layer.bottom > found.mesh_top - nothing ? 1 : 0;
+        found.layers_below += layer.top < found.mesh_bottom + nothing ? 1 : 0;
+    }
     if (middles.layers.empty())
         return found;
     const std::vector<double> areas = section_areas(mesh, middles, execution);

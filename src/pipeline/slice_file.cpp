@@ -546,8 +546,14 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     for (const std::string& message : processes.gather(Packer().put(figures).take()))
         result.processes.push_back(Unpacker(message).get<ProcessFigures>());
     if (output.has_page())
-        result.report_warnings =
-            output.finish_page(job.report.notes ? job.report.notes(result) : PageNotes{});
+        try {
+            result.report_warnings =
+                output.finish_page(job.report.notes ? job.report.notes(result) : PageNotes{});
+        } catch (const Error& error) {
+            if (job.output.empty() || job.output == "-")
+                throw;
+            throw Error(error.kind(), fmt::format("{}; {} is complete", error.what(), job.output));
+        }
     result.seconds.total = total.seconds();
     return result;
 }

@@ -131,7 +131,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
         result.areas_agree = false;
         result.findings.push_back(
             fmt::format("{} of another area than the mesh's section, the first "
-                        "is {}: {:.7g} mm2 instead of {:.7g} mm2, {:.2g} mm2 off",
+                        "is {}: {:.7g} mm2 instead of {:.7g} mm2, {:.6g} mm2 off",
                         counted(differing, "layer is", "layers are"), where(layers[first]),
                         checks[first].measure.area_mm2, sections[first].front().area_mm2,
                         std::abs(checks[first].measure.area_mm2 - sections[first].front().area_mm2)));

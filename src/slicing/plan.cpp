@@ -79,7 +79,7 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
         throw Error(
             ErrorKind::usage,
             fmt::format(
-                "the part is {:.6g} mm high (z from {} to {} mm), no more than a thousandth of the "
+                "the part is {:.6g} mm high (z from {:.6g} to {:.6g} mm), no more than a thousandth of the "
                 "layer height of {} mm, which counts as nothing; choose a layer height below {:.6g} mm",
                 z_max - z_min, z_min, z_max, height, (z_max - z_min) / negligible));
     // Layer i of the stack, without a look at the part.
@@ -102,9 +102,10 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
         if (estimate > static_cast<double>(max_layers))
             throw Error(
                 ErrorKind::usage,
-                fmt::format("a layer height of {} mm makes {:.6g} layers of this part ({} mm high); at most "
-                            "{} are possible",
-                            height, estimate, z_max - z_min, max_layers));
+                fmt::format(
+                    "a layer height of {} mm makes {:.6g} layers of this part ({:.6g} mm high); at most "
+                    "{} are possible",
+                    height, estimate, z_max - z_min, max_layers));
         count = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(estimate));
         while (count > 1 && !meets(count - 1))
             --count;
@@ -114,10 +115,10 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
     if (count == 0)
         throw Error(
             ErrorKind::usage,
-            fmt::format("no layer: the first cut, at z = {} mm, misses the part (z from {} to {} mm); "
-                        "choose a {}layer height below {} mm",
-                        layer_at(0).z, z_min, z_max, layers.first_layer_height ? "first " : "",
-                        z_max - z_min));
+            fmt::format(
+                "no layer: the first cut, at z = {:.6g} mm, misses the part (z from {:.6g} to {:.6g} mm); "
+                "choose a {}layer height below {:.6g} mm",
+                layer_at(0).z, z_min, z_max, layers.first_layer_height ? "first " : "", z_max - z_min));
 
     std::uint64_t begin = 0;
     std::uint64_t end = count;
@@ -125,9 +126,8 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
         begin = std::min(only.index_range->first, count);
         end = std::min(only.index_range->second, count);
         if (begin >= end)
-            throw Error(ErrorKind::usage,
-                        fmt::format("the layers {} are none of this part's layers 0:{}; the last one is {}",
-                                    text_of(*only.index_range), count, count - 1));
+            throw Error(ErrorKind::usage, fmt::format("this part has layers 0 to {}; {} is beyond them",
+                                                      count - 1, text_of(*only.index_range)));
     }
 
     Plan plan;
@@ -153,13 +153,13 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
         plan.layers.push_back(layer);
     }
     if (plan.layers.empty())
-        throw Error(ErrorKind::usage,
-                    fmt::format("no cut of {} (z from {} to {} mm) lies in the z range {}; the cuts go from "
-                                "{:.6g} to {:.6g} mm",
-                                only.index_range ? "the layers " + text_of(*only.index_range)
-                                                 : std::string("this part"),
-                                z_min, z_max, text_of(*only.z_range), layer_at(begin).z,
-                                layer_at(end - 1).z));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("no cut of {} (z from {:.6g} to {:.6g} mm) lies in the z range {}; the cuts go from "
+                        "{:.6g} to {:.6g} mm",
+                        only.index_range ? "the layers " + text_of(*only.index_range)
+                                         : std::string("this part"),
+                        z_min, z_max, text_of(*only.z_range), layer_at(begin).z, layer_at(end - 1).z));
     return plan;
 }
 

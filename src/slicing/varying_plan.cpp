@@ -24,10 +24,11 @@ namespace {
 void require_stack(double z_min, double z_max, double count, double lowest_height) {
     require_part(z_min, z_max);
     if (count > static_cast<double>(max_layers))
-        throw Error(ErrorKind::usage,
-                    fmt::format("layers of down to {} mm make {:.6g} layers of a part that is {} mm high; at "
-                                "most {} are possible",
-                                lowest_height, count, z_max - z_min, max_layers));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("layers of down to {} mm make {:.6g} layers of a part that is {:.6g} mm high; at "
+                        "most {} are possible",
+                        lowest_height, count, z_max - z_min, max_layers));
 }
 
 /// Layers on one another: height_at(bottom) -> height, from z_min on as long as cuts meet the part. A height
@@ -50,10 +51,11 @@ Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at,
         plan.layers.push_back({plan.layers.size(), z, bottom, top});
     }
     if (plan.layers.empty())
-        throw Error(ErrorKind::usage,
-                    fmt::format("no layer: the first cut misses the part (z from {} to {} mm); choose layers "
-                                "below {} mm",
-                                z_min, z_max, z_max - z_min));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("no layer: the first cut misses the part (z from {:.6g} to {:.6g} mm); choose layers "
+                        "below {:.6g} mm",
+                        z_min, z_max, z_max - z_min));
     // A remainder that counts as nothing must not lift the last cut off the top face.
     PlannedLayer& last = plan.layers.back();
     if (slice_at == SliceAt::top && last.z > z_max - negligible * (last.top - last.bottom)) {

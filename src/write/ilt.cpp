@@ -117,7 +117,7 @@ class IltWriter final : public OrderedWriter {
                                .gaps = false,
                                .parameters = true,
                                .kept = kept_in_list,
-                               .not_kept = "jump speeds, delays and spots"}),
+                               .not_kept = "jump speeds, delays and spot sizes"}),
           zip_(path, Overwriting::yes), sections_(sections_of(info.parts)), entries_(sections_.size()) {
         zip_.add(ilt_parameters, parameters_text(sections_));
         zip_.begin(sections_.front().name, ZipMethod::stored);

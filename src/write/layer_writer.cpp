@@ -248,6 +248,13 @@ const LayerFormat& layer_format(std::string_view name, const std::string& path) 
         throw Error(ErrorKind::usage,
                     fmt::format("standard output has no extension to tell the format; choose a `format`: {}",
                                 names()));
+    for (const std::string_view machine_code : {".gcode", ".gco", ".g", ".bgcode", ".nc"})
+        if (extension == machine_code)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("'{}': Lamella writes layers and scan vectors, and no G-code; programs such as "
+                            "PrusaSlicer and Cura do",
+                            path));
     throw Error(ErrorKind::usage,
                 fmt::format("the extension of '{}' tells no format; choose another, or a `format`: {}", path,
                             names()));
@@ -257,8 +264,10 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
                                                const LayerFileInfo& info, const LayerWriteOptions& options) {
     check_info(info);
     if (format.directory && path == "-")
-        throw Error(ErrorKind::usage,
-                    fmt::format("{} writes a folder and standard output is none; give a path", format.name));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{} writes a folder, so standard output is not possible; give the path of a folder",
+                        format.name));
     std::unique_ptr<LayerWriter> writer = format.open(path, info, options);
     if (options.most_bytes == 0 && !options.strict)
         return writer;

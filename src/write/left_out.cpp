@@ -59,8 +59,8 @@ std::vector<std::string> LeftOut::warnings() const {
     std::vector<std::string> lines = rounding_.warnings();
     const auto say = [&](bool held, const Extras& extras, const char* one, const char* many) {
         if (!held && extras.count != 0)
-            lines.push_back(fmt::format("{} {} left out, the lowest at z = {:.6g} mm: the format has "
-                                        "no place for such",
+            lines.push_back(fmt::format("{} {} left out, the lowest at z = {:.6g} mm: the format cannot "
+                                        "store them",
                                         extras.count, extras.count == 1 ? one : many, extras.z));
     };
     say(holds_.open_chains, noted_.open_chains, "open contour was", "open contours were");
@@ -81,14 +81,12 @@ std::vector<std::string> LeftOut::warnings() const {
                                     counted(supports_, "part is a support", "parts are supports")));
     if (!holds_.parameters && known_ != 0)
         lines.push_back(fmt::format(
-            "parameters of scan vectors, such as power and speed, were left out for {}: the format has no "
-            "place for such; ilt, ovf and 3mf-toolpath have",
+            "parameters of scan vectors, such as power and speed, were left out for {}: the format cannot "
+            "store them; ilt, ovf and 3mf-toolpath can",
             counted(known_, "part")));
     if (changed_parts_ != 0)
-        lines.push_back(
-            fmt::format("of the parameters of scan vectors, {} were left out for {}: the format has no "
-                        "place for such",
-                        holds_.not_kept, counted(changed_parts_, "part")));
+        lines.push_back(fmt::format("{} were left out for {}: the format cannot store them", holds_.not_kept,
+                                    counted(changed_parts_, "exposure")));
     if (holds_.parameters && unknown_ != 0)
         lines.push_back(counted(
             unknown_,

@@ -215,7 +215,7 @@ class OvfWriter final : public OrderedWriter {
                                .parameters = true,
                                .written_label = printable_label,
                                .kept = without_spot,
-                               .not_kept = "spots"}),
+                               .not_kept = "spot sizes"}),
           box_(info.box), keys_(info.parts), ends_of_blocks_(ends_of_blocks(keys_)),
           file_(path, Overwriting::yes) {
         file_.append(ovf::magic);

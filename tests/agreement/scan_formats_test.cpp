@@ -50,7 +50,7 @@ const std::vector<ScanFormat>& scan_formats() {
                                      .mark_delay_us = 0,
                                      .jump_delay_us = 0};
              },
-         .not_kept = "jump speeds, delays and spots"},
+         .not_kept = "jump speeds, delays and spot sizes"},
         {.name = "ovf",
          .coordinate = single,
          .parameters =
@@ -64,7 +64,7 @@ const std::vector<ScanFormat>& scan_formats() {
                                      .mark_delay_us = single(set.mark_delay_us),
                                      .jump_delay_us = single(set.jump_delay_us)};
              },
-         .not_kept = "spots"},
+         .not_kept = "spot sizes"},
         {.name = "3mf-toolpath",
          .coordinate = [](double v) { return std::nearbyint(v * 1000) * 0.001 + 0.0; },
          .parameters = [](const ParameterSet& set) { return set; },
@@ -181,9 +181,8 @@ std::vector<std::string> expected_warnings(const ScanFormat& format, const Job& 
         known += part.exposure ? 1 : 0;
     std::vector<std::string> expected;
     if (format.not_kept[0] != 0)
-        expected.push_back("of the parameters of scan vectors, " + std::string(format.not_kept) +
-                           " were left out for " + std::to_string(known) +
-                           " parts: the format has no place for such");
+        expected.push_back(std::string(format.not_kept) + " were left out for " + std::to_string(known) +
+                           " exposures: the format cannot store them");
     if (known < job.info.parts.size())
         expected.push_back(
             "1 part has no parameters of scan vectors, such as power and speed, and was written "

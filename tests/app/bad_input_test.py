@@ -128,7 +128,7 @@ class BadInput(ProgramTest):
 
     def test_extensions_and_formats_that_nobody_knows(self):
         self.box()
-        self.fail_with(2, r"cli.*svg", "slice", "box.stl", "-o", "out.gcode")
+        self.fail_with(2, r"cli.*svg", "slice", "box.stl", "-o", "out.step")
         self.fail_with(2, r"cli.*svg", "slice", "box.stl", "-o", "out")
         self.fail_with(2, r"cli.*svg", "slice", "box.stl", "-o", "-")
         self.refuse(2, '--format: "clii".*did you mean cli', "box.stl", "--format", "clii")

@@ -46,7 +46,7 @@ class LayerSteps(ProgramTest):
         self.assertEqual((changes["changed_layers"], changes["rings_united"]), (10, 40))
         self.succeed("slice", *parts, "-o", "two.json")
         done = self.succeed("convert", "two.json", "--fill", "nonzero", "united.json")
-        self.assertIn("10 layers other than before: 40 rings united", done.text)
+        self.assertIn("changed 10 layers by --fill: area ", done.text)
 
     def test_a_body_inside_out_is_turned_or_dropped(self):
         self.assert_areas(self.stats("--fill", "nonzero", part="inside_out.stl"), 600)

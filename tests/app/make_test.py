@@ -34,8 +34,11 @@ class Make(ProgramTest):
                 self.succeed("slice", name, "-o", "other.cli")
                 self.assertEqual((self.folder / "other.cli").read_bytes(), (self.folder / "stl.cli").read_bytes())
         self.fail_with(2, "--ascii: PLY files are written as binary", "make", "rook", "--ascii", "-o", "other.ply")
-        for name in ["rook.off", "rook.3mf"]:
-            self.fail_with(2, "written as .stl, .ply or .obj", "make", "rook", "-o", name)
+        for name in ["rook.off", "rook.3mf", "rook.step", "rook.cli", "rook.html"]:
+            self.fail_with(2, f'-o: "{name}" has the extension of another format; what is written is .stl or .ply or .obj',
+                           "make", "rook", "-o", name)
+        self.succeed("make", "rook", "-o", "rook")
+        self.assertEqual(self.bytes_of("rook"), self.bytes_of("rook.stl"))
 
     def test_a_lattice_is_one_closed_surface(self):
         self.succeed("make", "lattice", "--cells", "2", "--detail", "2")
@@ -118,7 +121,7 @@ class Make(ProgramTest):
         self.succeed("make", "lattice", "--cells", "1", "-o", "lattice.OBJ")
         self.assertIn(b"\nf ", self.bytes_of("lattice.OBJ"))
         for name in ["box.stl.gz", "box.GZ", "box.3MF"]:
-            self.fail_with(2, "are written as", "make", "box", "-o", name)
+            self.fail_with(2, "extension of another format", "make", "box", "-o", name)
 
     def test_options_that_a_body_does_not_have(self):
         self.fail_with(2, "--holes.*box.*size", "make", "box", "--holes", "9")

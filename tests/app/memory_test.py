@@ -166,7 +166,7 @@ class Memory(ProgramTest):
         self.fail_with(5, r"above the 1\.0 kB of --max-memory", "slice", "lattice.stl", "-o", "a.cli", "--max-memory", "1K")
         self.fail_with(5, r"the layer at z = .* alone is cut from .* triangles.*--max-memory", "slice", "lattice.stl",
                        "-o", "a.cli", "--threads", "2", "--max-memory", "46700K")
-        self.fail_with(5, r"287 layers and --threads 2 take .* above the 1\.0 MB of --max-memory", "slice", "lattice.stl",
+        self.fail_with(5, r"287 layers on 2 threads take .* above the 1\.0 MB of --max-memory", "slice", "lattice.stl",
                        "-o", "a.cli", "--threads", "2", "--max-memory", "1M")
 
     def test_wishes_that_need_the_whole_mesh(self):

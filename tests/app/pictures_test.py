@@ -22,9 +22,9 @@ class Pictures(ProgramTest):
 
     def test_nothing_else_may_lie_in_a_folder_that_is_made(self):
         self.box()
-        for option in ["--stats", "--report"]:
-            self.fail_with(2, f"--output and {option} contradict each other: ./out/x.json would lie in the folder", "slice",
-                           "box.stl", "-o", "out", "--format", "png", option, "./out/x.json")
+        for option, name in [("--stats", "./out/x.json"), ("--report", "./out/x.html")]:
+            self.fail_with(2, f"--output and {option} contradict each other: {name} would lie in the folder", "slice",
+                           "box.stl", "-o", "out", "--format", "png", option, name)
 
     def test_a_job_needs_no_options(self):
         self.succeed("slice", self.box(), "-o", "part.sl1")

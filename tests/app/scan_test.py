@@ -95,15 +95,15 @@ class Scan(ProgramTest):
     @staticmethod
     def without_parameters(name, parts):
         return (f"lamella: warning: {name}: parameters of scan vectors, such as power and speed, were left out for {parts} parts: "
-                "the format has no place for such; ilt, ovf and 3mf-toolpath have\n")
+                "the format cannot store them; ilt, ovf and 3mf-toolpath can\n")
 
     def parameters_left_out(self, name, parts):
         """What writing a job of so many parts says of the parameters that its format has no place for."""
         if name.endswith((".json", ".cli")):
             return self.without_parameters(name, parts)
-        lost = {"ilt": "jump speeds, delays and spots", "ovf": "spots"}.get(name.rpartition(".")[2])
-        return "" if lost is None else (f"lamella: warning: {name}: of the parameters of scan vectors, {lost} were left out for {parts} "
-                                        "parts: the format has no place for such\n")
+        lost = {"ilt": "jump speeds, delays and spot sizes", "ovf": "spot sizes"}.get(name.rpartition(".")[2])
+        return "" if lost is None else (f"lamella: warning: {name}: {lost} were left out for {parts} exposures: "
+                                        "the format cannot store them\n")
 
     def test_powers_and_speeds_are_not_lost_in_silence(self):
         slicing = ["slice", "part.stl", "--layer-height", "1", "--scan"]
@@ -310,7 +310,7 @@ class Scan(ProgramTest):
         for name in ("job.slc", "job.3mf", "job.svg", "job.dxf", "job.geojson"):
             result = self.succeed("slice", "part.stl", "-o", name, "--layer-height", "2", "--scan")
             self.assertRegex(result.err, rf"(?m)^lamella: warning: {name}: \d+ hatch lines were left out, the lowest at z = 1 mm: the "
-                                         "format has no place for such$")
+                                         "format cannot store them$")
             self.fail_with(4, "hatch lines were left out", "slice", "part.stl", "-o", f"x{name}", "--layer-height", "2", "--scan",
                            "--strict")
 

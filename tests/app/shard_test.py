@@ -187,6 +187,17 @@ class Shard(ProgramTest):
         self.assertEqual(result.code, 3)
         self.assertIn("no permission", result.err)
 
+    def test_a_stamp_whose_file_is_gone_does_not_outlive_the_next_run(self):
+        self.lattice()
+        shard = ["slice", "part.stl", "-o", "a.cli", "--shard", "1/2"]
+        self.succeed(*shard)
+        self.path("a.cli").unlink()
+        self.fail_with_listing(5, *shard, "--max-output", "1")
+        self.assertNotIn("a.cli.shard", self.listing())
+
+    def fail_with_listing(self, code, *arguments):
+        self.assertEqual(self.run_program(*arguments).code, code)
+
     def test_shards_of_one_job_may_be_asked_for_in_other_words(self):
         self.lattice()
         self.succeed("slice", "part.stl", "-o", "a.cli", "--shard", "1/2", "--translate", "1,2,3")

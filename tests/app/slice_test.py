@@ -318,6 +318,53 @@ class Slice(ProgramTest):
         self.fail_with(6, "it is a folder", "slice", "box.stl", "-o", "box.cli", "--stats", str(self.folder))
         self.assertEqual(self.bytes_of("box.cli"), b"old")
 
+    def test_statistics_that_fail_at_the_end_leave_a_slice_file_that_is_told_to_be_complete(self):
+        self.box()
+        self.box("page.stl")
+        self.fail_after_output("box.cli", "slice", "box.stl", "-o", "box.cli", "--stats", "/dev/full")
+        self.fail_after_output("scan.json", "scan", "box.cli", "-o", "scan.json", "--stats", "/dev/full")
+        if self.run_program("view", "box.stl").code == 0:
+            self.fail_after_output("page.cli", "slice", "page.stl", "-o", "page.cli", "--report", "/dev/full")
+        result = self.run_program("slice", "--batch", ".", "-o", "out", "--format", "cli", "--stats", "/dev/full")
+        self.assertNotIn("; out/", result.text)  # refused before anything is sliced
+        result = self.run_program("slice", "box.stl", "--stats", "/dev/full")
+        self.assertRegex(result.err, "cannot write '/dev/full': the disk is full; free some space or choose another place\n$")
+
+    def fail_after_output(self, output, *arguments):
+        result = self.run_program(*arguments)
+        self.assertEqual(result.code, 6)
+        self.assertIn(f"cannot write '/dev/full': the disk is full; free some space or choose another place; {output} is complete\n",
+                      result.err)
+        self.succeed("info", output)
+
+    def test_g_code_is_no_format_and_the_error_names_programs_that_write_it(self):
+        self.box()
+        for name in ["out.gcode", "out.GCODE", "out.bgcode"]:
+            self.fail_with(2, f"'{name}': Lamella writes layers and scan vectors, and no G-code; programs such as PrusaSlicer and Cura do$",
+                           "slice", "box.stl", "-o", name)
+
+    def test_layers_beyond_the_part_are_told_beside_those_that_there_are(self):
+        self.box()
+        self.fail_with(2, "this part has layers 0 to 99; 1000:2000 is beyond them$", "slice", "box.stl", "-o", "a.cli", "--layers", "1000:2000")
+
+    def test_one_word_says_that_a_folder_is_no_file(self):
+        self.box()
+        self.path("folder.cli").mkdir()
+        self.fail_with(3, "folder.cli: is a folder, expected a file", "slice", "folder.cli", "-o", "a.cli")
+        self.fail_with(6, "folder.cli': it is a folder; give the name of a file", "slice", "box.stl", "-o", "folder.cli")
+        for name in ["png", "svg-layers"]:
+            self.fail_with(2, f"{name} writes a folder, so standard output is not possible; give the path of a folder",
+                           "slice", "box.stl", "-o", "-", "--format", name)
+
+    def test_what_steps_changed_is_summed_up(self):
+        self.box()
+        command = ["slice", "box.stl", "-o", "a.cli"]
+        text = self.succeed(*command, "--offset=-1").text
+        self.assertIn("\nchanged  100 layers by --offset: area 60000 to 50400 mm2 in all; no ring lost\n", text)
+        text = self.succeed(*command, "--offset=-10", "--layer-height", "5").text
+        self.assertIn("\nchanged  2 layers by --offset: area 1200 to 0 mm2 in all; 2 rings lost\n", text)
+        self.assertIn("\nchanged  0 layers by --fill\n", self.succeed(*command, "--fill", "nonzero").text)
+
     def test_a_missing_folder_of_temporary_files_is_named(self):
         self.box()
         self.fail_with(6, r"temporary file in the folder '/nonexist'.*TMPDIR", "slice", "box.stl", "-o", "-", "--format", "npz",

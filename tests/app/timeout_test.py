@@ -86,7 +86,7 @@ class Timeout(ProgramTest):
                 self.assertEqual(process.returncode, 5, err)
                 last = [json.loads(line) for line in err.splitlines()][-1]
                 self.assertEqual(last["exit_code"], 5)
-                self.assertIn("box.stl: stopped after 2 s (--timeout) while figures were written, after all layers", last["error"])
+                self.assertIn("box.stl: stopped after 2 s (--timeout) while results were written; box.cli is complete", last["error"])
                 self.path("box.cli").unlink()
 
     def test_progress_as_json_ends_with_the_error(self):

@@ -237,6 +237,17 @@ class Verify(ProgramTest):
         self.assertEqual(self.verify("gap.json", "--mesh", "box.stl", code=4)["heights"]["gaps"], 1)
         self.assertIn("a gap between layers", self.run_program("verify", "gap.json", "--mesh", "box.stl").text)
 
+    def test_layers_beyond_the_mesh_are_told(self):
+        self.succeed("make", "box", "--size", "20,20,53.15", "-o", "high.stl")
+        self.succeed("make", "box", "--size", "20,20,20", "-o", "low.stl")
+        self.succeed("slice", "high.stl", "-o", "high.cli")
+        text = self.run_program("verify", "high.cli", "--mesh", "low.stl").text
+        self.assertIn("  layers from z = 0 to 53.1 mm, of a mesh from 0 to 20 mm: 100 % of its height; 331 layers lie above it\n", text)
+        self.assertIn("400 mm2 instead of 0 mm2, 400 mm2 off", text)
+        found = self.run_program("verify", "high.cli", "--mesh", "low.stl", "--translate", "0,0,30", "--json").json()["heights"]
+        self.assertEqual((found["layers_above"], found["layers_below"]), (31, 300))
+        self.assertNotIn("above it", self.succeed("verify", "high.cli", "--mesh", "high.stl").text)
+
     def test_a_sound_file_from_elsewhere(self):
         self.write("a.cli", ascii_cli((1, SQUARE), (0, SMALL[::-1])))
         found = self.verify("a.cli")

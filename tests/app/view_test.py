@@ -31,6 +31,17 @@ class View(ProgramTest):
                         ["slice", "box.stl", "-o", "box.cli", "--report", "r.html"]):
             self.fail_with(2, "no viewer, and pages need it: .* when Lamella was built", *command)
 
+    def test_a_page_does_not_get_the_name_of_another_format(self):
+        self.succeed("slice", "box.stl", "-o", "box.cli")
+        for option, command in [("-o", ["view", "box.stl", "-o"]), ("--report", ["info", "box.stl", "--report"]),
+                                ("--report", ["slice", "box.stl", "-o", "a.cli", "--report"])]:
+            for name in ["rook.svg", "rook.cli", "rook.pdf"]:
+                self.fail_with(2, f'{option}: "{name}" has the extension of another format; what is written is .html or .htm',
+                               *command, name)
+        self.need_viewer()
+        for name in ["page.HTM", "page"]:
+            self.succeed("view", "box.stl", "-o", name)
+
     def test_a_mesh_becomes_a_page_of_its_name_here(self):
         self.need_viewer()
         result = self.succeed("view", "box.stl", "--layer-height", "0.5")
@@ -217,12 +228,13 @@ class View(ProgramTest):
 
     def test_what_cannot_be_done(self):
         self.fail_with(2, "give one with --output", "view", "-")
-        self.fail_with(2, "overwrite|same file", "view", "box.stl", "-o", "box.stl")
+        self.path("box.htm").hardlink_to(self.path("box.stl"))
+        self.fail_with(2, "overwrite|same file", "view", "box.stl", "-o", "box.htm")
         self.fail_with(3, "missing.stl", "view", "missing.stl")
-        for name in ["look.toml", "box.html"]:
+        for name in ["look.html", "box.html"]:
             self.write(name, "threads = 1\n")
             self.fail_with(2, f"{name}: the output would overwrite the input", "view", "box.stl", "--config", name,
-                           *(["-o", name] if name == "look.toml" else []))
+                           *(["-o", name] if name == "look.html" else []))
         self.succeed("slice", "box.stl", "-o", "box.cli")
         self.fail_with(2, "are for meshes", "view", "box.cli", "--layer-height", "0.2")
         self.fail_with(2, "are for meshes", "view", "box.cli", "--slice-at", "middle")

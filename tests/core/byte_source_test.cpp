@@ -231,7 +231,7 @@ TEST_F(ByteSourceTest, NamesWhatIsWrongWithAPath) {
     EXPECT_EQ(error_of([&] { (void)open_bytes(path("none")); }), path("none") + ": there is no such file");
     EXPECT_EQ(error_of([&] { (void)open_bytes(write("file", "x") + "/part"); }),
               path("file/part") + ": there is no such file");
-    EXPECT_EQ(error_of([&] { (void)open_bytes(path("")); }), path("") + ": is a directory, expected a file");
+    EXPECT_EQ(error_of([&] { (void)open_bytes(path("")); }), path("") + ": is a folder, expected a file");
     EXPECT_EQ(error_of([&] { (void)open_bytes(write("empty", "")); }),
               path("empty") + ": is empty, expected a file with content");
     EXPECT_EQ(error_of([&] { (void)open_bytes("/dev/zero"); }),

@@ -250,9 +250,11 @@ TEST(PlanUniform, RefusesRangesThatHoldNoLayer) {
     constexpr std::uint64_t open = std::numeric_limits<std::uint64_t>::max();
     PlaneSelection only;
     only.index_range = {8, 12};
-    expect_error(ErrorKind::usage, {"8:12", "0:8"}, [&] { (void)half_millimetres(only); });
+    expect_error(ErrorKind::usage, {"layers 0 to 7; 8:12 is beyond them"},
+                 [&] { (void)half_millimetres(only); });
     only.index_range = {9, open};
-    expect_error(ErrorKind::usage, {"layers 9: are none", "0:8"}, [&] { (void)half_millimetres(only); });
+    expect_error(ErrorKind::usage, {"layers 0 to 7; 9: is beyond them"},
+                 [&] { (void)half_millimetres(only); });
     only.index_range.reset();
     for (const auto& range : {std::pair(4.5, 9.0), std::pair(0.6, 0.9), std::pair(-3.0, -1.0)}) {
         only.z_range = range;

@@ -116,13 +116,13 @@ export async function openOnPhone(name) {
     await phone.waitForTimeout(500); // what goes on scrolling comes to rest
   };
   return { page: phone, swipe };
+}
+
 /** Opens a drawing of the folder; `address` may name a part of it behind #. */
 export async function openDrawing(address) {
   await page.goto('about:blank');
   await page.goto(addressOf(address));
   return { page };
-}
-
 }
 
 /** Waits until what was asked for is drawn: a page draws the layer in the next frame. */

@@ -40,12 +40,12 @@ TEST(LayerFormat, ListsWhatThereIsWhenItIsUnknown) {
     const auto error = [](const char* name, const char* path) {
         return error_of(ErrorKind::usage, [&] { (void)layer_format(name, path); });
     };
-    for (const std::string& text : {error("gcode", "a.cli"), error("", "a.gcode"), error("", "folder/"),
+    for (const std::string& text : {error("gcode", "a.cli"), error("", "a.step"), error("", "folder/"),
                                     error("", "-"), error("", "")}) {
         for (const LayerFormat& format : layer_formats())
             EXPECT_NE(text.find(format.name), std::string::npos) << text;
     }
-    EXPECT_NE(error("", "a.gcode").find("a.gcode"), std::string::npos);
+    EXPECT_NE(error("", "a.step").find("a.step"), std::string::npos);
 }
 
 TEST(LayerWriter, GivesTheSameBytesWhateverOrderLayersArePreparedIn) {

@@ -51,9 +51,9 @@ struct Execution {
     /// the same one. May throw: the computation stops and the exception reaches the caller.
     std::function<void(const Progress&)> progress = {};
 
-    /// Once this is requested the computation ends with Error{ErrorKind::cancelled} at its next step: mostly
-    /// within a fraction of a second, but one step is all that is made of a layer, and what some readers do
-    /// with a file, which takes longer where these are very large. The flag must outlive the computation;
+    /// Once this is requested the computation ends with Error{ErrorKind::cancelled} at its next step:
+    /// usually within a fraction of a second; the work on one layer, and some readers, cannot be interrupted,
+    /// so very large ones take longer. The flag must outlive the computation;
     /// nullptr: nobody will ask.
     const CancelFlag* cancel = nullptr;
 

@@ -56,8 +56,10 @@ struct CoveredHeights {
     double top = 0;    ///< of the last layer
     double mesh_bottom = 0;
     double mesh_top = 0;
-    std::uint64_t gaps = 0; ///< between a layer and the next one, where the mesh has material
-    double gaps_mm = 0;     ///< all of them together
+    std::uint64_t gaps = 0;         ///< between a layer and the next one, where the mesh has material
+    double gaps_mm = 0;             ///< all of them together
+    std::uint64_t layers_above = 0; ///< layers that begin at the top of the mesh or higher
+    std::uint64_t layers_below = 0; ///< layers that end at the bottom of the mesh or lower
 };
 
 struct Verification {

@@ -53,9 +53,9 @@ struct Nesting {
 /// Rings that bound the same place lie within one another, bodies and holes in turn as far as there are, then
 /// by their numbers. A flat ring is around nothing.
 ///
-/// Where rings cross, `winding` and `kind` are those of the ring's left end, exactly; `parent` is the ring
-/// met first on the way down from there that has that place on its inner side, passing by whole rings that
-/// have not.
+/// Where rings cross, `winding` and `kind` are those of the ring's left end, exactly;
+/// `parent`: going straight down from the left end, the first ring that contains
+/// that point.
 ///
 /// O(n log c) for n points in c rings, in practice little more than reading the points; where edges cross, up
 /// to O(c) more for each of those. Throws Error{limit} for a layer of more than 2^32 - 2 rings.
