@@ -119,11 +119,16 @@ bool AtomicDirectory::make_working(const char* name) {
         return false;
     }
     lock_ = open_folder(name);
-    const bool taken_away = lock_ < 0 ? errno == ENOENT
-                                      : (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) ||
-                                            !is_still(lock_, name);
-    if (!taken_away)
-        return true; // also where the file system has no locks: then nobody removes it
+    if (lock_ < 0 && errno != ENOENT) { // others would take it for abandoned
+        const int system_error = errno;
+        ::rmdir(name);
+        errno = system_error;
+        return false;
+    }
+    // Where the file system has no locks, nobody removes it.
+    const bool locked = lock_ >= 0 && (::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK);
+    if (locked && is_still(lock_, name))
+        return true;
     // Another process took it for abandoned before it was locked.
     if (lock_ >= 0)
         ::close(std::exchange(lock_, -1));
