@@ -11,6 +11,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace lamella {
@@ -59,6 +61,28 @@ bool holds_pictures(const ZipReader& zip) {
     return holds(zip, ".png") && !holds_model(zip);
 }
 
+/// By the checksum of its first header, which all kinds of tar have.
+bool is_tar(std::string_view text) {
+    constexpr std::size_t header_bytes = 512;
+    constexpr std::size_t checksum_at = 148;
+    constexpr std::size_t checksum_bytes = 8;
+    if (text.size() < header_bytes || text[0] == '\0')
+        return false;
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < header_bytes; ++i) // the checksum itself counts as blanks
+        sum += i - checksum_at < checksum_bytes ? ' ' : static_cast<unsigned char>(text[i]);
+    std::uint64_t stored = 0;
+    std::size_t digits = 0;
+    for (std::size_t i = checksum_at; i < checksum_at + checksum_bytes; ++i)
+        if (text[i] >= '0' && text[i] <= '7') {
+            stored = stored * 8 + static_cast<std::uint64_t>(text[i] - '0');
+            ++digits;
+        } else if (digits != 0 || text[i] != ' ') {
+            break;
+        }
+    return digits != 0 && stored == sum;
+}
+
 constexpr std::string_view web_page = "is a web page, no mesh file; download the file itself";
 constexpr std::string_view utf16 = "is text in UTF-16; save it as UTF-8, or as a binary file";
 constexpr std::string_view picture = "is a picture, no mesh file";
@@ -98,6 +122,8 @@ constexpr std::array rows = {
                       "verify it as it is",
                   .read_layers = read_ovf,
                   .layer_mark = "Open Vector Format (LVF!)"},
+    MeshFormatRow{.recognises = by_text<is_tar>,
+                  .advice = "is a tar archive, no mesh file; unpack it, and take the mesh that is in it"},
     // Texts, or binary behind a head of text.
     MeshFormatRow{.extension = "ply", .recognises = by_text<is_ply>, .goes_by_name = true, .read = read_ply},
     MeshFormatRow{.extension = "off", .recognises = by_text<is_off>, .goes_by_name = true, .read = read_off},
@@ -150,6 +176,8 @@ constexpr std::array rows = {
     MeshFormatRow{.first_bytes = "\x89PNG"sv, .advice = picture},
     MeshFormatRow{.first_bytes = "\xff\xd8\xff"sv, .advice = picture},
     MeshFormatRow{.first_bytes = "GIF8"sv, .advice = picture},
+    MeshFormatRow{.first_bytes = "II*\0"sv, .advice = picture}, // TIFF
+    MeshFormatRow{.first_bytes = "MM\0*"sv, .advice = picture},
     MeshFormatRow{.first_bytes = "%pdf-"sv, .advice = "is a PDF document, no mesh file"},
     MeshFormatRow{.first_bytes = "\x7f"
                                  "ELF"sv,
@@ -160,6 +188,8 @@ constexpr std::array rows = {
                   .advice = packed},
     MeshFormatRow{.first_bytes = "\x28\xb5\x2f\xfd"sv, .advice = packed}, // Zstandard
     MeshFormatRow{.first_bytes = "7z\xbc\xaf"sv, .advice = packed},
+    MeshFormatRow{.first_bytes = "\x04\x22\x4d\x18"sv, .advice = packed}, // LZ4
+    MeshFormatRow{.first_bytes = "MSCF"sv, .advice = packed},             // Microsoft Cabinet
     MeshFormatRow{.first_bytes = "Rar!"sv, .advice = packed},
     MeshFormatRow{.first_bytes = "iso-10303-21"sv, .advice = surfaces}, // STEP
     // Compound documents, as SolidWorks and Inventor write.

@@ -15,10 +15,12 @@ namespace {
 struct OffKind {
     bool homogeneous = false;   ///< each vertex has a fourth coordinate
     bool any_dimension = false; ///< the number of coordinates is given before the counts
+    std::size_t word_size = 0;
 };
 
 std::optional<OffKind> kind_of(std::string_view word) {
     OffKind kind;
+    kind.word_size = word.size();
     const auto take = [&](std::string_view prefix) {
         const bool taken = word.starts_with(prefix);
         word.remove_prefix(taken ? prefix.size() : 0);
@@ -29,7 +31,12 @@ std::optional<OffKind> kind_of(std::string_view word) {
     take("N");
     kind.homogeneous = take("4");
     kind.any_dimension = take("n");
-    if (word != "OFF")
+    if (!take("OFF"))
+        return std::nullopt;
+    // The first count may follow without a blank: "OFF8 12 0".
+    kind.word_size -= word.size();
+    const bool only_digits = word.find_first_not_of("0123456789") == std::string_view::npos;
+    if (!only_digits && word[0] != '#')
         return std::nullopt;
     return kind;
 }
@@ -46,7 +53,8 @@ class OffHead : public Words {
     }
 
     std::uint64_t count(std::string_view expected) {
-        const std::string_view word = peek();
+        std::string_view word = peek();
+        word = word.substr(0, word.find('#')); // a comment may follow without a blank
         std::uint64_t value = 0;
         constexpr std::size_t most_digits = 18;
         if (word.empty() || word.size() > most_digits)
@@ -56,12 +64,19 @@ class OffHead : public Words {
                 throw TextFault{offset(), std::string(expected)};
             value = value * 10 + static_cast<std::uint64_t>(digit - '0');
         }
-        skip_word();
+        move_to(position() + word.size());
         return value;
     }
 
     /// Whether there is another word in this line.
     [[nodiscard]] bool line_goes_on() { return skip_blanks_in_line() && *position() != '#'; }
+
+    /// Whether the next line that is no comment holds one word. No row does.
+    [[nodiscard]] bool next_line_is_one_word() const {
+        OffHead ahead = *this;
+        ahead.skip_line();
+        return !ahead.peek().empty() && (ahead.skip_word(), !ahead.line_goes_on());
+    }
 };
 
 struct OffCounts {
@@ -77,7 +92,7 @@ OffCounts read_head(std::string_view text) {
     const std::string_view first = head.peek();
     if (const auto kind = kind_of(first)) {
         counts.kind = *kind;
-        head.skip_word();
+        head.move_to(head.position() + kind->word_size);
     }
     if (const std::string_view word = head.peek(); word == "BINARY" || word == "binary")
         throw TextFault{head.offset(), "a text (binary OFF is not read; save it as ASCII OFF or PLY)"};
@@ -88,7 +103,8 @@ OffCounts read_head(std::string_view text) {
     }
     counts.vertices = head.count("the numbers of vertices, faces and edges");
     counts.faces = head.count("the number of faces");
-    if (head.line_goes_on()) // the number of edges, which nobody needs and some leave out
+    // The number of edges, which nobody needs and some leave out.
+    if (head.line_goes_on() || head.next_line_is_one_word())
         static_cast<void>(head.count("the number of edges"));
     head.skip_line();
     counts.end = head.offset();

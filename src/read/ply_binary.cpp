@@ -142,7 +142,7 @@ const std::byte* walk(const std::vector<Step>& steps, const std::byte* at, const
     throw Error(
         ErrorKind::input,
         fmt::format("{}: byte {}: the file ends within row {} of {} of the element '{}' (it is cut off, or "
-                    "its head is wrong)",
+                    "damaged by a transfer in text mode, or its header is wrong)",
                     source.name, source.bytes.size(), row + 1, element.rows, element.name));
 }
 

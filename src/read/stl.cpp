@@ -56,6 +56,66 @@ bool has_likely_corners(std::span<const std::byte> bytes) {
     return 2 * likely >= 9 * count;
 }
 
+/// Whether corners of a record could be those of a part: none is not finite, huge, or nearly but not quite 0.
+bool is_likely(std::span<const std::byte> record) {
+    std::array<float, 9> corners{};
+    std::memcpy(corners.data(), record.data() + 12, sizeof corners);
+    return std::all_of(corners.begin(), corners.end(), [](float value) {
+        const float size = std::abs(value);
+        return size == 0 || (size > 1e-20F && size < 1e9F);
+    });
+}
+
+/// Whether the last records make sense as they lie from the end of the file back, and none as they lie from
+/// its begin on: then bytes were lost or added between.
+bool is_shifted(std::span<const std::byte> bytes) {
+    constexpr std::size_t enough = 5; // where bytes are added or lost every now and then
+    const std::size_t records = (bytes.size() - stl_head_bytes) / stl_record_bytes;
+    const std::size_t odd = (bytes.size() - stl_head_bytes) % stl_record_bytes;
+    const std::size_t count = std::min(records, enough);
+    if (odd == 0 || count == 0)
+        return false;
+    std::size_t from_begin = 0;
+    std::size_t from_end = 0;
+    for (std::size_t i = 1; i <= count; ++i) {
+        const std::size_t back = bytes.size() - i * stl_record_bytes;
+        from_end += is_likely(bytes.subspan(back, stl_record_bytes)) ? 1 : 0;
+        from_begin += is_likely(bytes.subspan(back - odd, stl_record_bytes)) ? 1 : 0;
+    }
+    return 2 * from_begin < count && 10 * from_end >= 9 * count;
+}
+
+/// What a transfer as text has done to a binary file whose size does not fit its count; "" where it has not.
+std::string_view text_mode_damage(const ByteSource& source) {
+    constexpr std::size_t enough = std::size_t{1} << 20;
+    constexpr std::size_t many = 4; // bytes that are as they are by chance once in 256 times
+    const std::string_view text = source.text().substr(0, enough);
+    std::size_t line_feeds = 0;
+    std::size_t without_return = 0;
+    for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1)) {
+        ++line_feeds;
+        without_return += at == 0 || text[at - 1] != '\r' ? 1 : 0;
+    }
+    if (line_feeds >= many && without_return == 0)
+        return "each byte 0x0A has become 0x0D 0x0A";
+    std::size_t replaced = 0; // by U+FFFD, or spelled in two bytes
+    std::size_t high = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        high += byte >= 0x80 ? 1 : 0;
+        if (text.substr(i, 3) == "\xEF\xBF\xBD")
+            replaced += 3;
+        else if ((byte == 0xC2 || byte == 0xC3) && i + 1 < text.size() &&
+                 (static_cast<unsigned char>(text[i + 1]) & 0xC0U) == 0x80U)
+            replaced += 2;
+    }
+    if (high >= many && 10 * replaced >= 9 * high)
+        return "bytes from 0x80 on were taken for characters and encoded anew";
+    if (is_shifted(source.bytes))
+        return "bytes were added or lost in it";
+    return {};
+}
+
 /// Whether it is of the binary form, else of the ASCII one. Throws Error{input} when it is neither.
 bool is_binary(const ByteSource& source) {
     const std::uint64_t size = source.bytes.size();
@@ -82,6 +142,11 @@ bool is_binary(const ByteSource& source) {
             "is not an STL file, or cut off: found {} bytes, expected at least {} (binary) or the "
             "word 'solid' (ASCII)",
             size, stl_head_bytes));
+    if (const std::string_view damage = text_mode_damage(source); !damage.empty())
+        fail(fmt::format(
+            "is a binary STL file that was damaged, as by a transfer or a checkout in text mode: {}; "
+            "its count of {} does not fit its {} bytes; get the file again, as a binary one",
+            damage, stl_declared_count(source.bytes), size));
     if (!has_likely_corners(source.bytes))
         fail(
             fmt::format("is no mesh file that is known: were it a binary STL file, its count of {} would not "

@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
+#include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "core/let_go.hpp"
 #include "core/lower_case.hpp"
@@ -30,12 +31,40 @@ bool begins_like_number(std::string_view word) {
                              begins_with_keyword(word, "nan") || begins_with_keyword(word, "inf"));
 }
 
+constexpr std::array<std::string_view, 9> keywords = {"outer", "loop",     "vertex", "endloop", "endfacet",
+                                                      "facet", "endsolid", "solid",  "end"};
+
 /// Whether a word of a facet or a solid has to stand here, and none of a normal.
 bool begins_next_part(std::string_view word) {
-    constexpr std::array<std::string_view, 8> keywords = {"outer",    "loop",  "vertex",   "endloop",
-                                                          "endfacet", "facet", "endsolid", "solid"};
     return std::any_of(keywords.begin(), keywords.end(),
                        [&](std::string_view keyword) { return matches(word, keyword); });
+}
+
+/// Some programs write comments: from one of these up to the end of the line.
+bool begins_comment(const Words& words) {
+    if (words.at_end())
+        return false;
+    const char* const at = words.position();
+    return *at == '#' || *at == ';' || *at == '!' ||
+           (*at == '/' && at + 1 != words.text_end() && at[1] == '/');
+}
+
+/// Skips blanks and comments.
+void to_next_word(Words& words) {
+    for (words.skip_blanks(); begins_comment(words); words.skip_blanks())
+        words.skip_line();
+}
+
+/// Takes the end of a loop, facet or solid that is written as two words: "end facet".
+bool take_two_words(Words& words, std::string_view of) {
+    Words ahead = words;
+    if (!ahead.take("end"))
+        return false;
+    ahead.skip_blanks();
+    if (!ahead.take(of))
+        return false;
+    words = ahead;
+    return true;
 }
 
 /// Whether the word "facet" that begins here begins a facet, rather than being part of a name.
@@ -78,6 +107,8 @@ struct FacetPiece : TextPiece {
     std::uint64_t stored = 0; ///< facets, including those with a corner that is not finite
     Occurrences nonfinite;
     Occurrences odd_normals; ///< that are not numbers, or more than three
+    Occurrences two_words;   ///< "end facet" and the like
+    Occurrences extra_words; ///< lines with words behind "endfacet" and the like
     Occurrences unended;     ///< a "solid" while another one has not ended
     Occurrences cut_off;     ///< the facet in which the text ended
     Occurrences garbage;     ///< what follows the last "endsolid"
@@ -107,7 +138,7 @@ class FacetParser {
   private:
     /// One facet, or the begin or the end of a solid. False when the piece is done.
     bool next() {
-        words_.skip_blanks();
+        to_next_word(words_);
         if (words_.at_end() || words_.offset() >= piece_.limit)
             return false;
         const std::size_t here = words_.offset();
@@ -117,7 +148,7 @@ class FacetParser {
             facet_ = here;
             in_solid_ = true;
             parse_facet();
-        } else if (words_.take("endsolid")) {
+        } else if (words_.take("endsolid") || (in_solid_ && take_end("solid"))) {
             in_solid_ = false;
             take_name(words_);
         } else if (words_.take("solid")) {
@@ -135,8 +166,8 @@ class FacetParser {
     bool skip_rest() {
         const std::size_t here = words_.offset();
         if (in_solid_) {
-            if (ends_in("facet") || ends_in("endsolid")) {
-                words_.skip_word();
+            if (ends_in("facet") || ends_in("endsolid") || ends_in_two_words("solid")) {
+                words_.move_to(words_.text_end());
                 return false; // the text was cut off in this word; the solid has not ended
             }
             throw TextFault{here, "'facet' or 'endsolid'"};
@@ -150,13 +181,14 @@ class FacetParser {
     }
 
     void parse_facet() {
-        words_.skip_blanks();
+        to_next_word(words_);
         if (words_.take("normal"))
             skip_normal();
         else if (ends_in("normal"))
             throw CutOff{};
         expect("outer");
         expect("loop");
+        skip_extra_words();
         Triangle3f triangle;
         for (Point3f& corner : triangle) {
             expect("vertex");
@@ -164,15 +196,15 @@ class FacetParser {
             corner.y = coordinate();
             corner.z = coordinate();
         }
-        words_.skip_blanks();
+        to_next_word(words_);
         if (words_.take("vertex"))
             throw TextFault{
                 facet_,
                 "this facet has more than three vertices, and only triangles can be read; triangulate "
                 "the mesh first",
                 false};
-        expect("endloop");
-        expect("endfacet");
+        expect_end("loop", "endloop");
+        expect_end("facet", "endfacet");
         ++piece_.stored;
         if (finite(triangle)) {
             piece_.triangles.push_back(triangle);
@@ -185,8 +217,8 @@ class FacetParser {
     void skip_normal() {
         bool odd = false;
         for (int i = 0;; ++i) {
-            const bool same_line = words_.skip_blanks_in_line();
-            words_.skip_blanks();
+            const bool same_line = words_.skip_blanks_in_line() && !begins_comment(words_);
+            to_next_word(words_);
             const std::string_view word = words_.peek();
             if (is_last(word))
                 throw CutOff{};
@@ -201,8 +233,46 @@ class FacetParser {
             piece_.odd_normals.note(facet_);
     }
 
+    /// "endloop" or "end loop", and what may stand behind it on its line.
+    void expect_end(std::string_view of, std::string_view keyword) {
+        to_next_word(words_);
+        if (!words_.take(keyword) && !take_end(of)) {
+            if (ends_in(keyword) || ends_in_two_words(of))
+                throw CutOff{};
+            throw TextFault{words_.offset(), fmt::format("'{}'", keyword)};
+        }
+        skip_extra_words();
+    }
+
+    /// Takes an end that is written as two words.
+    bool take_end(std::string_view of) {
+        const std::size_t here = words_.offset();
+        if (!take_two_words(words_, of))
+            return false;
+        piece_.two_words.note(here);
+        return true;
+    }
+
+    /// Words on the same line that have no business there.
+    void skip_extra_words() {
+        const auto is_extra = [&] {
+            if (!words_.skip_blanks_in_line() || begins_comment(words_))
+                return false;
+            const std::string_view word = words_.peek();
+            return !begins_next_part(word) &&
+                   (!is_last(word) || std::none_of(keywords.begin(), keywords.end(),
+                                                   [&](std::string_view k) { return ends_in(k); }));
+        };
+        if (!is_extra())
+            return;
+        piece_.extra_words.note(words_.offset());
+        do {
+            words_.skip_word();
+        } while (is_extra());
+    }
+
     void expect(std::string_view keyword) {
-        words_.skip_blanks();
+        to_next_word(words_);
         if (words_.take(keyword))
             return;
         if (ends_in(keyword))
@@ -216,13 +286,23 @@ class FacetParser {
         return left < keyword.size() && matches({words_.position(), left}, keyword.substr(0, left));
     }
 
+    /// Whether the text ends within "end facet" and the like.
+    [[nodiscard]] bool ends_in_two_words(std::string_view of) const {
+        Words ahead = words_;
+        if (!ahead.take("end"))
+            return false;
+        ahead.skip_blanks();
+        const auto left = static_cast<std::size_t>(ahead.text_end() - ahead.position());
+        return left < of.size() && matches({ahead.position(), left}, of.substr(0, left));
+    }
+
     /// Whether the text ends with this word: who knows how it would have gone on?
     [[nodiscard]] bool is_last(std::string_view word) const {
         return words_.position() + word.size() == words_.text_end();
     }
 
     float coordinate() {
-        words_.skip_blanks();
+        to_next_word(words_);
         const char* const first = words_.position();
         const char* const end = words_.text_end();
         float value = 0;
@@ -302,6 +382,8 @@ void add(FacetPiece& sum, const FacetPiece& piece) {
     sum.stored += piece.stored;
     sum.nonfinite.add(piece.nonfinite);
     sum.odd_normals.add(piece.odd_normals);
+    sum.two_words.add(piece.two_words);
+    sum.extra_words.add(piece.extra_words);
     sum.unended.add(piece.unended);
     sum.cut_off.add(piece.cut_off);
     sum.garbage.add(piece.garbage);
@@ -345,6 +427,16 @@ MeshFile describe(const ByteSource& source, const FacetPiece& sum, const MeshRea
                                 sum.odd_normals.count == 1
                                     ? "1 normal is"
                                     : fmt::format("{} normals are", sum.odd_normals.count)));
+    if (sum.two_words.count != 0)
+        remarks.add(fmt::format(
+            "line {}: {} written as two words, such as 'end facet' for 'endfacet' (this is "
+            "the first); taken as one",
+            line(sum.two_words.first), counted(sum.two_words.count, "keyword is", "keywords are")));
+    if (sum.extra_words.count != 0)
+        remarks.add(fmt::format(
+            "line {}: {} further words after 'outer loop', 'endloop' or 'endfacet' (this is "
+            "the first); left out",
+            line(sum.extra_words.first), counted(sum.extra_words.count, "line has", "lines have")));
     if (sum.unended.count != 0)
         remarks.add(
             fmt::format("line {}: a solid begins before the one above has ended; 'endsolid' is missing",
@@ -365,7 +457,7 @@ MeshFile describe(const ByteSource& source, const FacetPiece& sum, const MeshRea
     MeshFile file;
     file.format = "stl-ascii";
     Words words(text, after_byte_order_mark(text));
-    words.skip_blanks();
+    to_next_word(words);
     words.skip_word(); // "solid"
     constexpr std::size_t longest_name = 1000;
     file.name = printable(take_name(words), longest_name);
@@ -381,18 +473,19 @@ MeshFile describe(const ByteSource& source, const FacetPiece& sum, const MeshRea
 
 bool begins_with_solid(std::string_view text) {
     Words words(text, after_byte_order_mark(text));
-    words.skip_blanks();
+    to_next_word(words);
     return words.take("solid");
 }
 
 bool is_stl_ascii(std::string_view text) {
     Words words(text, after_byte_order_mark(text));
-    words.skip_blanks();
+    to_next_word(words);
     if (!words.take("solid"))
         return false;
     take_name(words);
-    words.skip_blanks();
-    return matches(words.peek(), "facet") || matches(words.peek(), "endsolid");
+    to_next_word(words);
+    return matches(words.peek(), "facet") || matches(words.peek(), "endsolid") ||
+           take_two_words(words, "solid");
 }
 
 MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,

@@ -392,13 +392,12 @@ TEST(Ply, NamesPlaceOfAnErrorInTheRows) {
     expect(
         binary.substr(0, binary.size() - 1),
         fmt::format(
-            "byte {}: the file ends within row 1 of 1 of the element 'face' (it is cut off, or its head is "
-            "wrong)",
+            "byte {}: the file ends within row 1 of 1 of the element 'face' (it is cut off, or damaged by a "
+            "transfer in text mode, or its header is wrong)",
             binary.size() - 1));
     expect(head(little, 4'000'000'000, 1) + binary_rows(false),
            fmt::format("byte {}: the file ends within row 5 of 4000000000 of the element 'vertex' (it is cut "
-                       "off, or its "
-                       "head is wrong)",
+                       "off, or damaged by a transfer in text mode, or its header is wrong)",
                        head(little, 4'000'000'000, 1).size() + 49));
     for (const int corner : {3, -1}) {
         std::string broken = binary;

@@ -114,6 +114,66 @@ TEST(StlAscii, PassesOverWhatIsNoNormalAndSaysSo) {
     }
 }
 
+TEST(StlAscii, TakesEndsInTwoWordsForOneAndSaysSo) {
+    for (const auto& [one_word, two_words] :
+         {std::pair("endfacet", "end facet"), {"endloop", "end loop"}, {"endloop", "END\n Loop"}}) {
+        const MeshFile file = read(replaced(solid(many), one_word, two_words));
+        EXPECT_EQ(triangles_of(file), many);
+        ASSERT_EQ(file.warnings.size(), 1U);
+        EXPECT_TRUE(file.warnings[0].find("24 keywords are written as two words") != std::string::npos)
+            << file.warnings[0];
+    }
+    const MeshFile file = read(replaced(solid(many), "endsolid", "end solid"));
+    EXPECT_EQ(triangles_of(file), many);
+    ASSERT_EQ(file.warnings.size(), 1U);
+    EXPECT_EQ(triangles_of(read("solid\nend solid\n" + solid(one))), one);
+    EXPECT_NE(error_of(replaced(solid(many), "endfacet", "end face")).find("expected 'endfacet'"),
+              std::string::npos);
+    EXPECT_NE(error_of(replaced(solid(many), "endfacet", "end facet"), {.strict = true}, ErrorKind::defect)
+                  .find("line 8: 24 keywords"),
+              std::string::npos);
+}
+
+TEST(StlAscii, LeavesOutWordsBehindKeywordsAndSaysSo) {
+    for (const char* keyword : {"outer loop", "endloop", "endfacet"}) {
+        const MeshFile file = read(replaced(solid(many), keyword, std::string(keyword) + " and more"));
+        EXPECT_EQ(triangles_of(file), many);
+        ASSERT_EQ(file.warnings.size(), 1U);
+        EXPECT_TRUE(file.warnings[0].find("24 lines have further words") != std::string::npos)
+            << file.warnings[0];
+    }
+}
+
+TEST(StlAscii, PassesOverComments) {
+    for (const char* comment : {"# facet normal", "; outer loop", "// vertex 1 2 3", "! endsolid", "#"}) {
+        const std::string line = std::string(comment) + "\n";
+        expect_clean(line + solid(many), many);
+        expect_clean(replaced(solid(many), "facet normal", line + "facet normal"), many);
+        expect_clean(replaced(solid(many), "vertex", line + " vertex"), many);
+        expect_clean(
+            replaced(replaced(solid(many), "endloop\n", "endloop " + line), "endfacet\n", "endfacet " + line),
+            many);
+        expect_clean(solid(many) + line, many);
+    }
+}
+
+TEST(StlAscii, EveryPrefixWithOddWordsGivesItsWholeTriangles) {
+    const std::string text =
+        replaced(replaced(replaced(solid(two), "endfacet", "end facet 7"), "endloop", "end loop"), "endsolid",
+                 "# end\nend solid");
+    const std::size_t first = text.find("outer");
+    for (std::size_t size = first; size <= text.size(); ++size) {
+        const std::string prefix = text.substr(0, size);
+        const std::size_t whole = prefix.rfind("end facet") == std::string::npos          ? 0
+                                  : prefix.find("end facet") == prefix.rfind("end facet") ? 1
+                                                                                          : 2;
+        if (whole == 0)
+            EXPECT_NE(error_of(prefix), "") << prefix;
+        else
+            EXPECT_EQ(triangles_of(read(prefix)).size(), whole) << prefix;
+    }
+}
+
 TEST(StlAscii, ReadsNumbersInEveryWriting) {
     const auto value = [](std::string_view text) {
         return soup_of(read(with_coordinate(text))).stored(0)[0].x;

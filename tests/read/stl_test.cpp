@@ -5,9 +5,11 @@
 #include "read/stl_text.hpp"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <fstream>
 #include <future>
 
@@ -86,6 +88,50 @@ TEST(Stl, NamesTheFormatOfAForeignFile) {
     says("ISO-10303-21;\nHEADER;\n", "surfaces without triangles");
     says("\xD0\xCF\x11\xE0\xA1\xB1", "surfaces without triangles");
     says("glTF\2", "save it as STL, 3MF, OBJ or PLY");
+}
+
+TEST(Stl, NamesATarArchiveOfAnyKind) {
+    for (const char* magic : {"", "ustar"}) {
+        std::string header(512, '\0');
+        header.replace(0, 8, "part.stl");
+        header.replace(100, 23, "0000644\0000000000\0000000", 23);
+        header.replace(257, std::string(magic).size(), magic);
+        unsigned sum = 8 * ' ';
+        for (const char c : header)
+            sum += static_cast<unsigned char>(c);
+        header.replace(148, 7, fmt::format("{:06o}", sum) + std::string(1, '\0'));
+        EXPECT_EQ(error_of(header + binary(many) + std::string(1024, '\0')),
+                  "part.stl: is a tar archive, no mesh file; unpack it, and take the mesh that is in it");
+    }
+}
+
+TEST(Stl, RefusesABinaryFileThatATransferInTextModeHasDamaged) {
+    const std::size_t n = 2000;
+    Triangles triangles = some_triangles(n);
+    for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            triangles[i][k] = {static_cast<float>(std::sin(static_cast<double>(3 * i + k)) * 20),
+                               static_cast<float>(std::cos(static_cast<double>(5 * i + k)) * 20),
+                               static_cast<float>(i) * 0.01F + 1};
+    const std::string bytes = binary(triangles);
+    ASSERT_EQ(triangles_of(read(bytes)).size(), n);
+    std::string as_utf8;
+    for (const char c : bytes)
+        as_utf8 += static_cast<unsigned char>(c) < 0x80 ? std::string(1, c) : "\xEF\xBF\xBD";
+    std::string without_one = bytes;
+    without_one.erase(60'000, 1);
+    for (const std::string& damaged :
+         {replaced(bytes, "\n", "\r\n"), replaced(replaced(bytes, "\r", ""), "\n", "\r\n"), as_utf8,
+          without_one}) {
+        ASSERT_NE(damaged.size(), bytes.size());
+        EXPECT_NE(
+            error_of(damaged).find("part.stl: is a binary STL file that was damaged, as by a transfer or a "
+                                   "checkout in text mode"),
+            std::string::npos);
+    }
+    // What is cut off or has more behind it is read as far as it goes.
+    EXPECT_EQ(triangles_of(read(bytes.substr(0, 60'001))).size(), (60'001 - 84) / 50);
+    EXPECT_EQ(triangles_of(read(bytes + "1234567")).size(), n);
 }
 
 TEST(Stl, ReadsABinaryFileWhoseHeaderLooksForeign) {
