@@ -22,6 +22,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -80,6 +83,19 @@ class SliceModelReader {
     [[nodiscard]] double unit() const { return unit_; }
     [[nodiscard]] const std::map<std::uint32_t, Object>& objects() const { return objects_; }
     [[nodiscard]] const std::vector<ThreeMfUse>& items() const { return items_; }
+    /// Parts that items and components refer to, as written.
+    [[nodiscard]] std::vector<std::string> used_parts() const {
+        std::vector<std::string> parts;
+        const auto add = [&](const std::vector<ThreeMfUse>& uses) {
+            for (const ThreeMfUse& use : uses)
+                if (!use.part.empty())
+                    parts.push_back(use.part);
+        };
+        add(items_);
+        for (const auto& [id, object] : objects_)
+            add(object.components);
+        return parts;
+    }
     [[nodiscard]] const std::map<std::uint32_t, std::shared_ptr<const Stack>>& stacks() const {
         return stacks_;
     }
@@ -214,7 +230,7 @@ struct Placed {
     std::string label;
     std::shared_ptr<const Stack> stack;
     Transform placement; ///< of millimetres
-    double scale = 1;    ///< of heights
+    double scale = 1;    ///< millimetres per unit of the stack
     double shift = 0;
     bool support = false;
 
@@ -230,13 +246,11 @@ class PackageReader {
         if (zip_.find(root_) == nullptr)
             throw NoLayers(fmt::format("{}: found no part '{}'; a 3MF file of layers has its model there",
                                        zip_.name(), printable(root_, 100)));
-        const std::unique_ptr<SliceModelReader> model =
-            read_model(root_, [&](const ThreeMfElement& reference) { return referred(reference); });
-        unit_ = model->unit();
+        const Model& model = model_of(root_);
         // The build of a package of meshes alone may say more than is understood here.
-        if (!model->stacks().empty())
-            for (const ThreeMfUse& item : model->items())
-                place(*model, item, {}, false, 0);
+        if (has_slices(model))
+            for (const ThreeMfUse& item : model.reader->items())
+                place(model, item, {}, false, 0);
         if (placed_.empty())
             throw NoLayers(
                 fmt::format("{}: found no slice stack in the build; a 3MF file of layers has one for each "
@@ -248,30 +262,75 @@ class PackageReader {
     }
 
   private:
-    std::unique_ptr<SliceModelReader> read_model(const std::string& part, SliceModelReader::FindStack find) {
+    struct Model {
+        std::string part;
+        std::unique_ptr<SliceModelReader> reader;
+    };
+
+    ByteSource unpack(const std::string& part) {
         const std::uint64_t before = zip_.unpacked();
-        const ByteSource source = unpack_part(zip_, part);
-        const std::uint64_t unpacked = zip_.unpacked() - before;
-        limits_.add_bytes_at(unpacked, [&] { return fmt::format("part '{}'", printable(part, 100)); });
+        ByteSource source = unpack_part(zip_, part);
+        limits_.add_bytes_at(zip_.unpacked() - before,
+                             [&] { return fmt::format("part '{}'", printable(part, 100)); });
+        return source;
+    }
+
+    void let_go(ByteSource& source) {
+        limits_.give_back(0, source.bytes.size());
+        source = {};
+    }
+
+    std::unique_ptr<SliceModelReader> read_model(ByteSource source, SliceModelReader::FindStack find) {
         auto model = std::make_unique<SliceModelReader>(std::move(find), limits_);
         parse_part(
             source, [&](const ThreeMfElement& element) { model->start(element); },
             [&](XmlName name) { model->end(name); }, executor_);
-        limits_.give_back(0, unpacked);
+        let_go(source);
         model->say(file_.warnings);
         return model;
     }
 
+    /// A part whose objects are placed. Read when it is asked for.
+    const Model& model_of(const std::string& part) {
+        Model& model = models_[part];
+        if (!model.reader) {
+            model.part = part;
+            model.reader = read_model(unpack(part), [&, part](const ThreeMfElement& reference) {
+                return referred(reference, part);
+            });
+        }
+        return model;
+    }
+
+    /// Whether the root has slice stacks, or a part whose objects it uses; that would have to name the
+    /// extension.
+    bool has_slices(const Model& root) {
+        if (!root.reader->stacks().empty())
+            return true;
+        std::set<std::string> parts;
+        for (const std::string& reference : root.reader->used_parts())
+            parts.insert(opc_resolved(zip_, root_, reference));
+        return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
+            if (zip_.find(part) == nullptr)
+                return false; // which is told where meshes are read
+            ByteSource source = unpack(part);
+            const bool found = source.text().find(three_mf::slices) != std::string_view::npos;
+            let_go(source);
+            return found;
+        });
+    }
+
     /// A stack in another part, which may not refer to a third one. Its lengths are taken to be in the unit
-    /// of the root, as other readers take them.
-    std::shared_ptr<const Stack> referred(const ThreeMfElement& reference) {
-        const std::string part = opc_resolved(zip_, root_, reference["slicepath"].text);
+    /// of the part that refers to it, as other readers take them.
+    std::shared_ptr<const Stack> referred(const ThreeMfElement& reference, const std::string& from) {
+        const std::string part = opc_resolved(zip_, from, reference["slicepath"].text);
         const std::uint32_t id = reference["slicestackid"].index();
         auto& model = parts_[part];
         if (!model)
-            model = read_model(part, [](const ThreeMfElement& second) -> std::shared_ptr<const Stack> {
-                second.fail("a reference to slices within slices that are referred to", "slices");
-            });
+            model =
+                read_model(unpack(part), [](const ThreeMfElement& second) -> std::shared_ptr<const Stack> {
+                    second.fail("a reference to slices within slices that are referred to", "slices");
+                });
         const auto found = model->stacks().find(id);
         if (found == model->stacks().end())
             reference.fail(fmt::format("a reference to slice stack {} of '{}'", id, printable(part, 100)),
@@ -279,19 +338,22 @@ class PackageReader {
         return found->second;
     }
 
-    void place(const SliceModelReader& model, const ThreeMfUse& use, const Transform& outer, bool in_support,
-               int depth) {
+    void place(const Model& user, const ThreeMfUse& use, const Transform& outer, bool in_support, int depth) {
         constexpr int deepest = 32;
         constexpr std::size_t most = std::size_t{1} << 20;
-        // Such packages are read for their meshes.
-        if (!use.part.empty())
-            throw NoLayers(fmt::format("{}, line {}: found an object of another part; slices are read of the "
-                                       "objects of one part",
-                                       zip_.name(), use.line));
-        const auto object = model.objects().find(use.object);
-        if (object == model.objects().end())
+        if (!use.part.empty() && &user != &models_.at(root_))
             throw Error(ErrorKind::input,
-                        fmt::format("{}, line {}: found no object {}", zip_.name(), use.line, use.object));
+                        fmt::format("{}, part '{}', line {}: found path '{}' in a part that is not the root, "
+                                    "expected none: only the root may refer to other parts",
+                                    zip_.name(), printable(user.part, 100), use.line,
+                                    printable(use.part, 100)));
+        const Model& model = use.part.empty() ? user : model_of(opc_resolved(zip_, root_, use.part));
+        const auto object = model.reader->objects().find(use.object);
+        if (object == model.reader->objects().end())
+            throw Error(
+                ErrorKind::input,
+                fmt::format("{}, line {}: found no object {}{}", zip_.name(), use.line, use.object,
+                            use.part.empty() ? "" : fmt::format(" in '{}'", printable(model.part, 100))));
         if (depth > deepest || placed_.size() >= most || ++uses_ > most)
             throw Error(ErrorKind::input,
                         fmt::format("{}, line {}: found components within components without end",
@@ -318,11 +380,12 @@ class PackageReader {
         }
         limits_.make_room(placed_, 1, at_line(use.line));
         limits_.add_bytes_at(object->second.name.size(), at_line(use.line));
-        placed_.push_back(in_millimetres(object->second, placement, use.line));
+        placed_.push_back(in_millimetres(object->second, placement, model.reader->unit(), use.line));
         placed_.back().support = support;
     }
 
-    Placed in_millimetres(const Object& object, const Transform& placement, std::size_t line) const {
+    Placed in_millimetres(const Object& object, const Transform& placement, double unit,
+                          std::size_t line) const {
         const auto& m = placement.linear;
         constexpr double tolerance = 1e-7;
         const bool planar = std::abs(m[0][2]) <= tolerance && std::abs(m[1][2]) <= tolerance &&
@@ -333,7 +396,7 @@ class PackageReader {
                 fmt::format("{}, line {}: found a transform that tilts slices or changes their heights; "
                             "slices may only be moved, and turned, scaled and mirrored in their plane",
                             zip_.name(), line));
-        return {object.name, object.stack, placement, unit_, placement.offset[2]};
+        return {object.name, object.stack, placement, unit, placement.offset[2]};
     }
 
     void check_reach(const Point3& p) const {
@@ -441,7 +504,7 @@ class PackageReader {
             for (std::size_t i = begin; i < contour.end; ++i) {
                 // A mirrored ring would run the wrong way round.
                 const Point2& p = raw.points[mirrors ? contour.end - 1 - (i - begin) : i];
-                const Point3 at = part.placement(Point3{p.x * unit_, p.y * unit_, 0});
+                const Point3 at = part.placement(Point3{p.x * part.scale, p.y * part.scale, 0});
                 check_reach(at);
                 builder.add_point({at.x, at.y});
             }
@@ -456,8 +519,8 @@ class PackageReader {
     LayerFile& file_;
     ReadLimits& limits_;
     Executor executor_;
-    double unit_ = 1;
-    std::map<std::string, std::unique_ptr<SliceModelReader>> parts_;
+    std::map<std::string, Model> models_;                            ///< with objects
+    std::map<std::string, std::unique_ptr<SliceModelReader>> parts_; ///< with slices that are referred to
     std::vector<Placed> placed_;
     std::size_t uses_ = 0;
     Oddity without_slices_{"object of the build has no slices; it was left out",

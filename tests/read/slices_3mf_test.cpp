@@ -91,6 +91,49 @@ TEST(ReadSlices3mf, StacksAreFoundInOtherPartsAndUnderComponents) {
     EXPECT_DOUBLE_EQ(measure(file.parts[1].layers[1]).area_mm2, 8);
 }
 
+// The production extension: what is built stands in a part of its own, with the slices of its objects.
+TEST(ReadSlices3mf, ObjectsOfOtherPartsBringTheirSlices) {
+    const std::string production = "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/"
+                                   "06\" requiredextensions=\"p\"";
+    const std::string other =
+        model(stack(1, slice("0.5") + slice("1")) + object(9, 1) +
+                  "<object id=\"10\"><components><component objectid=\"9\"/></components></object>",
+              "", "centimeter");
+    const std::string path = "p:path=\"/2D/other.model\"";
+    const LayerFile item =
+        read(model("", "<item objectid=\"9\" " + path + "/>", "millimeter", production), other);
+    ASSERT_EQ(item.parts.size(), 1U);
+    ASSERT_EQ(item.parts[0].layers.size(), 2U);
+    EXPECT_EQ(item.parts[0].label, "body");
+    EXPECT_DOUBLE_EQ(measure(item.parts[0].layers[0]).area_mm2, 800) << "in the unit of its part";
+    EXPECT_DOUBLE_EQ(item.parts[0].layers[0].top, 5);
+    EXPECT_TRUE(item.warnings.empty());
+    const LayerFile component =
+        read(model("<object id=\"3\"><components><component objectid=\"10\" " + path +
+                       " transform=\"1 0 0 0 1 0 0 0 1 0 0 2\"/></components></object>",
+                   "<item objectid=\"3\"/>", "millimeter", production),
+             other);
+    ASSERT_EQ(component.parts.size(), 1U);
+    EXPECT_DOUBLE_EQ(component.parts[0].layers[0].bottom, 2);
+    EXPECT_DOUBLE_EQ(component.parts[0].layers[0].top, 7);
+
+    EXPECT_NE(error_of(model("", "<item objectid=\"8\" " + path + "/>", "millimeter", production), other)
+                  .find("found no object 8 in '2D/other.model'"),
+              std::string::npos);
+    EXPECT_NE(
+        error_of(model("",
+                       "<item objectid=\"9\" " + path + " transform=\"1 0 0 0 0.8 0.6 0 -0.6 0.8 0 0 0\"/>",
+                       "millimeter", production),
+                 other)
+            .find("found a transform that tilts slices"),
+        std::string::npos);
+    EXPECT_NE(
+        error_of(model("", "<item objectid=\"9\" p:path=\"/2D/none.model\"/>", "millimeter", production),
+                 other)
+            .find("found no slice stack in the build"),
+        std::string::npos);
+}
+
 TEST(ReadSlices3mf, MarksOfSupportsAreKept) {
     const auto typed = [](int id, const std::string& type) {
         return "<object id=\"" + std::to_string(id) + "\" type=\"" + type + "\" t:slicestackid=\"1\"/>";
