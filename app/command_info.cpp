@@ -51,6 +51,7 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
     context.messages.warn_of(input_name(file.path), file.warnings);
     const Plate plate =
         load_plate({.path = file.path, .unit_mm = arguments.placement.unit_mm()}, file, execution);
+    check_memory(plate, diagnosis_bytes_per_triangle, arguments.limits.max_memory.value_or(0));
     const IndexedMesh mesh = weld(joined(plate, execution), execution);
     DiagnosisOptions options;
     options.self_intersections = arguments.self_intersections;

@@ -264,7 +264,7 @@ FileJob make_job(const SliceArguments& arguments) {
         const auto& [x, y, z] = *arguments.build_volume;
         job.build_volume = Point3{x, y, z};
     }
-    job.supports = arguments.limits.of_meshes().supports;
+    job.include = arguments.limits.include;
     job.max_triangles = arguments.limits.max_triangles.value_or(0);
     job.max_memory = arguments.limits.max_memory.value_or(0);
     job.layering = arguments.layering.layering();

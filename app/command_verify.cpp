@@ -178,13 +178,17 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         for (LayerPart& part : file.parts)
             rule = place_cuts(part.layers, at);
     }
+    std::optional<Plate> plate;
     std::optional<Mesh> mesh;
     if (!arguments.mesh.empty()) {
         const std::array inputs{
             PlateInput{.path = arguments.mesh, .unit_mm = arguments.placement.unit_mm(), .placement = pose}};
-        const Plate plate = load_plate(inputs, arguments.limits.of_meshes(), execution);
-        context.messages.warn_of(input_name(arguments.mesh), plate.files.front().warnings);
-        mesh = joined(plate, execution);
+        plate = load_plate(inputs, arguments.limits.of_meshes(), execution);
+        context.messages.warn_of(input_name(arguments.mesh), plate->files.front().warnings);
+        constexpr std::uint64_t bytes_per_triangle = 64; // of parts that become one mesh
+        if (plate->parts.size() > 1)
+            check_memory(*plate, bytes_per_triangle, arguments.limits.max_memory.value_or(0));
+        mesh = joined(*plate, execution);
     }
 
     const LayerFile plain = parts_of(file, false);
@@ -202,6 +206,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (!plain.parts.empty()) {
         const Verification found = verify(plain.merged(),
                                           {.mesh = mesh,
+                                           .plate = plate,
                                            .rule = rule,
                                            .steps = steps,
                                            .rounding = file.rounding,
@@ -214,6 +219,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (!vectors.parts.empty()) {
         const VectorVerification found = verify_vectors(vectors.parts,
                                                         {.mesh = mesh,
+                                                         .plate = plate,
                                                          .rule = rule,
                                                          .steps = steps,
                                                          .rounding = file.rounding,

@@ -9,6 +9,7 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "diagnosis_report.hpp"
 #include "layer_file.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
@@ -57,6 +58,7 @@ Diagnosis diagnosis_of(const Plate& plate, const Execution& execution) {
 std::uint64_t view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::string& output,
                         Messages& messages, const Execution& execution) {
     Plate plate = load_plate(input_of(arguments), std::move(mesh), execution);
+    check_memory(plate, diagnosis_bytes_per_triangle, arguments.limits.max_memory.value_or(0));
     const Diagnosis diagnosis = diagnosis_of(plate, execution);
     FileJob job;
     job.inputs = {input_of(arguments)};

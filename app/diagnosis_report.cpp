@@ -35,6 +35,50 @@ std::string parts_text(const MeshFile& file, const Plate& plate) {
                        labels_text(plate.parts));
 }
 
+/// What is listed of the objects of a file: all of them, or nothing where there is nothing to tell.
+bool has_roles(const MeshFile& file) {
+    return std::any_of(file.bodies.begin(), file.bodies.end(),
+                       [](const MeshBody& body) { return body.role != MeshRole::part; });
+}
+
+/// "subtracted", "left out".
+std::string_view use_of(const MeshFile& file, const MeshBody& body) {
+    if (body.left_out)
+        return "left out";
+    const bool subtracts = std::any_of(file.instances.begin(), file.instances.end(),
+                                       [](const MeshInstance& instance) { return instance.negative; });
+    return body.role == MeshRole::negative && subtracts ? "subtracted" : "read";
+}
+
+std::string bodies_text(const MeshFile& file) {
+    constexpr std::size_t most = 20;
+    std::string text;
+    std::string_view name = "objects";
+    for (const MeshBody& body : file.bodies) {
+        if (&body == file.bodies.data() + most) {
+            text +=
+                result_line(name, fmt::format("and {} more; --json lists all", file.bodies.size() - most));
+            break;
+        }
+        text += result_line(name, fmt::format("{}: {}, {}, {}",
+                                              body.name.empty() ? "(without a name)" : one_line(body.name),
+                                              row_of(body.role).name, counted(body.triangles, "triangle"),
+                                              use_of(file, body)));
+        name = "";
+    }
+    return text;
+}
+
+Json bodies_json(const MeshFile& file) {
+    Json bodies = Json::array();
+    for (const MeshBody& body : file.bodies)
+        bodies.push_back({{"name", body.name},
+                          {"role", row_of(body.role).word},
+                          {"triangles", body.triangles},
+                          {"use", use_of(file, body)}});
+    return bodies;
+}
+
 /// Defects of one kind.
 struct Defect {
     DefectWords words;
@@ -201,6 +245,8 @@ std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate&
         text += result_line("unit", fmt::format("{} mm, as the file says", brief(*file.unit_mm)));
     if (plate.parts.size() > 1)
         text += result_line("parts", parts_text(file, plate));
+    if (has_roles(file))
+        text += bodies_text(file);
     text += as_lines(picked(figures_of(file, found), {"triangles", "vertices", "bbox", "place", "volume_mm3",
                                                       "area_mm2", "shells", "closed"}));
     const std::string defects = defects_text("defects", defects_of(found));
@@ -236,6 +282,8 @@ Json mesh_json(const MeshFile& file, const Diagnosis& found, const Plate& plate)
     json["self_intersections"] = found.self_intersections ? meetings_json(*found.self_intersections) : Json();
     if (plate.parts.size() > 1)
         json["parts"] = parts_json(plate);
+    if (!file.bodies.empty())
+        json["objects"] = bodies_json(file);
     return json;
 }
 

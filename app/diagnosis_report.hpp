@@ -8,9 +8,13 @@
 
 #include "messages.hpp"
 
+#include <cstdint>
 #include <string>
 
 namespace lamella::app {
+
+/// What weld and diagnosis take at most, for each triangle of a mesh in memory.
+inline constexpr std::uint64_t diagnosis_bytes_per_triangle = 128;
 
 [[nodiscard]] std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate& plate);
 [[nodiscard]] Json mesh_json(const MeshFile& file, const Diagnosis& found, const Plate& plate);

@@ -240,9 +240,8 @@ Execution RunOptions::execution(const Context& context) const {
 }
 
 MeshReadOptions ReadLimits::of_meshes() const {
-    return {.supports = include == "support",
-            .max_triangles = max_triangles.value_or(0),
-            .max_memory = max_memory.value_or(0)};
+    return {
+        .include = include, .max_triangles = max_triangles.value_or(0), .max_memory = max_memory.value_or(0)};
 }
 
 LayerReadOptions ReadLimits::of_layers() const {
@@ -250,9 +249,16 @@ LayerReadOptions ReadLimits::of_layers() const {
 }
 
 Option include_option(ReadLimits& target) {
-    return choice("include", "WHAT",
-                  "take what 3MF and AMF files mark as this, too, as solids; it is left out otherwise",
-                  {"support"}, target.include);
+    std::vector<std::string_view> words;
+    for (const MeshRoleRow& known : mesh_roles())
+        if (known.role != MeshRole::part)
+            words.push_back(known.word);
+    return row(
+        "include", ValueKind::text, "WHAT",
+        fmt::format("read what 3MF and AMF files mark as {} as solids, too: one or several with commas "
+                    "between them; otherwise negative volumes are subtracted, and the rest is left out",
+                    fmt::join(words, ", ")),
+        [&target](const std::string& text) { target.include = roles_named(text); });
 }
 
 Option max_triangles_option(ReadLimits& target) {

@@ -81,7 +81,7 @@ struct RunOptions {
 
 /// What is read of a file, and what it may not exceed.
 struct ReadLimits {
-    std::string include = {}; ///< "support", or nothing beyond the parts
+    MeshRoles include; ///< besides parts
     std::optional<std::uint64_t> max_triangles;
     std::optional<std::uint64_t> max_memory; ///< bytes
 

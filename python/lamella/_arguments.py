@@ -213,22 +213,35 @@ def listener(progress: Any) -> Optional[Progress]:
     return progress  # type: ignore[no-any-return]
 
 
+def words(name: str, value: Any) -> str:
+    """Those of a string or of several, with commas between them."""
+    if isinstance(value, str):
+        return value
+    try:
+        several = list(value)
+    except TypeError:
+        several = [None]
+    if not all(isinstance(word, str) for word in several):
+        refuse_type(name, "a word or several", value)
+    return ",".join(several)
+
+
 def reading(
     file: Any,
     unit_mm: Any,
     strict: Any,
-    supports: Any,
+    include: Any,
     max_triangles: Any,
     max_memory: Any,
     threads: Any,
     progress: Any,
-) -> Tuple[bytes, Optional[float], bool, bool, int, int, int, Optional[Progress]]:
+) -> Tuple[bytes, Optional[float], bool, str, int, int, int, Optional[Progress]]:
     """Those of a file that may hold a mesh."""
     return (
         path("path", file),
         optional(positive, "unit_mm", unit_mm),
         flag("strict", strict),
-        flag("supports", supports),
+        words("include", include),
         whole("max_triangles", max_triangles),
         whole("max_memory", max_memory),
         thread_count(threads),

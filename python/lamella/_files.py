@@ -79,7 +79,7 @@ def read(
     *,
     unit_mm: Optional[float] = None,
     strict: bool = False,
-    supports: bool = False,
+    include: Union[str, Iterable[str]] = (),
     max_triangles: int = 0,
     max_memory: int = 0,
     threads: int = 0,
@@ -91,8 +91,10 @@ def read(
         3MF with slices, JSON, NumPy arrays, ILT, Open Vector Format, 3MF with toolpaths. Each may be packed with gzip.
     unit_mm: millimetres per unit of a mesh file that does not say its unit; 1 unless given. Slice files say theirs.
     strict: makes a DefectError of what is otherwise a DefectWarning.
-    supports: takes what 3MF and AMF files mark as support, too, as solids; without it a DefectWarning says that it was
-        left out. Of slice files supports are parts like others, see Stack.support.
+    include: what 3MF and AMF files mark as "support", "negative", "modifier", "support-blocker", "support-enforcer",
+        "surface" or "other" is read as solids, too: one of these words or several. Otherwise negative volumes are
+        subtracted where the mesh is sliced, and a DefectWarning counts what else was left out. Of slice files
+        supports are parts like others, see Stack.support.
     max_triangles: more of them are a LimitError; 0 is any number.
     max_memory: more bytes than this for what is read are a LimitError; 0 is three quarters of the memory there is. A
         binary STL file that is not packed does not count, nor does what is made of a mesh afterwards.
@@ -106,7 +108,7 @@ def read(
     expected, and UsageError where `unit_mm` is given for a slice file.
     """
     read, warnings = _lamella.read_any(
-        *check.reading(path, unit_mm, strict, supports, max_triangles, max_memory, threads, progress)
+        *check.reading(path, unit_mm, strict, include, max_triangles, max_memory, threads, progress)
     )
     if isinstance(read, Stack) and unit_mm is not None:
         raise UsageError(f"unit_mm goes with meshes, and {os.fsdecode(path)} holds layers, which say their unit")

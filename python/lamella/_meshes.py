@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass
-from typing import Any, Optional, Protocol, Sequence, Tuple, Union
+from typing import Any, Iterable, Optional, Protocol, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -68,14 +68,14 @@ def read_mesh(
     *,
     unit_mm: Optional[float] = None,
     strict: bool = False,
-    supports: bool = False,
+    include: Union[str, Iterable[str]] = (),
     max_triangles: int = 0,
     max_memory: int = 0,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Mesh:
     mesh = _lamella.read_mesh(
-        *check.reading(path, unit_mm, strict, supports, max_triangles, max_memory, threads, progress)
+        *check.reading(path, unit_mm, strict, include, max_triangles, max_memory, threads, progress)
     )
     warn(f"{mesh.path}: {warning}" for warning in mesh.warnings)
     return mesh

@@ -87,13 +87,13 @@ std::pair<StackPointer, py::list> read_stack(const std::string& path, std::uint6
 
 /// The mesh or the layers of the file, and its warnings.
 std::pair<std::variant<MeshPointer, StackPointer>, py::list>
-read_either(const std::string& path, std::optional<double> unit_mm, bool strict, bool supports,
+read_either(const std::string& path, std::optional<double> unit_mm, bool strict, const std::string& include,
             std::uint64_t max_triangles, std::uint64_t max_memory, unsigned threads,
             const py::object& progress) {
     std::vector<std::string> warnings;
     using Either = std::variant<MeshPointer, StackPointer>;
     const auto read = result_of(threads, progress, [&](const Execution& execution) -> Either {
-        auto file = read_any(path, {strict, supports, max_triangles, max_memory}, execution);
+        auto file = read_any(path, {strict, roles_named(include), max_triangles, max_memory}, execution);
         if (auto* const mesh = std::get_if<MeshFile>(&file)) {
             MeshPointer made = source_mesh(std::move(*mesh), unit_mm, execution);
             warnings = made->origin().warnings;
@@ -220,13 +220,20 @@ std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::str
 std::vector<std::string> write_mesh(const std::string& path, const std::string& extension,
                                     const MeshPointer& mesh, const std::string& name, bool strict) {
     const Unlocked released;
+    std::vector<std::string> warnings;
+    if (mesh->source().has_negatives()) {
+        warnings.emplace_back("its negative volumes are not subtracted: only layers are without them");
+        if (strict)
+            throw Error(ErrorKind::defect, path + ": " + warnings.front());
+    }
     if (extension == ".ply")
         write_ply(path, mesh->welded({}));
     else if (extension == ".obj")
         write_obj(path, mesh->welded({}), name);
     else
-        return write_stl(path, mesh->mesh(), strict);
-    return {};
+        for (std::string& warning : write_stl(path, mesh->mesh(), strict))
+            warnings.push_back(std::move(warning));
+    return warnings;
 }
 
 py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, double tolerance,
@@ -236,8 +243,11 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
                     stack.path + " holds scan vectors, which lamella.verify_vectors checks");
     const Verification found = result_of(threads, progress, [&](const Execution& execution) {
         VerifyOptions options{.rule = stack.rule, .rounding = stack.rounding, .tolerance_mm = tolerance};
-        if (mesh)
+        if (mesh) {
             options.mesh = mesh->mesh();
+            if (mesh->source().has_negatives())
+                options.plate = mesh->source().plate(execution);
+        }
         LayerStack layers = plain(stack.layers);
         if (!at.empty())
             options.rule = place_cuts(layers, slice_at_named(at));
@@ -273,8 +283,11 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
         if (!holds_scan_vectors(file))
             throw Error(ErrorKind::usage, path + " holds no scan vectors; lamella.verify checks layers");
         VerifyOptions options{.rule = file.rule, .rounding = file.rounding, .tolerance_mm = tolerance};
-        if (mesh)
+        if (mesh) {
             options.mesh = mesh->mesh();
+            if (mesh->source().has_negatives())
+                options.plate = mesh->source().plate(execution);
+        }
         options.strategy = strategy;
         if (!at.empty())
             for (LayerPart& part : file.parts)

@@ -87,7 +87,10 @@ LayerStream::LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, uns
                     queue_.put(std::move(kept));
                 };
             };
-            slice_to(sink, mesh_->mesh(), plan(), execution, nullptr, engine_);
+            if (mesh_->source().has_negatives())
+                slice_to(sink, mesh_->source().plate(execution), plan(), execution, engine_);
+            else
+                slice_to(sink, mesh_->mesh(), plan(), execution, nullptr, engine_);
         } catch (...) {
             failure = std::current_exception();
         }

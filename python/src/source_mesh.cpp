@@ -165,6 +165,8 @@ const IndexedMesh& welded_of(const SourceMesh& source) {
 }
 
 py::tuple mesh_state(const py::object& self) {
+    if (self.cast<const SourceMesh&>().source().has_negatives())
+        throw Error(ErrorKind::usage, "a mesh with negative volumes cannot be pickled; read its file anew");
     const MeshOrigin& origin = self.cast<const SourceMesh&>().origin();
     return py::make_tuple(self.attr("vertices"), self.attr("faces"), py::bytes(origin.path), origin.format,
                           origin.name, origin.label, origin.unit_mm, origin.stored_triangles, origin.warnings,
@@ -190,6 +192,11 @@ MeshPointer mesh_of_state(const py::tuple& state) {
 
 Plate MeshSource::plate(const Execution& execution) const {
     return load_plate({.path = file->path, .unit_mm = unit_mm, .placement = placement}, *file, execution);
+}
+
+bool MeshSource::has_negatives() const {
+    return std::any_of(file->instances.begin(), file->instances.end(),
+                       [](const MeshInstance& instance) { return instance.negative; });
 }
 
 SourceMesh::SourceMesh(MeshSource source, Mesh mesh, MeshOrigin origin, const Execution& execution)
@@ -305,10 +312,10 @@ void bind_meshes(py::module_& module) {
         return kinds;
     });
     module.def("read_mesh", [](const std::string& path, std::optional<double> unit_mm, bool strict,
-                               bool supports, std::uint64_t max_triangles, std::uint64_t max_memory,
-                               unsigned threads, const py::object& progress) {
-        return read_source_mesh(path, unit_mm, {strict, supports, max_triangles, max_memory}, threads,
-                                progress);
+                               const std::string& include, std::uint64_t max_triangles,
+                               std::uint64_t max_memory, unsigned threads, const py::object& progress) {
+        return read_source_mesh(path, unit_mm, {strict, roles_named(include), max_triangles, max_memory},
+                                threads, progress);
     });
 }
 

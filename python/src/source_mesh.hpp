@@ -42,6 +42,8 @@ struct MeshSource {
 
     /// Throws what load_plate throws.
     [[nodiscard]] Plate plate(const Execution& execution) const;
+    /// Whether there are volumes on it that are subtracted from others.
+    [[nodiscard]] bool has_negatives() const;
 };
 
 /// A mesh in millimetres that never changes, and where it came from.

@@ -137,7 +137,7 @@ Error changed_while_read(const std::string& path) {
 
 Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, const Execution& execution)
     : memory_(job), processes_(processes), among_(&alone()), reading_{.strict = job.strict,
-                                                                      .supports = job.supports,
+                                                                      .include = job.include,
                                                                       .max_triangles = job.max_triangles,
                                                                       .max_memory = job.max_memory},
       measure_volume_(job.layer_statistics), neighbours_(neighbours_of(job)) {
@@ -313,6 +313,8 @@ PlaneCounts Feed::counts_of_parts(std::size_t planes) const {
     PlaneCounts all(planes);
     for (const PlatePart& part : plate_.parts)
         all.add(counts_[part.shape]);
+    for (const PlateNegative& negative : plate_.negatives)
+        all.add(counts_[negative.shape]);
     return all;
 }
 

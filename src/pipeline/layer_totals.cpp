@@ -28,7 +28,8 @@ LayerTotals::LayerTotals(const FileJob& job, std::span<const PlannedLayer> plane
     vectors_.resize(planes.size() * exposures_.size());
 }
 
-void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes) {
+void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes,
+                      std::span<const Layer> bodies) {
     const Layer& first = parts.front();
     assert(parts.size() == parts_.size());
     const auto place = static_cast<std::size_t>(first.index - rows_.front().index);
@@ -43,11 +44,13 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
         }
     if (!changes_.empty())
         changes_[place] = changes;
+    for (const Layer& body : bodies.empty() ? parts : bodies) {
+        row.open_gaps += open_gaps(body);
+        row.inside_out |= begins_clockwise(body);
+    }
     LayerMeasure together;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const Layer& layer = parts[i];
-        row.open_gaps += open_gaps(layer);
-        row.inside_out |= begins_clockwise(layer);
         parts_[i].contours.fetch_add(layer.contours(), std::memory_order_relaxed);
         parts_[i].open_chains.fetch_add(layer.open_chains(), std::memory_order_relaxed);
         parts_[i].points.fetch_add(layer.points.size(), std::memory_order_relaxed);

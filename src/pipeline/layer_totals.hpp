@@ -21,9 +21,11 @@ class LayerTotals {
     /// Of the planes that this process slices; none, perhaps. `supports`: for each part whether it is one.
     LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, const std::vector<bool>& supports);
 
-    /// The layers of all parts on one plane, as they are written, and what was done to them. From any thread,
-    /// once for each plane.
-    void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes);
+    /// The layers of all parts on one plane, as they are written, and what was done to them. `bodies`: what
+    /// is looked at for doubts about the mesh where it is not the parts: they and negative volumes before
+    /// these were subtracted. From any thread, once for each plane.
+    void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes,
+             std::span<const Layer> bodies = {});
     /// Of the scan vectors of a plane, by `plane_exposures`, and how many rings have none. From any thread,
     /// once for each plane.
     void add(std::uint64_t index, std::span<const ScanFigures> vectors, std::uint64_t thin_rings);

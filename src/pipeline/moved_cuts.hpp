@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
+#include "lamella/pipeline/verify.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
@@ -59,10 +60,11 @@ inline std::vector<double> limits_of_mitres(double limit, const Rounding& roundi
                : std::vector{limit, std::max(1.0, (1 - share) * limit), (1 + share) * limit};
 }
 
-/// The layers of a mesh, after these steps.
-inline LayerStack layers_of(const Mesh& mesh, const Plan& plan, const LayerSteps& steps,
+/// The layers of the mesh, after these steps.
+inline LayerStack layers_of(const VerifyOptions& options, const Plan& plan, const LayerSteps& steps,
                             const Execution& execution) {
-    LayerStack layers = slice(mesh, plan, execution);
+    LayerStack layers =
+        options.subtracts() ? slice(*options.plate, plan, execution) : slice(*options.mesh, plan, execution);
     LayerChanges changes;
     return steps.any() ? take_steps(steps, std::move(layers), changes, execution) : layers;
 }

@@ -2,6 +2,9 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/byte_amount.hpp"
+#include "core/counted.hpp"
+#include "core/memory_size.hpp"
 #include "pipeline/plate_builder.hpp"
 
 #include <fmt/format.h>
@@ -30,6 +33,20 @@ Mesh joined(const Plate& plate, const Execution& execution) {
     for (const PlatePart& part : plate.parts)
         meshes.push_back(plate.shapes[part.shape].mesh.transformed(translation(part.dx, part.dy, 0)));
     return joined(meshes, execution);
+}
+
+void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uint64_t max_memory) {
+    std::uint64_t triangles = 0;
+    for (const PlatePart& part : plate.parts)
+        triangles += plate.shapes[part.shape].mesh.size();
+    const std::uint64_t limit = memory_limit(max_memory);
+    if (const std::uint64_t bytes = triangles * bytes_per_triangle; bytes > limit)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: holds {} of {} in all, which take up to {} of memory here, above the {} {}",
+                        plate.files.front().path, counted(plate.parts.size(), "part"),
+                        counted(triangles, "triangle"), byte_amount(bytes), byte_amount(limit),
+                        max_memory != 0 ? "of `max_memory`" : "that may be taken"));
 }
 
 void check_build_volume(const Plate& plate, const Point3& size) {

@@ -101,7 +101,7 @@ void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_
         file.unit_mm ? input.placement : compose(input.placement, scaling(unit, unit, unit));
     plate_.files.push_back({input.path, file.format, unit,
                             compose(input.placement, scaling(unit, unit, unit)), file.stored_triangles,
-                            std::move(file.warnings)});
+                            std::move(file.warnings), std::move(file.bodies)});
     std::vector<Instance> instances;
     Box3 box;
     for (const MeshInstance& instance : file.instances) {
@@ -116,10 +116,14 @@ void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_
                              compose(outer, instance.placement),
                              std::move(label),
                              input.support || instance.support,
+                             instance.negative,
+                             0,
+                             instance.body,
                              {}});
         instances.back().box = box_of(object.mesh, instances.back().placement);
         check_range(instances.back().box, input.path);
-        box.add(instances.back().box);
+        if (!instance.negative)
+            box.add(instances.back().box);
     }
     if (input.copies > most_parts || instances_.size() + input.copies * instances.size() > most_parts)
         throw Error(ErrorKind::limit, fmt::format("{}: {} of {} are too many: a plate holds at most {} parts",
@@ -132,6 +136,7 @@ void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_
         for (Instance instance : instances) {
             instance.placement = compose(translation(dx, dy, 0), instance.placement);
             instance.box = moved(instance.box, dx, dy);
+            instance.copy = copy;
             instances_.push_back(std::move(instance));
         }
     }
@@ -142,17 +147,24 @@ Plate PlateBuilder::finish() {
     std::map<Key, std::vector<std::size_t>> same;
     for (std::size_t i = 0; i < instances_.size(); ++i)
         same[key_of(instances_[i])].push_back(i);
-    plate_.parts.resize(instances_.size());
+    const auto parts = static_cast<std::size_t>(std::count_if(
+        instances_.begin(), instances_.end(), [](const Instance& instance) { return !instance.negative; }));
     DistinctNames labels;
+    for (const Instance& instance : instances_) {
+        if (instance.negative)
+            continue;
+        bodies_[{instance.input, instance.copy, instance.body}].push_back(plate_.parts.size());
+        PlatePart& part = plate_.parts.emplace_back();
+        part.label = labels.of(!instance.label.empty() ? instance.label
+                               : parts == 1            ? "part"
+                                                       : stem_of(plate_.files[instance.input].path));
+        part.box = instance.box;
+        part.support = instance.support;
+        plate_.box.add(instance.box);
+    }
+    std::vector<std::size_t> shapes(instances_.size()); // of each instance
     for (std::size_t i = 0; i < instances_.size(); ++i) {
         const Instance& instance = instances_[i];
-        plate_.parts[i].label =
-            labels.of(!instance.label.empty()  ? instance.label
-                      : instances_.size() == 1 ? "part"
-                                               : stem_of(plate_.files[instance.input].path));
-        plate_.parts[i].box = instance.box;
-        plate_.parts[i].support = instance.support;
-        plate_.box.add(instance.box);
         const std::vector<std::size_t>& group = same[key_of(instance)];
         if (group.front() != i)
             continue;
@@ -162,14 +174,26 @@ Plate PlateBuilder::finish() {
         Transform placement = instance.placement;
         if (group.size() > 1)
             placement.offset[0] = placement.offset[1] = 0;
-        for (const std::size_t member : group) {
-            plate_.parts[member].shape = plate_.shapes.size();
-            if (group.size() > 1) {
-                plate_.parts[member].dx = instances_[member].placement.offset[0];
-                plate_.parts[member].dy = instances_[member].placement.offset[1];
-            }
-        }
+        for (const std::size_t member : group)
+            shapes[member] = plate_.shapes.size();
         plate_.shapes.push_back({mesh.transformed(placement), instance.input});
+    }
+    std::size_t part = 0;
+    for (std::size_t i = 0; i < instances_.size(); ++i) {
+        const Instance& instance = instances_[i];
+        const bool shared = same[key_of(instance)].size() > 1;
+        const double dx = shared ? instance.placement.offset[0] : 0;
+        const double dy = shared ? instance.placement.offset[1] : 0;
+        if (instance.negative) {
+            const auto& of_body = bodies_[{instance.input, instance.copy, instance.body}];
+            if (!of_body.empty())
+                plate_.negatives.push_back({shapes[i], dx, dy, instance.box, of_body});
+        } else {
+            plate_.parts[part].shape = shapes[i];
+            plate_.parts[part].dx = dx;
+            plate_.parts[part].dy = dy;
+            ++part;
+        }
     }
     return std::move(plate_);
 }

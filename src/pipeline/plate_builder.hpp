@@ -11,9 +11,12 @@
 #include <array>
 #include <compare>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace lamella {
@@ -38,6 +41,9 @@ class PlateBuilder {
         Transform placement;
         std::string label;
         bool support;
+        bool negative;
+        std::uint64_t copy;
+        std::uint64_t body; ///< MeshInstance::body
         Box3 box;
     };
     /// Equal keys, equal layers but for a way along x and y.
@@ -54,6 +60,8 @@ class PlateBuilder {
     Plate plate_;
     std::vector<std::vector<MeshObject>> objects_;
     std::vector<Instance> instances_;
+    /// Input, copy and body: their parts.
+    std::map<std::tuple<std::size_t, std::uint64_t, std::uint64_t>, std::vector<std::size_t>> bodies_;
 };
 
 /// As load_plate, for files that have been read already: one for each input.

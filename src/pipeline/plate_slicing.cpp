@@ -1,5 +1,7 @@
 #include "pipeline/plate_slicing.hpp"
 
+#include "lamella/polygon/boolean.hpp"
+
 #include "core/executor.hpp"
 #include "core/stopwatch.hpp"
 #include "slicing/shrunken_contours.hpp"
@@ -66,6 +68,15 @@ Layer moved(const Layer& layer, double dx, double dy) {
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
+/// Parts, and then negative volumes.
+template <class Visit>
+void for_bodies(const Plate& plate, const Visit& visit) {
+    for (const PlatePart& part : plate.parts)
+        visit(part);
+    for (const PlateNegative& negative : plate.negatives)
+        visit(negative);
+}
+
 /// By shape, the planes between its lowest and its uppermost point: on all others it has no contours.
 std::vector<PlaneRange> planes_of_shapes(const Plate& plate, const Plan& plan) {
     const auto planes_where = [&plan](auto&& holds) {
@@ -73,11 +84,12 @@ std::vector<PlaneRange> planes_of_shapes(const Plate& plate, const Plan& plan) {
             std::partition_point(plan.layers.begin(), plan.layers.end(), holds) - plan.layers.begin());
     };
     std::vector<PlaneRange> planes(plate.shapes.size());
-    for (const PlatePart& part : plate.parts)
-        if (!part.box.empty())
-            planes[part.shape] = {
-                planes_where([&](const PlannedLayer& layer) { return layer.z < part.box.min.z; }),
-                planes_where([&](const PlannedLayer& layer) { return layer.z <= part.box.max.z; })};
+    for_bodies(plate, [&](const auto& body) {
+        if (!body.box.empty())
+            planes[body.shape] = {
+                planes_where([&](const PlannedLayer& layer) { return layer.z < body.box.min.z; }),
+                planes_where([&](const PlannedLayer& layer) { return layer.z <= body.box.max.z; })};
+    });
     return planes;
 }
 
@@ -125,10 +137,11 @@ PlaneRange next_planes(PlaneRange left, std::uint32_t most, std::uint64_t most_p
                        const std::vector<ShapeLayers>& shapes) {
     PlaneRange next{left.begin, left.begin};
     for (std::uint64_t points = 0; next.end < left.end && next.size() < most; ++next.end) {
-        for (const PlatePart& part : plate.parts)
-            if (const auto& [planes, layers] = shapes[part.shape];
+        for_bodies(plate, [&](const auto& body) {
+            if (const auto& [planes, layers] = shapes[body.shape];
                 planes.begin <= next.end && next.end < planes.end)
                 points += layers[next.end - planes.begin].points.size();
+        });
         if (most_points != 0 && points > most_points && next.size() > 0)
             break;
     }
@@ -149,12 +162,12 @@ void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRang
             const Layer none{
                 .index = planned.index, .z = planned.z, .bottom = planned.bottom, .top = planned.top};
             std::vector<Layer> parts;
-            parts.reserve(plate.parts.size());
-            for (const PlatePart& part : plate.parts) {
-                const auto& [planes, layers] = shapes[part.shape];
+            parts.reserve(plate.parts.size() + plate.negatives.size());
+            for_bodies(plate, [&](const auto& body) {
+                const auto& [planes, layers] = shapes[body.shape];
                 const bool has = planes.begin <= plane && plane < planes.end;
-                parts.push_back(has ? moved(layers[plane - planes.begin], part.dx, part.dy) : none);
-            }
+                parts.push_back(has ? moved(layers[plane - planes.begin], body.dx, body.dy) : none);
+            });
             actions[i] = sink(parts);
         });
         executor.check_cancelled();
@@ -214,10 +227,45 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
 
 } // namespace
 
+std::vector<Layer> without_negatives(std::span<const Layer> layers, const Plate& plate) {
+    std::vector<Layer> parts(layers.begin(),
+                             layers.begin() + static_cast<std::ptrdiff_t>(plate.parts.size()));
+    for (std::size_t i = 0; i < plate.negatives.size(); ++i) {
+        const Layer& negative = layers[plate.parts.size() + i];
+        if (negative.rings == 0)
+            continue;
+        for (const std::size_t part : plate.negatives[i].parts)
+            if (parts[part].rings > 0)
+                parts[part] = combine(parts[part], negative, BooleanOperation::subtract);
+    }
+    return parts;
+}
+
+void slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
+              const Engine& engine) {
+    constexpr std::uint64_t points_in_flight = std::uint64_t{1} << 22; // 64 MB
+    const PlateSink of_plate = [&](std::span<const Layer> layers) {
+        std::vector<Layer> parts = without_negatives(layers, plate);
+        return sink(parts.size() == 1 ? std::move(parts.front()) : merged(parts));
+    };
+    static_cast<void>(slice_plate_to(of_plate, plate, plan, execution, engine, points_in_flight));
+}
+
+LayerStack slice(const Plate& plate, const Plan& plan, const Execution& execution, const Engine& engine) {
+    LayerStack stack;
+    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+        return [&stack, kept = std::move(layer)]() mutable {
+            stack.push_back(std::move(kept));
+        };
+    };
+    slice_to(sink, plate, plan, execution, engine);
+    return stack;
+}
+
 SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
                            const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
                            SinkYield yield) {
-    if (plate.parts.size() > 1 || yield == SinkYield::much_more)
+    if (plate.parts.size() + plate.negatives.size() > 1 || yield == SinkYield::much_more)
         return slice_parts(sink, plate, plan, execution, engine, points_in_flight, yield);
     const LayerSink single = [&](Layer&& layer) {
         return sink(std::span<const Layer>(&layer, 1));

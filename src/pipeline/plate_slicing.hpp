@@ -12,15 +12,21 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <vector>
 
 namespace lamella {
 
-/// As LayerSink, but for what one plane yields: a layer of each part, in the order of Plate::parts.
+/// As LayerSink, but for what one plane yields: a layer of each part, in the order of Plate::parts, and then
+/// of each of Plate::negatives.
 using PlateSink = std::function<std::function<void()>(std::span<const Layer> parts)>;
 
 /// What a sink makes of layers: about as much as they are, or so much more that only a few planes may be on
 /// their way through it, whatever `points_in_flight` says.
 enum class SinkYield { like_layers, much_more };
+
+/// Subtracts the negative volumes on one plane: takes what a PlateSink gets, and returns the layers of the
+/// parts. Those that no negative volume reaches are as they were, bit for bit.
+[[nodiscard]] std::vector<Layer> without_negatives(std::span<const Layer> layers, const Plate& plate);
 
 /// A plate with one part is sliced while its layers go to the sink. Others are sliced window by window: a run
 /// of planes on which all shapes together have twice `points_in_flight` (as slice_to takes it; 0: all

@@ -52,20 +52,30 @@ void check_heights(const Plate& plate) {
     }
 }
 
+/// The part that decides how many layers there are, as errors begin: "plate.3mf, part "axle"".
+std::string highest_part(const Plate& plate) {
+    const auto part =
+        std::max_element(plate.parts.begin(), plate.parts.end(),
+                         [](const PlatePart& a, const PlatePart& b) { return a.box.max.z < b.box.max.z; });
+    const std::string& path = plate.files[plate.shapes[part->shape].input].path;
+    return plate.parts.size() == 1 ? path : fmt::format("{}, part \"{}\"", path, part->label);
+}
+
 /// So many take nothing to speak of.
 constexpr std::uint32_t few_layers = 100'000;
 
 /// One that is a thousand times too small asks for more layers than memory has notes for.
-void check_layer_heights(const FileJob& job, const UniformLayers& layers, const Box3& box) {
+void check_layer_heights(const FileJob& job, const UniformLayers& layers, const Plate& plate) {
+    const Box3& box = plate.box;
     const double height = box.max.z - box.min.z;
     const double layer_height = layers.layer_height;
     for (const double one : {layer_height, layers.first_layer_height.value_or(layer_height)})
         if (one > height)
             throw Error(
                 ErrorKind::usage,
-                fmt::format("the layer height of {:.6g} mm is above the part's height of {:.6g} mm; choose "
-                            "a smaller one, or check the unit of the file",
-                            one, height));
+                fmt::format("{}: the layer height of {:.6g} mm is above the part's height of {:.6g} mm; "
+                            "choose a smaller one, or check the unit of the file",
+                            highest_part(plate), one, height));
     double count = height / layer_height;
     if (const auto& range = job.layering.only.z_range)
         count = std::min(count, (range->second - range->first) / layer_height);
@@ -81,10 +91,10 @@ void check_layer_heights(const FileJob& job, const UniformLayers& layers, const 
         throw Error(
             ErrorKind::limit,
             fmt::format(
-                "a layer height of {:.6g} mm makes {:.6g} layers of this part ({:.6g} mm high), which take "
-                "{} of memory, above the {} {}; choose a larger one, or fewer layers",
-                layer_height, count, height, byte_amount(bytes), byte_amount(memory.limit),
-                memory.asked ? "of `max_memory`" : "that may be taken here"));
+                "{}: a layer height of {:.6g} mm makes {:.6g} layers of this part ({:.6g} mm high), which "
+                "take {} of memory, above the {} {}; choose a larger one, or fewer layers",
+                highest_part(plate), layer_height, count, height, byte_amount(bytes),
+                byte_amount(memory.limit), memory.asked ? "of `max_memory`" : "that may be taken here"));
 }
 
 } // namespace
@@ -92,17 +102,26 @@ void check_layer_heights(const FileJob& job, const UniformLayers& layers, const 
 Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution) {
     check_heights(plate);
     if (const auto* const uniform = std::get_if<UniformLayers>(&job.layering.cut))
-        check_layer_heights(job, *uniform, plate.box);
-    Plan plan = plan_of(
-        job.layering, plate.box, [&] { return joined(plate, execution); }, execution);
+        check_layer_heights(job, *uniform, plate);
+    Plan plan;
+    try {
+        plan = plan_of(
+            job.layering, plate.box, [&] { return joined(plate, execution); }, execution);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::usage && error.kind() != ErrorKind::limit)
+            throw;
+        throw Error(error.kind(), fmt::format("{}: {}", highest_part(plate), error.what()));
+    }
     const JobMemory memory(job);
     const std::uint64_t bytes =
         JobMemory::overhead(1, plan.layers.size(), plate.shapes.size(), job.layer_statistics);
     if (bytes > memory.limit && plan.layers.size() > few_layers)
-        throw Error(ErrorKind::limit,
-                    fmt::format("{} layers take {} of memory, above the {} {}; choose higher ones, or fewer",
-                                plan.layers.size(), byte_amount(bytes), byte_amount(memory.limit),
-                                memory.asked ? "of `max_memory`" : "that may be taken here"));
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: {} layers take {} of memory, above the {} {}; choose higher ones, or fewer",
+                        highest_part(plate), plan.layers.size(), byte_amount(bytes),
+                        byte_amount(memory.limit),
+                        memory.asked ? "of `max_memory`" : "that may be taken here"));
     return plan;
 }
 
@@ -221,6 +240,9 @@ Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, const Exec
         one.box = part.box;
         add(all, one);
     }
+    for (const PlateNegative& negative : plate.negatives)
+        for (const DefectKind& kind : defect_kinds)
+            all.*kind.count += found[negative.shape].*kind.count;
     return all;
 }
 
@@ -296,10 +318,10 @@ class LayerWay {
   public:
     /// `sliced`: the planes of the plan that come, of which those of `mine` are written. `supports`: for each
     /// part whether it is one.
-    LayerWay(const FileJob& job, const Plan& plan, PlaneRange sliced, PlaneRange mine,
+    LayerWay(const FileJob& job, const Plate& plate, const Plan& plan, PlaneRange sliced, PlaneRange mine,
              const std::vector<bool>& supports, LayerTotals& totals, JobOutput& output)
-        : job_(job), supports_(supports), memories_(supports.size()), first_index_(plan.layers.front().index),
-          mine_(mine), totals_(totals), output_(output),
+        : job_(job), plate_(plate), supports_(supports), memories_(supports.size()),
+          first_index_(plan.layers.front().index), mine_(mine), totals_(totals), output_(output),
           window_(sliced, mine, job.scan ? job.scan->downskin.layers : 0,
                   job.scan ? job.scan->upskin.layers : 0,
                   [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {}
@@ -315,15 +337,30 @@ class LayerWay {
         }
         std::vector<Layer> made;
         LayerChanges changes;
-        if (job_.steps.any()) {
+        std::vector<Layer> filled; // parts and negative volumes
+        std::vector<Layer> material;
+        LayerSteps steps = job_.steps;
+        if (!plate_.negatives.empty()) {
             const Stopwatch stepping;
-            made = take_steps_on_plane(job_.steps, parts, changes);
+            LayerSteps first; // where each body has material
+            first.fill = std::exchange(steps.fill, FillRule::none);
+            filled = take_steps_on_plane(first, parts, changes);
+            material = without_negatives(filled, plate_);
+            parts = material;
+            count(stepping, step_nanoseconds_);
+        }
+        if (steps.any()) {
+            const Stopwatch stepping;
+            LayerChanges more;
+            made = take_steps_on_plane(steps, parts, more);
+            changes += more;
+            changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers);
             count(stepping, step_nanoseconds_);
             parts = made;
         }
         const auto plane = static_cast<std::uint32_t>(parts.front().index - first_index_);
         if (mine_.begin <= plane && plane < mine_.end)
-            totals_.add(parts, std::move(joins), changes);
+            totals_.add(parts, std::move(joins), changes, filled);
         std::function<void()> write = job_.scan ? window_(plane, parts) : output_.prepare(parts);
         if (!write)
             return {};
@@ -357,6 +394,7 @@ class LayerWay {
     }
 
     const FileJob& job_;
+    const Plate& plate_;
     const std::vector<bool>& supports_;
     std::vector<ScanMemory> memories_; ///< of each part
     std::uint64_t first_index_;
@@ -470,7 +508,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     for (const PlatePart& part : plate.parts)
         supports.push_back(part.support);
     LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), supports);
-    LayerWay way(job, plan, sliced_here, mine, supports, totals, output);
+    LayerWay way(job, plate, plan, sliced_here, mine, supports, totals, output);
     double slice_seconds = 0; // without waiting for others
     std::uint64_t shares_of_all = 0;
     {
@@ -520,11 +558,11 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     gather(processes, result.seconds, result.report);
     totals.gather(processes);
     totals.tell(result);
-    if (job.strict && result.report.open_chains > 0)
+    const std::uint64_t open_chains = std::max(result.report.open_chains, result.doubts.open_gaps.count);
+    if (job.strict && open_chains > 0)
         throw Error(ErrorKind::defect,
                     fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm",
-                                job.inputs.front().path, result.report.open_chains,
-                                result.doubts.open.first_z));
+                                job.inputs.front().path, open_chains, result.doubts.open.first_z));
     // Of a shard the others may have some.
     if (job.strict && !job.shard && result.changes && result.changes->changed_layers > 0 &&
         result.report.contours == 0)

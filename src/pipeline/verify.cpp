@@ -67,10 +67,10 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     for (const double tried : has_mitres ? limits_of_mitres(limit, options.granted()) : std::vector{limit}) {
         steps.offset_corners.mitre_limit = tried;
         const auto found = at_moved_cuts(layers, options.granted(), options.rule, [&](const Plan& plan) {
-            if (!steps.any())
+            if (!steps.any() && !options.subtracts())
                 return section_moments(*options.mesh, plan, origin, execution);
             std::vector<AreaMoments> made;
-            for (const Layer& layer : layers_of(*options.mesh, plan, steps, execution))
+            for (const Layer& layer : layers_of(options, plan, steps, execution))
                 made.push_back(area_moments(layer, origin));
             return made;
         });

@@ -534,7 +534,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
     std::vector<std::vector<Layer>> sections;
     if (options.mesh)
         sections = at_moved_cuts(planes, options.granted(), options.rule, [&](const Plan& plan) {
-            return layers_of(*options.mesh, plan, steps_to_repeat(options.steps), execution);
+            return layers_of(options, plan, steps_to_repeat(options.steps), execution);
         });
 
     double largest = 0;

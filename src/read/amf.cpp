@@ -6,6 +6,7 @@
 #include "core/lower_case.hpp"
 #include "read/amf_document.hpp"
 #include "read/assembly.hpp"
+#include "read/body_selection.hpp"
 #include "read/mesh_document.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
@@ -14,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -29,7 +31,7 @@ constexpr std::size_t longest_quote = 200;
 class AmfReader {
   public:
     AmfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
-        : name_(source.name), remarks_(source.name, options.strict), supports_(options.supports),
+        : name_(source.name), remarks_(source.name, options.strict), selection_(options.include),
           limits_(source.name, options), execution_(execution), executor_(execution) {
         source_ = is_zip(source.text()) ? unpacked(source, options) : source;
     }
@@ -85,14 +87,36 @@ class AmfReader {
         });
         progress.finish();
         AmfDocument* const document = &document_;
-        if (!read_skimmed_meshes(std::span(&document, 1), amf_text_form(), limits_, executor_).front())
+        if (read_skimmed_meshes(std::span(&document, 1), amf_text_form(), limits_, executor_).front())
+            count_triangles_of_volumes();
+        else
             document_ = parsed(false, [&](std::size_t) { executor_.check_cancelled(); });
         source_.bytes = {};
         source_.owner.reset();
     }
 
+    /// Volumes of meshes that were skimmed know their runs so far.
+    void count_triangles_of_volumes() {
+        for (AmfObject& object : document_.objects) {
+            if (has_parts_only(object))
+                continue;
+            std::vector<std::uint64_t> before{0}; // each run
+            for (const std::string_view run : object.text.triangles)
+                before.push_back(before.back() + elements_in(run, amf_text_form().triangle));
+            for (VolumeRange& volume : object.volumes) {
+                volume.begin = before.at(volume.begin);
+                volume.end = before.at(volume.end);
+            }
+        }
+    }
+
+    static bool has_parts_only(const AmfObject& object) {
+        return std::all_of(object.volumes.begin(), object.volumes.end(),
+                           [](const VolumeRange& volume) { return volume.role == MeshRole::part; });
+    }
+
     AmfDocument parsed(bool skim, const std::function<void(std::size_t)>& progress) {
-        return read_amf_document(source_.text(), source_.name, supports_, skim, limits_, progress);
+        return read_amf_document(source_.text(), source_.name, skim, limits_, progress);
     }
 
     /// Objects and constellations are nodes alike.
@@ -103,7 +127,7 @@ class AmfReader {
                 fmt::format("line {}: {} '{}'", item.line, what, printable(item.id, longest_quote));
             if (!known.emplace(item.id, nodes_.size()).second)
                 fail(fmt::format("{}: the id is there for the second time", place));
-            nodes_.push_back({item.name, {}, scaling(unit, unit, unit), {}, place});
+            nodes_.push_back({item.name, {}, scaling(unit, unit, unit), {}, place, false});
         };
         NodesById objects;
         for (const AmfObject& object : document_.objects)
@@ -135,12 +159,12 @@ class AmfReader {
                     ++not_printable_;
                     continue;
                 }
-                node.uses.push_back({target, placement(instance, unit), place});
+                node.uses.push_back({target, placement(instance, unit), place, MeshRole::part, {}});
             }
         }
         for (std::size_t i = 0; i < nodes_.size(); ++i)
             if (!used[i])
-                roots_.push_back({i, {}, nodes_[i].place});
+                roots_.push_back({i, {}, nodes_[i].place, MeshRole::part, {}});
         if (roots_.empty() && !nodes_.empty())
             fail("each constellation is a part of another, expected one that is not");
     }
@@ -170,14 +194,19 @@ class AmfReader {
         for (std::size_t i = 0; i < document_.objects.size(); ++i) {
             AmfObject& object = document_.objects[i];
             if (object.mesh.triangles.empty()) {
-                empty += object.left_out ? 0 : 1; // which is told below
+                ++empty;
                 continue;
             }
             degenerate += degenerate_triangles(object.mesh);
-            nodes_[i].object = file_.objects.size();
-            nodes_[i].support = !object.has_part;
-            file_.stored_triangles += object.mesh.triangles.size();
-            file_.objects.push_back({object.name, Mesh(std::move(object.mesh))});
+            if (has_parts_only(object))
+                object.volumes.clear(); // where each begins was not counted
+            nodes_[i].is_body = true;
+            for (RoleMesh& mesh : divided_by_role(std::move(object.mesh), object.volumes, object.name,
+                                                  selection_, file_.bodies, limits_)) {
+                nodes_[i].meshes.push_back({file_.objects.size(), mesh.role});
+                file_.stored_triangles += mesh.mesh.triangles.size();
+                file_.objects.push_back({object.name, Mesh(std::move(mesh.mesh))});
+            }
         }
         if (empty != 0)
             remarks_.add(counted(empty, "object has no triangle", "objects have no triangle"));
@@ -188,11 +217,7 @@ class AmfReader {
             remarks_.note(fmt::format("line {}: edges and normals bend triangles; they were passed over, as "
                                       "all {} of them, and triangles are flat",
                                       document_.bent.first, document_.bent.count));
-        if (document_.supports.count != 0)
-            remarks_.note(
-                fmt::format("line {}: {}", document_.supports.first,
-                            counted(document_.supports.count, "volume is a support; it was left out",
-                                    "volumes are supports; they were left out")));
+        selection_.report(remarks_);
         if (not_printable_ != 0)
             remarks_.note(counted(not_printable_, "instance is marked as not to be printed; it was left out",
                                   "instances are marked as not to be printed; they were left out"));
@@ -201,11 +226,13 @@ class AmfReader {
             fail("holds nothing to slice: no object with a triangle");
         if (file_.instances.empty())
             fail("holds nothing to slice: no instance leads to an object with a triangle");
+        if (all_negative(file_.instances))
+            fail("holds nothing to slice: nothing but negative volumes");
     }
 
     std::string name_;
     Remarks remarks_;
-    bool supports_;
+    BodySelection selection_;
     ReadLimits limits_;
     const Execution& execution_;
     Executor executor_;

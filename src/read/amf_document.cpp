@@ -7,6 +7,7 @@
 #include "read/mesh_document.hpp"
 #include "read/plain_elements.hpp"
 #include "read/read_limits.hpp"
+#include "read/slicer_config.hpp"
 
 #include <fmt/format.h>
 
@@ -113,8 +114,8 @@ struct AmfElement {
 
 class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
   public:
-    AmfDocumentReader(const std::string& name, bool supports, bool skim, ReadLimits& limits)
-        : MeshDocumentReader(name, "", skim, limits), supports_(supports) {}
+    AmfDocumentReader(const std::string& name, bool skim, ReadLimits& limits)
+        : MeshDocumentReader(name, "", skim, limits), skim_(skim) {}
 
     AmfDocument read(std::string_view text, const std::function<void(std::size_t)>& progress) {
         XmlHandlers handlers;
@@ -152,6 +153,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
              {Where::object, "metadata", &Self::start_metadata},
              {Where::mesh, "vertices", &Self::is<Where::vertices>},
              {Where::mesh, "volume", &Self::start_volume},
+             {Where::triangles, "metadata", &Self::start_metadata},
              {Where::constellation, "instance", &Self::start_instance},
              {Where::constellation, "metadata", &Self::start_metadata}});
         return all;
@@ -192,7 +194,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
 
     Where start_object(const AmfElement& element) {
         count(sizeof(AmfObject));
-        document().objects.push_back({required(element, "id"), {}, line(), false, false, false, {}, {}});
+        document().objects.push_back({required(element, "id"), {}, line(), false, {}, {}, {}});
         return Where::object;
     }
 
@@ -203,14 +205,18 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
     }
 
     Where start_volume(const AmfElement& element) {
-        const bool support = lower_case(element["type"]) == "support";
-        object().has_part = object().has_part || !support;
-        if (supports_ || !support)
-            return Where::triangles;
-        document().supports.note(line());
-        object().left_out = true;
-        return Where::elsewhere;
+        count(sizeof(VolumeRange));
+        const MeshRole role = lower_case(element["type"]) == "support" ? MeshRole::support : MeshRole::part;
+        object().volumes.push_back({triangles_of_object(), 0, role});
+        return Where::triangles;
     }
+
+    /// Triangles or runs of them, as `AmfObject::volumes` counts.
+    [[nodiscard]] std::uint64_t triangles_of_object() {
+        return skim_ ? object().text.triangles.size() : object().mesh.triangles.size();
+    }
+
+    void end_volume() { object().volumes.back().end = triangles_of_object(); }
 
     Where pass_over_bend(const AmfElement&) {
         document().bent.note(line());
@@ -254,6 +260,9 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
             break;
         case Where::metadata:
             end_metadata(trimmed(text_));
+            break;
+        case Where::triangles:
+            end_volume();
             break;
         case Where::vertex:
             if (std::exchange(seen_, 0) != all_three)
@@ -321,6 +330,16 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
             document().radians = document().radians || program.find("slic3r") != std::string::npos ||
                                  program.find("prusa") != std::string::npos;
         }
+        if (in() == Where::triangles) {
+            VolumeRange& volume = object().volumes.back();
+            if (kind_ == "name")
+                volume.name = printable(text, longest_label);
+            else if (kind_ == "slic3r.volume_type")
+                volume.role = slicer_role(text).value_or(volume.role);
+            else if (kind_ == "slic3r.modifier" && text == "1" && volume.role == MeshRole::part)
+                volume.role = MeshRole::modifier;
+            return;
+        }
         if (kind_ != "name")
             return;
         if (in() == Where::amf)
@@ -342,7 +361,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
 
     static constexpr unsigned all_three = 7;
 
-    bool supports_;
+    bool skim_;
     std::string kind_; ///< element of a number, or type of metadata
     std::string text_;
     unsigned seen_ = 0; ///< which coordinates or corners
@@ -356,9 +375,9 @@ const MeshTextForm& amf_text_form() noexcept {
     return text_form;
 }
 
-AmfDocument read_amf_document(std::string_view document, const std::string& name, bool supports, bool skim,
+AmfDocument read_amf_document(std::string_view document, const std::string& name, bool skim,
                               ReadLimits& limits, const std::function<void(std::size_t)>& progress) {
-    return AmfDocumentReader(name, supports, skim, limits).read(document, progress);
+    return AmfDocumentReader(name, skim, limits).read(document, progress);
 }
 
 } // namespace lamella

@@ -4,6 +4,7 @@
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
+#include "read/body_selection.hpp"
 #include "read/mesh_text.hpp"
 #include "read/remarks.hpp"
 
@@ -24,10 +25,11 @@ struct AmfObject {
     std::string name;
     std::size_t line = 0;
     bool has_mesh = false;
-    bool has_part = false; ///< a volume that is no support
-    bool left_out = false; ///< supports of it were
     IndexedMesh mesh;
     MeshText text;
+    /// Where any of them is not a part: of the mesh, or of the runs of triangles in `text`, while these are
+    /// not read.
+    std::vector<VolumeRange> volumes;
 };
 
 struct AmfInstance {
@@ -54,16 +56,15 @@ struct AmfDocument {
     bool radians = false;
     std::vector<AmfObject> objects;
     std::vector<AmfConstellation> constellations;
-    Occurrences bent;     ///< edges and normals
-    Occurrences supports; ///< volumes that were left out
+    Occurrences bent; ///< edges and normals
 };
 
-/// Reads a document, which errors call `name`. `supports`: take volumes of type support, too. `skim`: leave
-/// the vertices and triangles of meshes in `text`, unread, where they stand as plain runs; where others stand
-/// beside them that is Error{input}. Throws Error{input} with the line for what is no AMF, and Error{limit}
-/// for what is too much, as soon as it is; the limits count what is returned.
-[[nodiscard]] AmfDocument read_amf_document(std::string_view document, const std::string& name, bool supports,
-                                            bool skim, ReadLimits& limits,
+/// Reads a document, which errors call `name`. `skim`: leave the vertices and triangles of meshes in `text`,
+/// unread, where they stand as plain runs; where others stand beside them that is Error{input}. Throws
+/// Error{input} with the line for what is no AMF, and Error{limit} for what is too much, as soon as it is;
+/// the limits count what is returned.
+[[nodiscard]] AmfDocument read_amf_document(std::string_view document, const std::string& name, bool skim,
+                                            ReadLimits& limits,
                                             const std::function<void(std::size_t)>& progress);
 
 /// How meshes are written in documents.

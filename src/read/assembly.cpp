@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace lamella {
@@ -19,6 +20,7 @@ namespace {
 
 constexpr int deepest = 64;
 constexpr std::uint64_t most_instances = std::uint64_t{1} << 20;
+constexpr std::uint64_t instance_bytes = 1024; ///< with what the plate notes of it
 
 std::uint64_t sum(std::uint64_t a, std::uint64_t b) {
     return a > std::numeric_limits<std::uint64_t>::max() - b ? std::numeric_limits<std::uint64_t>::max()
@@ -44,13 +46,15 @@ class Placer {
                                     all.instances + 1 == 0 ? "more than " : "", all.instances,
                                     most_instances));
         limits_.check_triangles(all.triangles);
-        limits_.add_bytes(all.instances * sizeof(MeshInstance));
+        limits_.add_bytes_at(all.instances * instance_bytes, [&] {
+            return fmt::format("{} meshes that are put on the plate", all.instances);
+        });
         instances_.reserve(all.instances);
         reaches_.resize(objects_.size());
         for (const AssemblyNode& node : nodes_)
             filled_.push_back(filled(node.uses));
         for (const AssemblyUse* root : filled(roots))
-            put(*root, {}, "", false);
+            put(*root, {}, "", MeshRole::part, bodies_++);
         return std::move(instances_);
     }
 
@@ -80,10 +84,8 @@ class Placer {
             fail(node.place, fmt::format("is nested deeper than {}", deepest));
         known.state = State::open;
         Total result;
-        if (node.object) {
-            result.instances = 1;
-            result.triangles = objects_[*node.object].mesh.size();
-        }
+        for (const AssemblyMesh& mesh : node.meshes)
+            result.add({State::known, 1, objects_[mesh.object].mesh.size()});
         for (const AssemblyUse& use : node.uses)
             result.add(total(use.node, depth + 1));
         result.state = State::known;
@@ -101,22 +103,30 @@ class Placer {
     }
 
     // A node that was counted in one place may be used deeper down in another.
-    void put(const AssemblyUse& use, const Transform& outer, const std::string& name, bool in_support,
-             int depth = 0) {
+    void put(const AssemblyUse& use, const Transform& outer, const std::string& name, MeshRole outer_role,
+             std::uint64_t body, int depth = 0) {
         const AssemblyNode& node = nodes_[use.node];
         if (depth > deepest)
             fail(node.place, fmt::format("is nested deeper than {}", deepest));
         const Transform placement = compose(outer, use.placement);
         const std::string& nearest = node.name.empty() ? name : node.name;
-        const bool support = in_support || node.support;
-        if (node.object) {
+        const MeshRole role = use.role != MeshRole::part ? use.role : outer_role;
+        if (node.is_body)
+            body = bodies_++;
+        for (const AssemblyMesh& mesh : node.meshes) {
             executor_.check_cancelled();
-            MeshInstance instance{*node.object, compose(placement, node.unit), nearest, support};
+            const MeshRole its = mesh.role != MeshRole::part ? mesh.role : role;
+            MeshInstance instance{mesh.object,
+                                  compose(placement, node.unit),
+                                  nearest,
+                                  its == MeshRole::support,
+                                  its == MeshRole::negative,
+                                  body};
             check_reach(instance, use.place);
             instances_.push_back(std::move(instance));
         }
         for (const AssemblyUse* inner : filled_[use.node])
-            put(*inner, placement, nearest, support, depth + 1);
+            put(*inner, placement, nearest, role, body, depth + 1);
     }
 
     void check_reach(const MeshInstance& instance, const std::string& place) {
@@ -156,9 +166,14 @@ class Placer {
     std::vector<std::vector<const AssemblyUse*>> filled_; ///< of each node: the uses that lead to a mesh
     std::vector<std::optional<std::array<double, 3>>> reaches_; ///< largest coordinates of each mesh
     std::vector<MeshInstance> instances_;
+    std::uint64_t bodies_ = 0;
 };
 
 } // namespace
+
+bool all_negative(std::span<const MeshInstance> instances) {
+    return std::all_of(instances.begin(), instances.end(), std::mem_fn(&MeshInstance::negative));
+}
 
 std::vector<MeshInstance> place_meshes(const std::string& file_name, std::span<const AssemblyNode> nodes,
                                        std::span<const AssemblyUse> roots,

@@ -4,6 +4,7 @@
 
 #include "lamella/mesh/transform.hpp"
 #include "lamella/read/mesh_file.hpp"
+#include "lamella/read/mesh_role.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -22,20 +23,33 @@ struct AssemblyUse {
     std::size_t node = 0;
     Transform placement;
     std::string place; ///< of the use in the file, for errors
+    /// Of all that the node consists of, unless that says otherwise: part, support or negative.
+    MeshRole role = MeshRole::part;
+    std::string name; ///< of what is put there, instead of that of the node; "" for none
 };
 
-/// A mesh, or a list of uses of other nodes.
+/// A mesh of a node.
+struct AssemblyMesh {
+    std::size_t object = 0; ///< index of the mesh
+    MeshRole role = MeshRole::part;
+};
+
+/// Meshes, one for each role, or a list of uses of other nodes.
 struct AssemblyNode {
     std::string name;
-    std::optional<std::size_t> object; ///< index of the mesh
-    Transform unit;                    ///< from the mesh to millimetres
+    std::vector<AssemblyMesh> meshes;
+    Transform unit; ///< from the meshes to millimetres
     std::vector<AssemblyUse> uses;
-    std::string place;    ///< in the file, for errors
-    bool support = false; ///< and so is all that it consists of
+    std::string place; ///< in the file, for errors
+    /// Its negative volumes are subtracted from its own parts only, not from all of what a root places.
+    bool is_body = false;
 };
 
-/// One instance for each way from a root to a mesh, in the order of the file. Named after the mesh, or after
-/// the nearest one on the way that has a name.
+/// Whether there is nothing that they could be subtracted from.
+[[nodiscard]] bool all_negative(std::span<const MeshInstance> instances);
+
+/// One instance for each path from a root to a mesh, in the order of the file. Named after the mesh, or after
+/// the nearest one on the path that has a name.
 ///
 /// What is counted is counted before it is spent: a few lines can describe more instances than there are
 /// atoms. Throws Error{input} where a node contains itself, is nested deeper than 64, or a mesh lands where

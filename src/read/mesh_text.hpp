@@ -6,6 +6,7 @@
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -45,6 +46,12 @@ struct MeshTextKind {
     /// Reads a run of exactly these many elements, blanks between them; false when it is not plain.
     bool (*read)(std::string_view run, const MeshText& text, std::span<Item> items);
 };
+
+/// How many elements a run of plain ones has.
+template <class Item>
+[[nodiscard]] std::uint64_t elements_in(std::string_view run, const MeshTextKind<Item>& kind) {
+    return static_cast<std::uint64_t>(std::count(run.begin(), run.end(), '<')) / kind.marks;
+}
 
 using TriangleIndices = std::array<std::uint32_t, 3>;
 

@@ -3,11 +3,13 @@
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
 #include "read/assembly.hpp"
+#include "read/body_selection.hpp"
 #include "read/mesh_document.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/opc_package.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
+#include "read/slicer_config.hpp"
 #include "read/three_mf_model.hpp"
 #include "read/three_mf_terms.hpp"
 
@@ -205,7 +207,7 @@ class ThreeMfReader {
   public:
     ThreeMfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
         : package_(source, options.max_memory), remarks_(source.name, options.strict),
-          supports_(options.supports), limits_(source.name, options), executor_(execution),
+          selection_(options.include), limits_(source.name, options), executor_(execution),
           loader_(package_, remarks_, limits_, executor_, execution) {}
 
     MeshFile read() {
@@ -215,6 +217,7 @@ class ThreeMfReader {
         for (const PartLoader::Part& part : parts_)
             for (const std::string& remark : part.model.remarks)
                 remarks_.add(remark);
+        config_ = read_slicer_config(package_, remarks_, limits_, executor_);
         make_nodes();
         make_file();
         const ThreeMfModel& model = parts_.front().model;
@@ -235,7 +238,6 @@ class ThreeMfReader {
                 const double unit = parts_[i].model.unit_mm;
                 AssemblyNode node;
                 node.name = sources_.back()->name;
-                node.support = sources_.back()->type == ThreeMfObjectType::support;
                 node.unit = scaling(unit, unit, unit);
                 node.place = place(parts_[i].model, sources_.back()->line,
                                    fmt::format("object {}", sources_.back()->id));
@@ -252,23 +254,30 @@ class ThreeMfReader {
                                         target == part
                                             ? ""
                                             : fmt::format(" in '{}'", printable(use.part, longest_name))));
-            return AssemblyUse{node->second, use.placement, place(model, use.line, "this use")};
+            return AssemblyUse{node->second,
+                               use.placement,
+                               place(model, use.line, "this use"),
+                               sources_[node->second]->role,
+                               {}};
         };
         std::size_t node = 0;
         for (std::size_t i = 0; i < parts_.size(); ++i)
-            for (const ThreeMfObject& object : parts_[i].model.objects) {
+            for (ThreeMfObject& object : parts_[i].model.objects) {
                 for (const ThreeMfUse& component : object.components)
                     nodes_[node].uses.push_back(make_use(i, component));
+                if (const auto known = config_.find(object.id); i == 0 && known != config_.end())
+                    configure(object, nodes_[node], known->second);
+                nodes_[node].is_body = nodes_[node].is_body || !object.volumes.empty();
                 ++node;
             }
         for (const ThreeMfUse& item : parts_[0].model.items) {
             AssemblyUse use = make_use(0, item);
             const ThreeMfObject& object = *sources_[use.node];
-            if (object.type == ThreeMfObjectType::other)
+            if (use.role == MeshRole::other && !selection_.takes(use.role))
                 throw Error(
                     ErrorKind::input,
                     fmt::format("{}, line {}: the build holds object {}, whose type 'other' says that it "
-                                "is not to be made",
+                                "is not to be made; include other to read it as a solid",
                                 parts_[0].model.source, item.line, object.id));
             if (item.printable)
                 roots_.push_back(std::move(use));
@@ -277,16 +286,28 @@ class ThreeMfReader {
         }
     }
 
+    /// What a slicer says of the volumes or the components of an object. Ids of components may repeat.
+    static void configure(ThreeMfObject& object, AssemblyNode& node, SlicerObject& known) {
+        for (VolumeRange& volume : known.volumes)
+            object.volumes.push_back(std::move(volume));
+        std::vector<bool> used(known.parts.size());
+        for (std::size_t i = 0; i < node.uses.size(); ++i)
+            for (std::size_t k = 0; k < known.parts.size(); ++k) {
+                if (used[k] || known.parts[k].object != object.components[i].object)
+                    continue;
+                used[k] = true;
+                node.uses[i].role = known.parts[k].role;
+                node.is_body = true;
+                node.uses[i].name = std::move(known.parts[k].name);
+                break;
+            }
+    }
+
     static std::string place(const ThreeMfModel& model, std::size_t line, std::string_view what) {
         return fmt::format("part '{}', line {}: {}", printable(model.part, longest_name), line, what);
     }
 
-    [[nodiscard]] bool is_taken(ThreeMfObjectType type) const {
-        return type == ThreeMfObjectType::model || type == ThreeMfObjectType::solid_support ||
-               (supports_ && type == ThreeMfObjectType::support);
-    }
-
-    /// Those nodes, and what those that are taken consist of.
+    /// Those nodes, and all that they consist of.
     [[nodiscard]] std::vector<bool> reached_from(std::vector<std::size_t> open) const {
         std::vector<bool> reached(nodes_.size());
         while (!open.empty()) {
@@ -295,11 +316,67 @@ class ThreeMfReader {
             if (reached[node])
                 continue;
             reached[node] = true;
-            if (is_taken(sources_[node]->type))
-                for (const AssemblyUse& use : nodes_[node].uses)
-                    open.push_back(use.node);
+            for (const AssemblyUse& use : nodes_[node].uses)
+                open.push_back(use.node);
         }
         return reached;
+    }
+
+    /// Leaves out uses of bodies that are not read. What uses have the same node and role are one body.
+    void select(std::vector<AssemblyUse>& uses) {
+        std::erase_if(uses, [&](const AssemblyUse& use) {
+            if (selection_.takes(use.role))
+                return false;
+            if (left_out_.emplace(use.node, use.role).second) {
+                const ThreeMfObject& object = *sources_[use.node];
+                const std::string& name = use.name.empty() ? object.name : use.name;
+                selection_.leave_out(use.role, name);
+                file_.bodies.push_back({name, use.role, object.mesh.triangles.size(), true});
+            }
+            return true;
+        });
+    }
+
+    /// Leaves out uses, and finds with which roles each node is used then.
+    [[nodiscard]] std::vector<std::set<MeshRole>> selected() {
+        std::vector<std::set<MeshRole>> roles(nodes_.size());
+        std::vector<std::pair<std::size_t, MeshRole>> open;
+        const auto follow = [&](std::vector<AssemblyUse>& uses, MeshRole outer) {
+            select(uses);
+            for (const AssemblyUse& use : uses)
+                open.emplace_back(use.node, use.role != MeshRole::part ? use.role : outer);
+        };
+        follow(roots_, MeshRole::part);
+        while (!open.empty()) {
+            const auto [node, role] = open.back();
+            open.pop_back();
+            if (roles[node].insert(role).second)
+                follow(nodes_[node].uses, role);
+        }
+        const auto take = [&](std::vector<AssemblyUse>& uses) {
+            for (AssemblyUse& use : uses)
+                use.role = selection_.taken_as(use.role);
+        };
+        take(roots_);
+        for (AssemblyNode& node : nodes_)
+            take(node.uses);
+        return roles;
+    }
+
+    /// The meshes of an object, by their roles. `used`: the roles with which the object is used.
+    void add_meshes(AssemblyNode& node, ThreeMfObject& source, const std::set<MeshRole>& used) {
+        std::vector<MeshBody> bodies;
+        for (RoleMesh& mesh : divided_by_role(std::move(source.mesh), source.volumes, source.name, selection_,
+                                              bodies, limits_)) {
+            node.meshes.push_back({file_.objects.size(), mesh.role});
+            file_.stored_triangles += mesh.mesh.triangles.size();
+            file_.objects.push_back({source.name, Mesh(std::move(mesh.mesh))});
+        }
+        for (const MeshRole role : used)
+            for (MeshBody body : bodies) {
+                body.role = body.role == MeshRole::part ? role : body.role;
+                file_.bodies.push_back(std::move(body));
+            }
     }
 
     /// The meshes that the build reaches, and where they stand.
@@ -309,33 +386,32 @@ class ThreeMfReader {
         std::vector<std::size_t> printed;
         for (const AssemblyUse& root : roots_)
             printed.push_back(root.node);
-        const std::vector<bool> reached = reached_from(std::move(printed));
+        const std::vector<bool> in_build = reached_from(std::move(printed));
         const std::vector<bool> kept_back = reached_from(not_printed_);
-        std::size_t not_taken = 0;
+        const std::vector<std::set<MeshRole>> roles = selected();
         std::size_t empty = 0;
         std::size_t unused = 0;
         std::size_t degenerate = 0;
         for (std::size_t node = 0; node < nodes_.size(); ++node) {
-            if (!reached[node]) {
-                unused += kept_back[node] ? 0 : 1;
+            if (roles[node].empty()) {
+                unused += in_build[node] || kept_back[node] ? 0 : 1;
                 continue;
             }
             ThreeMfObject& source = *sources_[node];
-            if (!is_taken(source.type)) {
-                nodes_[node].uses.clear();
-                ++not_taken;
-                continue;
-            }
             if (!source.is_mesh)
                 continue;
+            if (source.is_coarse)
+                throw Error(
+                    ErrorKind::input,
+                    fmt::format("{}, {}: its mesh is of low resolution and only stands in for its slices; "
+                                "slices are layers already: view, convert or verify them as they are",
+                                package_.name(), nodes_[node].place));
             if (source.mesh.triangles.empty()) {
                 ++empty;
                 continue;
             }
             degenerate += degenerate_triangles(source.mesh);
-            nodes_[node].object = file_.objects.size();
-            file_.stored_triangles += source.mesh.triangles.size();
-            file_.objects.push_back({source.name, Mesh(std::move(source.mesh))});
+            add_meshes(nodes_[node], source, roles[node]);
         }
         if (empty != 0)
             remarks_.add(counted(empty, "object has a mesh without triangles",
@@ -344,25 +420,26 @@ class ThreeMfReader {
             remarks_.add(counted(degenerate, "triangle uses a vertex twice; it bounds nothing",
                                  "triangles use a vertex twice; they bound nothing"));
         // These break no rule, and stop no strict caller.
+        selection_.report(remarks_);
         const auto note_count = [&](std::size_t count, std::string_view thing, std::string_view what) {
             if (count == 1)
                 remarks_.note(fmt::format("1 {} is {}; it was left out", thing, what));
             else if (count != 0)
                 remarks_.note(fmt::format("{} {}s are {}; they were left out", count, thing, what));
         };
-        note_count(not_taken, "object",
-                   fmt::format("of type {}surface, which is no solid", supports_ ? "" : "support or "));
         note_count(not_printed_.size(), "item", "marked in the build as not to be printed");
         note_count(unused, "object", "not in the build");
         file_.instances = place_meshes(package_.name(), nodes_, roots_, file_.objects, limits_, executor_);
         if (file_.objects.empty())
             refuse_package(package_,
                            "holds nothing to slice: no item of its build leads to a mesh that is a solid");
+        if (all_negative(file_.instances))
+            refuse_package(package_, "holds nothing to slice: nothing but negative volumes");
     }
 
     ZipReader package_;
     Remarks remarks_;
-    bool supports_;
+    BodySelection selection_;
     ReadLimits limits_;
     Executor executor_;
     PartLoader loader_;
@@ -370,7 +447,9 @@ class ThreeMfReader {
     std::vector<AssemblyNode> nodes_;
     std::vector<ThreeMfObject*> sources_; ///< of each node
     std::vector<AssemblyUse> roots_;
-    std::vector<std::size_t> not_printed_; ///< nodes of items that are not to be
+    SlicerConfig config_;
+    std::set<std::pair<std::size_t, MeshRole>> left_out_; ///< nodes
+    std::vector<std::size_t> not_printed_;                ///< nodes of items that are not to be
     MeshFile file_;
 };
 

@@ -4,6 +4,7 @@
 
 #include "container/text_place.hpp"
 #include "container/xml.hpp"
+#include "core/lower_case.hpp"
 #include "read/decimal_text.hpp"
 #include "read/mesh_document.hpp"
 #include "read/plain_elements.hpp"
@@ -14,6 +15,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -31,6 +33,7 @@ constexpr std::uint32_t largest_id = 0x7FFFFFFF;
 constexpr std::size_t longest_object_name = 200;
 constexpr std::size_t longest_model_title = 1000;
 constexpr std::size_t most_remarks = 50;
+constexpr std::size_t longest_setting = 100; ///< that anybody reads
 
 /// An <object> without what is in it.
 ThreeMfObject object_of(const ThreeMfElement& element) {
@@ -39,7 +42,27 @@ ThreeMfObject object_of(const ThreeMfElement& element) {
     object.line = element.line;
     object.name = printable(element["name"].text, longest_object_name);
     object.type = element.object_type();
+    object.role = role_of(object.type);
+    object.is_coarse = element[XmlName{three_mf::slices, "meshresolution"}].text == "lowres";
     return object;
+}
+
+/// Settings of Cura that say what a body is for, where they are true.
+constexpr std::array<std::pair<std::string_view, MeshRole>, 4> cura_roles = {{
+    {"anti_overhang_mesh", MeshRole::support_blocker},
+    {"support_mesh", MeshRole::support},
+    {"infill_mesh", MeshRole::modifier},
+    {"cutting_mesh", MeshRole::modifier},
+}};
+
+/// "cura:support_mesh" without what comes before the colon.
+std::string_view local_name(std::string_view name) {
+    return name.substr(name.find(':') + 1);
+}
+
+bool says_true(std::string_view text) {
+    const std::string word = lower_case(text);
+    return word == "true" || word == "1";
 }
 
 TriangleIndices triangle_of(const ThreeMfElement& element, std::size_t vertices) {
@@ -59,14 +82,15 @@ class ResourceIds {
   public:
     /// That of a resource, unless it has none. `remark` gets what is odd about it.
     template <class Remark>
-    std::optional<std::uint32_t> take(const ThreeMfElement& element, const Remark& remark) {
+    std::optional<std::uint32_t> take(const ThreeMfElement& element, std::uint32_t smallest_id,
+                                      const Remark& remark) {
         const bool is_object = element.name == XmlName{three_mf::core, "object"};
         const ThreeMfValue value = element["id"];
         if (!value.is_there && !is_object)
             return std::nullopt;
         const std::uint32_t id = value.index();
-        if (id == 0 || id > largest_id)
-            element.fail(fmt::format("id {}", id), fmt::format("1 to {}", largest_id));
+        if (id < smallest_id || id > largest_id)
+            element.fail(fmt::format("id {}", id), fmt::format("{} to {}", smallest_id, largest_id));
         const auto [other, is_new] = ids_.emplace(id, is_object);
         if (is_new)
             return id;
@@ -88,6 +112,9 @@ enum class ModelPlace {
     title,
     resources,
     object,
+    settings, ///< of an object
+    setting,
+    slic3r_volumes, ///< of a mesh
     mesh,
     vertices,
     triangles,
@@ -113,6 +140,8 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
         handlers.text = [&](std::string_view piece) {
             if (in() == Where::title && model.title.size() < longest_model_title)
                 model.title += piece;
+            else if (in() == Where::setting && setting_value_.size() < longest_setting)
+                setting_value_ += piece;
         };
         handlers.declare = [this](std::string_view prefix, std::string_view space) {
             if (in() == Where::outside)
@@ -149,7 +178,8 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
              {Where::resources, "basematerials", &Self::pass_over},
              {Where::object, "mesh", &Self::start_mesh},
              {Where::object, "components", &Self::start_components},
-             {Where::object, "metadatagroup", &Self::pass_over},
+             {Where::object, "metadatagroup", &Self::is<Where::settings>},
+             {Where::settings, "metadata", &Self::start_setting},
              {Where::mesh, "vertices", &Self::once<Where::vertices>},
              {Where::mesh, "triangles", &Self::start_triangles},
              {Where::components, "component", &Self::add_component},
@@ -171,12 +201,12 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
         std::optional<std::uint32_t> id;
         if (in() == Where::resources) {
             count(node_bytes);
-            id = ids_.take(element, [this](const std::string& what) { remark(what); });
+            id = ids_.take(element, is_beta_ ? 0 : 1, [this](const std::string& what) { remark(what); });
         }
         if (in() == Where::resources || in() == Where::elsewhere)
             if (const auto wrong = properties_.check(element.name, element.attributes, id))
                 remark(*wrong);
-        if (in() == Where::elsewhere || in() == Where::title)
+        if (in() == Where::elsewhere || in() == Where::title || in() == Where::setting)
             return Where::elsewhere;
         if (element.name == XmlName{three_mf::beams, "beamlattice"} && in() == Where::mesh) {
             if (required_.contains(std::string(three_mf::beams)))
@@ -184,7 +214,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
             remark("found a beam lattice; its beams were left out");
         }
         if (element.name.space != three_mf::core)
-            return Where::elsewhere;
+            return start_foreign(element);
         if (const Step step = step_for(rules(), in(), element.name.local))
             return (this->*step)(element);
         remark(fmt::format("found <{}>, which has no business here; it was passed over",
@@ -192,7 +222,45 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
         return Where::elsewhere;
     }
 
+    /// What programs add to the format.
+    Where start_foreign(const ThreeMfElement& element) {
+        const std::string_view space = element.name.space;
+        const std::string_view name = element.name.local;
+        if (space == three_mf::cura && in() == Where::object && name == "settings")
+            return Where::settings;
+        if (space == three_mf::cura && in() == Where::settings && name == "setting")
+            return start_setting(element);
+        if (space.starts_with(three_mf::slic3r) && in() == Where::mesh && name == "volumes")
+            return Where::slic3r_volumes;
+        if (space.starts_with(three_mf::slic3r) && in() == Where::slic3r_volumes && name == "volume")
+            add_volume(element);
+        return Where::elsewhere;
+    }
+
+    template <ModelPlace what>
+    Where is(const ThreeMfElement&) {
+        return what;
+    }
+
+    Where start_setting(const ThreeMfElement& element) {
+        setting_ = local_name(element["name"].is_there ? element["name"].text : element["key"].text);
+        setting_value_.clear();
+        return Where::setting;
+    }
+
+    void add_volume(const ThreeMfElement& element) {
+        count(sizeof(VolumeRange));
+        const std::uint64_t begin = element["ts"].index();
+        object().volumes.push_back({begin,
+                                    std::max<std::uint64_t>(begin, element["te"].index() + std::uint64_t{1}),
+                                    element["modifier"].text == "1" ? MeshRole::modifier : MeshRole::part});
+    }
+
     void end(Where ended) override {
+        if (ended == Where::setting && says_true(trimmed(setting_value_)))
+            for (const auto& [name, role] : cura_roles)
+                if (name == setting_)
+                    object().role = role;
         if (ended == Where::object && !object().is_mesh && object().components.empty())
             fail(fmt::format("found object {} with neither a mesh nor components", object().id));
     }
@@ -248,10 +316,6 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
         document().objects.push_back(object_of(element));
         if (element["pindex"].is_there && !element["pid"].is_there)
             remark("found pindex without pid");
-        if (element[XmlName{three_mf::slices, "meshresolution"}].text == "lowres")
-            remark(fmt::format("object {} is meant to be taken from its slices; its mesh is only a coarse "
-                               "stand-in",
-                               object().id));
         seen_.erase(Where::vertices);
         seen_.erase(Where::triangles);
         return Where::object;
@@ -311,6 +375,8 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
 
     bool is_root_;
     bool is_beta_ = false;
+    std::string setting_; ///< its name, and what it is set to so far
+    std::string setting_value_;
     std::set<Where> seen_; ///< of those that must not come twice; vertices and triangles: in this object
     std::map<std::string, std::string> spaces_; ///< prefixes that the root element declares
     std::set<std::string> required_;
@@ -353,6 +419,21 @@ bool read_model_triangles(std::string_view run, const MeshText& text, std::span<
 }
 
 } // namespace
+
+MeshRole role_of(ThreeMfObjectType type) noexcept {
+    switch (type) {
+    case ThreeMfObjectType::support:
+        return MeshRole::support;
+    case ThreeMfObjectType::surface:
+        return MeshRole::surface;
+    case ThreeMfObjectType::other:
+        return MeshRole::other;
+    case ThreeMfObjectType::model:
+    case ThreeMfObjectType::solid_support:
+        break;
+    }
+    return MeshRole::part;
+}
 
 ThreeMfModel read_three_mf_model(const ByteSource& source, const std::string& part, bool is_root, bool skim,
                                  ReadLimits& limits, const std::function<void(std::size_t)>& progress) {

@@ -5,6 +5,7 @@
 #include "lamella/mesh/indexed_mesh.hpp"
 
 #include "core/byte_source.hpp"
+#include "read/body_selection.hpp"
 #include "read/mesh_text.hpp"
 #include "read/three_mf_part.hpp"
 
@@ -16,13 +17,20 @@
 
 namespace lamella {
 
+/// What objects of a type are.
+[[nodiscard]] MeshRole role_of(ThreeMfObjectType type) noexcept;
+
 struct ThreeMfObject {
     std::uint32_t id = 0;
     std::string name;
     ThreeMfObjectType type = ThreeMfObjectType::model;
     std::size_t line = 0;
-    bool is_mesh = false; ///< else it consists of components
-    IndexedMesh mesh;     ///< in the unit of the part; where `text` was not read by the parser, empty yet
+    /// By its type or by settings of Cura.
+    MeshRole role = MeshRole::part;
+    bool is_mesh = false;             ///< else it consists of components
+    bool is_coarse = false;           ///< its mesh only stands in for its slices
+    std::vector<VolumeRange> volumes; ///< of its mesh, where Slic3r says such
+    IndexedMesh mesh; ///< in the unit of the part; where `text` was not read by the parser, empty yet
     MeshText text;
     std::vector<ThreeMfUse> components;
 };

@@ -13,6 +13,10 @@ inline constexpr std::string_view production =
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
 inline constexpr std::string_view slices = "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07";
 inline constexpr std::string_view beams = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
+/// Settings of objects, in files of Cura.
+inline constexpr std::string_view cura = "http://software.ultimaker.com/xml/cura/3mf/2015/10";
+/// How the namespace begins in which Slic3r 1.3 writes volumes.
+inline constexpr std::string_view slic3r = "http://schemas.slic3r.org/3mf/";
 inline constexpr std::string_view materials = "http://schemas.microsoft.com/3dmanufacturing/material/2015/02";
 
 /// Of the relationship by which a package names its model.

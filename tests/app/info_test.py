@@ -36,7 +36,7 @@ class Info(ProgramTest):
                                f"<volume type='support'>{support}</volume></mesh></object></amf>")
         include = ["--include", "support"]
         self.assertEqual(self.info("part.amf")["triangles"], 4)
-        self.assertIn("1 volume is a support", self.succeed("info", "part.amf").err)
+        self.assertIn("1 body was left out as no material: 1 support; include support", self.succeed("info", "part.amf").err)
         self.assertEqual(self.info("part.amf", *include)["triangles"], 8)
         self.assertEqual(self.succeed("info", "part.amf", *include).err, "")
         for words, triangles in ([], 4), (include, 8):
@@ -44,7 +44,7 @@ class Info(ProgramTest):
             self.assertEqual(stats["input"]["triangles"], triangles)
             self.succeed("verify", "part.cli", "--mesh", "part.amf", *words)
         self.succeed("view", "part.amf", "-o", "part.html", *include)
-        self.fail_with(2, "--include.*surface.*support", "info", "part.amf", "--include", "surface")
+        self.fail_with(2, "--include.*'thing', expected one of support", "info", "part.amf", "--include", "thing")
 
     def test_the_text_names_what_matters(self):
         text = self.succeed("info", self.box()).text

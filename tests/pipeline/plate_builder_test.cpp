@@ -131,6 +131,27 @@ TEST(PlateBuilder, TellsSupportsByWhatTheFileMarksAndWhatIsSaidOfIt) {
     EXPECT_EQ(supports_of({.path = "a.3mf", .support = true}), (std::vector<bool>{true, true}));
 }
 
+TEST(PlateBuilder, NegativeVolumesAreSubtractedFromTheirOwnObjectAndAreNoParts) {
+    const MeshFile file = boxes({{.body = 0},
+                                 {.placement = translation(0, 0, 100), .negative = true, .body = 0},
+                                 {.placement = translation(50, 0, 0), .body = 1}});
+    const Plate one = plate_of({.path = "a.3mf"}, file);
+    ASSERT_EQ(one.parts.size(), 2U);
+    ASSERT_EQ(one.negatives.size(), 1U);
+    EXPECT_EQ(one.negatives[0].parts, std::vector<std::size_t>{0});
+    EXPECT_LT(one.box.max.z, 100);
+    EXPECT_GE(one.negatives[0].box.max.z, 100);
+    const Plate copies = plate_of({.path = "a.3mf", .copies = 3}, file);
+    ASSERT_EQ(copies.parts.size(), 6U);
+    ASSERT_EQ(copies.negatives.size(), 3U);
+    for (std::size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(copies.negatives[i].parts, std::vector<std::size_t>{2 * i});
+        EXPECT_EQ(copies.negatives[i].shape, copies.negatives[0].shape);
+        EXPECT_EQ(copies.negatives[i].dx, copies.parts[2 * i].dx);
+        EXPECT_EQ(copies.negatives[i].dy, copies.parts[2 * i].dy);
+    }
+}
+
 TEST(PlateBuilder, KeepsEqualMeshesOfTwoFilesApart) {
     const Plate plate =
         plate_of(std::vector<PlateInput>{{.path = "a.stl"}, {.path = "b.stl"}}, {boxes(), boxes()});

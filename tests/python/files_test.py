@@ -479,9 +479,49 @@ def test_supports_are_read_where_they_are_asked_for(tmp_path):
         f"<amf><object id='0'><mesh><vertices>{vertices}</vertices><volume{volume}</volume>"
         f"<volume type='support'{volume}</volume></mesh></object></amf>"
     )
-    with pytest.warns(lamella.DefectWarning, match="1 volume is a support"):
+    with pytest.warns(lamella.DefectWarning, match="1 body was left out as no material: 1 support"):
         assert len(lamella.read(path)) == 4
-    assert len(lamella.read(path, supports=True)) == 8
+    assert len(lamella.read(path, include="support")) == 8
+    assert len(lamella.read(path, include=["modifier", "support"])) == 8
+    with pytest.raises(lamella.UsageError, match="expected one of support, negative"):
+        lamella.read(path, include="thing")
+    with pytest.raises(lamella.UsageError, match="include: expected a word or several"):
+        lamella.read(path, include=3)
+
+
+def test_negative_volumes_are_subtracted_however_a_mesh_is_sliced(tmp_path):
+    def tetrahedra(size, at):
+        corners = [(0, 0, 0), (size, 0, 0), (0, size, 0), (0, 0, size)]
+        return "".join(
+            f"<vertex><coordinates><x>{x + at}</x><y>{y + at}</y><z>{z}</z></coordinates></vertex>" for x, y, z in corners
+        )
+
+    def volume(first, mark):
+        faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+        return f"<volume><metadata type='slic3r.volume_type'>{mark}</metadata>" + "".join(
+            f"<triangle><v1>{a + first}</v1><v2>{b + first}</v2><v3>{c + first}</v3></triangle>" for a, b, c in faces
+        ) + "</volume>"
+
+    path = tmp_path / "part.amf"
+    path.write_text(
+        f"<amf><object id='0'><mesh><vertices>{tetrahedra(10, 0)}{tetrahedra(4, 1)}</vertices>"
+        f"{volume(0, 'ModelPart')}{volume(4, 'NegativeVolume')}</mesh></object></amf>"
+    )
+    mesh = lamella.read(path)
+    stack = lamella.slice(mesh, 1)
+    assert len(mesh) == 4
+    area = stack[0].area
+    assert area == pytest.approx(9.5**2 / 2 - 3.5**2 / 2)
+    assert [layer.area for layer in lamella.iter_layers(mesh, 1)] == [layer.area for layer in stack]
+    moved = [[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    assert lamella.slice(mesh, 1, transform=moved)[0].area == pytest.approx(area)
+    with pytest.warns(lamella.DefectWarning, match="its negative volumes are not subtracted"):
+        lamella.write(tmp_path / "part.obj", mesh)
+    assert lamella.verify(stack, mesh).ok
+    solid = lamella.read(path, include=["negative"])
+    assert not lamella.verify(stack, solid).ok
+    with pytest.raises(lamella.UsageError, match="cannot be pickled"):
+        pickle.dumps(mesh)
 
 
 def test_names_that_are_no_text_work(rook, tmp_path):

@@ -147,19 +147,58 @@ TEST(Amf, VolumesOfAnObjectAreOneMeshAndSupportsAreLeftOut) {
     EXPECT_EQ(file.objects.size(), 1U);
     EXPECT_EQ(file.stored_triangles, 5U);
     EXPECT_TRUE(file.warnings.empty());
-    const MeshFile without =
-        read(amf(replaced(two, "materialid=\"2\"", "type=\"support\"")), {.strict = true});
+    const std::string support = replaced(two, "materialid=\"2\"", "type=\"support\"");
+    const MeshFile without = read(amf(support), {.strict = true});
     EXPECT_EQ(without.stored_triangles, 4U);
-    EXPECT_TRUE(says(without.warnings.at(0), "1 volume is a support; it was left out"));
-    const MeshFile with =
-        read(amf(replaced(two, "materialid=\"2\"", "type=\"support\"")), {.supports = true});
+    EXPECT_EQ(without.warnings.at(0),
+              "1 body was left out as no material: 1 support (\"x\"); include support to read it as a solid");
+    const MeshFile with = read(amf(support), {.include = {MeshRole::support}});
     EXPECT_EQ(with.stored_triangles, 5U);
     EXPECT_TRUE(with.warnings.empty());
-    EXPECT_FALSE(with.instances.at(0).support); // with both, it is a part
-    EXPECT_TRUE(
-        read(amf(replaced(amf_object("0"), "<volume", "<volume type=\"support\"")), {.supports = true})
-            .instances.at(0)
-            .support);
+    ASSERT_EQ(with.instances.size(), 2U);
+    EXPECT_FALSE(with.instances[0].support);
+    EXPECT_TRUE(with.instances[1].support);
+}
+
+TEST(Amf, VolumesThatSlic3rMarksAsNoMaterialAreNone) {
+    const auto marked = [](std::string_view type, std::string_view value, bool behind = false) {
+        const std::string mark = fmt::format("<metadata type=\"{}\">{}</metadata>", type, value);
+        const std::string triangle = "<triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>";
+        return amf(
+            replaced(amf_object("0"), "</volume>",
+                     "</volume><volume>" + (behind ? triangle + mark : mark + triangle) + "</volume>"));
+    };
+    for (const bool behind : {false, true}) {
+        for (const auto& [type, value, role] :
+             {std::tuple("slic3r.modifier", "1", MeshRole::modifier),
+              {"slic3r.volume_type", "ParameterModifier", MeshRole::modifier},
+              {"slic3r.volume_type", "SupportBlocker", MeshRole::support_blocker},
+              {"slic3r.volume_type", "SupportEnforcer", MeshRole::support_enforcer}}) {
+            const MeshFile file = read(marked(type, value, behind), {.strict = true});
+            EXPECT_EQ(file.stored_triangles, 4U);
+            EXPECT_TRUE(says(file.warnings.at(0), row_of(role).name));
+            ASSERT_EQ(file.bodies.size(), 2U);
+            EXPECT_EQ(file.bodies[1].role, role);
+            EXPECT_EQ(read(marked(type, value, behind), {.include = {role}}).stored_triangles, 5U);
+        }
+        const MeshFile negative = read(marked("slic3r.volume_type", "NegativeVolume", behind));
+        ASSERT_EQ(negative.instances.size(), 2U);
+        EXPECT_FALSE(negative.instances[0].negative);
+        EXPECT_TRUE(negative.instances[1].negative);
+        EXPECT_EQ(negative.instances[0].body, negative.instances[1].body);
+        EXPECT_TRUE(negative.warnings.empty());
+        EXPECT_EQ(read(marked("slic3r.volume_type", "ModelPart", behind)).stored_triangles, 5U);
+    }
+}
+
+TEST(Amf, InstancesAreCountedBeforeMemoryIsTaken) {
+    std::string text = amf_object("0") + constellation("c0", instance("0") + instance("0"));
+    for (int i = 1; i < 16; ++i) {
+        const std::string inner = instance(fmt::format("c{}", i - 1));
+        text += constellation(fmt::format("c{}", i), inner + inner);
+    }
+    EXPECT_TRUE(says(error_of(amf(text), ErrorKind::limit, {.max_memory = 50'000'000}),
+                     "65536 meshes that are put on the plate"));
 }
 
 TEST(Amf, AnObjectOfSupportsOnlyStopsNoStrictCaller) {

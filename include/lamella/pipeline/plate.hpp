@@ -7,6 +7,8 @@
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/read/mesh_file.hpp"
+#include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -50,6 +52,15 @@ struct PlatePart {
     bool support = false; ///< of scan vectors: exposed as such; all else treats it as a part
 };
 
+/// A volume that is subtracted from parts: a file marks it as negative in their object.
+struct PlateNegative {
+    std::size_t shape = 0;
+    double dx = 0; ///< mm; added to the layers of the shape
+    double dy = 0;
+    Box3 box;
+    std::vector<std::size_t> parts; ///< from which it is subtracted
+};
+
 /// What became of an input file.
 struct PlateFile {
     std::string path;
@@ -58,13 +69,15 @@ struct PlateFile {
     Transform matrix; ///< from the file's coordinates (build items not counted) to the plate's
     std::uint64_t stored_triangles = 0;
     std::vector<std::string> warnings;
+    std::vector<MeshBody> bodies; ///< MeshFile::bodies
 };
 
 struct Plate {
     std::vector<PlateFile> files; ///< one for each input
     std::vector<PlateShape> shapes;
     std::vector<PlatePart> parts; ///< in the order of inputs, of their instances, of copies
-    Box3 box;                     ///< of all parts
+    std::vector<PlateNegative> negatives;
+    Box3 box; ///< of all parts
 };
 
 /// Reads all inputs. Instances of one mesh that differ in x and y only share a shape: they are sliced once.
@@ -76,8 +89,20 @@ struct Plate {
 /// The same for one input whose file has been read already.
 [[nodiscard]] Plate load_plate(const PlateInput& input, MeshFile file, const Execution& execution = {});
 
-/// All parts as one mesh (see `joined` of meshes).
+/// All parts as one mesh (see `joined` of meshes), without negative volumes.
 [[nodiscard]] Mesh joined(const Plate& plate, const Execution& execution = {});
+
+/// Throws Error{limit} that counts parts and triangles, where so many bytes for each triangle of all parts
+/// are more than `max_memory` (0: three quarters of the memory there is): before they are joined, and looked
+/// at.
+void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uint64_t max_memory);
+
+/// The layers of all parts together, which negative volumes are subtracted from: as `slice` and `slice_to` of
+/// a mesh.
+[[nodiscard]] LayerStack slice(const Plate& plate, const Plan& plan, const Execution& execution = {},
+                               const Engine& engine = engines().front());
+void slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan, const Execution& execution = {},
+              const Engine& engine = engines().front());
 
 /// Throws Error{usage} that names the first part which reaches out of the box from (0, 0, 0) to `size`.
 void check_build_volume(const Plate& plate, const Point3& size);

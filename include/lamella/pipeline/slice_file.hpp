@@ -54,7 +54,7 @@ struct FileJob {
     /// Where set, every part must lie in the box from the origin to this point.
     std::optional<Point3> build_volume;
     /// What is read of 3MF and AMF files; see MeshReadOptions.
-    bool supports = false;
+    MeshRoles include = {};
     /// A limit of reading; `strict` below holds for it, too.
     std::uint64_t max_triangles = 0;
     /// Bytes that the run may take, with all threads, in each process; 0: three quarters of the memory there

@@ -7,6 +7,7 @@
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/pipeline/plate.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy.hpp"
@@ -25,6 +26,8 @@ struct VerifyOptions {
     /// Compare each layer's area, and its centre, with the section of this mesh at the layer's z. It should
     /// be closed. Scan vectors lie within that; without a mesh, within the outermost contour of their part.
     std::optional<Mesh> mesh = {};
+    /// What stands on the plate that `mesh` is of. Where it has negative volumes, they are subtracted.
+    std::optional<Plate> plate = {};
     /// The rule by which the layers were cut; it matters for planes through flat faces only.
     PlaneRule rule = PlaneRule::section_above;
     LayerSteps steps = {}; ///< that were taken with the layers of the mesh, one part; without any, areas are
@@ -38,6 +41,8 @@ struct VerifyOptions {
     /// as it says, each of its contours there and at its depth, no hatch line shorter than `shortest`, all of
     /// them turned and apart as it says, and lines times their distance are to be the area that they fill.
     std::optional<ScanStrategy> strategy = {};
+
+    [[nodiscard]] bool subtracts() const noexcept { return plate && !plate->negatives.empty(); }
 
     /// Rounding and tolerance together.
     [[nodiscard]] Rounding granted() const noexcept {

@@ -5,6 +5,7 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/transform.hpp"
+#include "lamella/read/mesh_role.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -27,9 +28,9 @@ struct MeshReadOptions {
     /// Makes Error{defect} of what is otherwise a warning: wrong counts, truncation, corners that are not
     /// finite.
     bool strict = false;
-    /// Takes what a file marks as support, too, as solids: objects (3MF) and volumes (AMF) of type support.
-    /// Without it they are left out with a warning.
-    bool supports = false;
+    /// Reads bodies that 3MF and AMF files mark as such as solids. Otherwise negative volumes are subtracted
+    /// when their object is sliced, and all others are left out, which one warning counts.
+    MeshRoles include = {};
     /// More triangles than this, in the file or over all instances, are Error{limit}; 0: as many as can be
     /// held. They are counted while a file is read, before there is memory for the rest.
     std::uint64_t max_triangles = 0;
@@ -51,7 +52,17 @@ struct MeshInstance {
     std::size_t object = 0; ///< index into MeshFile::objects
     Transform placement = {};
     std::string name = {};
-    bool support = false; ///< the file marks it so; with MeshReadOptions::supports
+    bool support = false;   ///< the file marks it so; with MeshReadOptions::include
+    bool negative = false;  ///< it is to be subtracted from the others of its `body`
+    std::uint64_t body = 0; ///< instances of one object as it is placed once have the same number
+};
+
+/// An object of a file or one of its volumes, whether it was read or not.
+struct MeshBody {
+    std::string name = {};
+    MeshRole role = MeshRole::part;
+    std::uint64_t triangles = 0;
+    bool left_out = false;
 };
 
 struct MeshFile {
@@ -64,6 +75,8 @@ struct MeshFile {
     /// 3MF and AMF files may have many instances, also several of one object.
     std::vector<MeshObject> objects;
     std::vector<MeshInstance> instances;
+    /// Of 3MF and AMF files: all that they place.
+    std::vector<MeshBody> bodies;
     /// Millimetres per unit of the file, where it states one.
     std::optional<double> unit_mm;
     std::uint64_t stored_triangles = 0;    ///< including those that were dropped
