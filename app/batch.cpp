@@ -106,7 +106,7 @@ Json sliced(const BatchItem& item, const SliceItem& slice, const Execution& exec
 
 /// As a worker sends it.
 std::string as_line(const Json& record) {
-    return record.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+    return compact_json(record) + '\n';
 }
 
 /// In a message, whatever names and texts there are: these take up to six bytes for one.
@@ -210,7 +210,7 @@ class Batch {
                              {"failed", std::move(failed)},
                              {"not_done", items_.size() - told_},
                              {"seconds", seconds}}}};
-        messages_.sum_up(text, json.dump());
+        messages_.sum_up(text, compact_json(json));
     }
 
   private:

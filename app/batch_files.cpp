@@ -1,6 +1,7 @@
 #include "batch_files.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/read/mesh_file.hpp"
 
 #include "names.hpp"
@@ -155,7 +156,7 @@ std::string filled(std::string_view pattern, const std::array<std::string, 3>& v
             const std::size_t end = rest.find('}');
             throw Error(ErrorKind::usage,
                         fmt::format("{}: \"{}\" is none of {{name}}, {{folder}} and {{index}}", pattern,
-                                    rest.substr(0, end == std::string_view::npos ? end : end + 1)));
+                                    excerpt(rest.substr(0, end == std::string_view::npos ? end : end + 1))));
         }
         text += values.at(static_cast<std::size_t>(found - placeholders.begin()));
         rest.remove_prefix(found->size());

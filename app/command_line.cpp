@@ -1,6 +1,7 @@
 #include "command_line.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include "config_file.hpp"
 #include "deadline.hpp"
@@ -101,7 +102,7 @@ class Splitter {
         if (word.size() == 2)
             take_value(*option, typed);
         else if (option->kind == ValueKind::flag)
-            refuse(fmt::format("{} takes no value, but \"{}\" follows it", typed, word.substr(2)));
+            refuse(fmt::format("{} takes no value, but \"{}\" follows it", typed, excerpt(word.substr(2))));
         else
             out_.words.push_back({option, typed, word.substr(word[2] == '=' ? 3 : 2)});
     }
@@ -139,7 +140,7 @@ void check_choice(const std::vector<std::string>& choices, const std::string& te
     if (choices.empty() || std::find(choices.begin(), choices.end(), text) != choices.end())
         return;
     const std::string meant = nearest(text, choices);
-    refuse(fmt::format("\"{}\" is none of {}{}", text, fmt::join(choices, ", "),
+    refuse(fmt::format("\"{}\" is none of {}{}", excerpt(text), fmt::join(choices, ", "),
                        meant.empty() ? "" : fmt::format("; did you mean {}?", meant)));
 }
 
@@ -170,7 +171,7 @@ class Assignment {
             is_file(option.kind) ? file_name(given, option.kind == ValueKind::output) : given;
         try {
             if (option.kind == ValueKind::flag && text != "true" && text != "false")
-                refuse(fmt::format("\"{}\" is neither true nor false", text));
+                refuse(fmt::format("\"{}\" is neither true nor false", excerpt(text)));
             check_choice(option.choices, text);
             if (is_file(option.kind))
                 check_path(text);
@@ -195,7 +196,7 @@ class Assignment {
                                operands.empty()       ? "no arguments"
                                : operands.size() == 1 ? "one argument"
                                                       : fmt::format("{} arguments", operands.size()),
-                               given, command_.name));
+                               excerpt(given), command_.name));
         Operand& operand = operands[std::min(taken_, operands.size() - 1)];
         const std::string text = operand.choices.empty() ? file_name(given, operand.written) : given;
         ++taken_;

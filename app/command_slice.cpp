@@ -402,7 +402,7 @@ void check_files_of_team(const Command& command) {
 
 /// All processes fail together.
 void check_job_of_team(const Command& command, const FileJob& job, Communicator& processes) {
-    const std::vector<std::string> all = processes.gather(job_parameters(command, job).dump());
+    const std::vector<std::string> all = processes.gather(compact_json(job_parameters(command, job)));
     for (const std::string& other : all)
         if (const std::string difference = first_difference(Json::parse(all.front()), Json::parse(other));
             !difference.empty())

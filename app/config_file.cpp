@@ -1,6 +1,7 @@
 #include "config_file.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include "command_line.hpp"
 #include "numbers.hpp"
@@ -27,7 +28,7 @@ Option& option_of(Command& command, const std::string& place, std::string_view k
     if (option != nullptr && !option->configurable)
         refuse_toml(place, fmt::format("--{} goes on the command line only", key));
     if (option == nullptr)
-        refuse_toml(place, fmt::format("lamella {} has no option \"{}\"{}", command.name, key,
+        refuse_toml(place, fmt::format("lamella {} has no option \"{}\"{}", command.name, excerpt(key),
                                        option_suggestion(command, key, "")));
     return *option;
 }
@@ -89,7 +90,7 @@ class Reading {
             refuse_toml(value.place,
                         fmt::format("{}: this is no value for an option: expected a number, a text, "
                                     "true, false or a list of numbers",
-                                    key));
+                                    excerpt(key)));
         return {value.place, &option, *text};
     }
 
@@ -118,7 +119,7 @@ class Reading {
                 refuse_toml(value.place,
                             fmt::format("{} is no option of one file; it has to stand above the first "
                                         "[[input]]",
-                                        key));
+                                        excerpt(key)));
         }
         if (found.path.empty())
             refuse_toml(table.place, "this [[input]] has no path = \"...\" of a file");

@@ -88,9 +88,7 @@ Failure failure_of(const std::exception_ptr& error) {
     } catch (const Error& known) {
         return failure(known.kind(), with_options(known.what()));
     } catch (const std::bad_alloc&) {
-        return failure(
-            ErrorKind::limit,
-            "memory ran out; free some, or work on less at once: fewer parts, copies, layers or files");
+        return failure(ErrorKind::limit, std::string(out_of_memory));
     } catch (const std::system_error& refused) {
         for (const std::errc limit :
              {std::errc::resource_unavailable_try_again, std::errc::not_enough_memory,

@@ -17,6 +17,10 @@ constexpr int limit_exit_code = 5;
 /// The exit code of a batch of which some files failed.
 constexpr int batch_failed_exit_code = 7;
 
+/// What std::bad_alloc means to people.
+constexpr std::string_view out_of_memory =
+    "memory ran out; free some, or work on less at once: fewer parts, copies, layers or files";
+
 struct Failure {
     std::string_view kind; ///< the name of the ErrorKind, such as "input"; or "crash"
     int exit_code = 1;

@@ -149,7 +149,7 @@ Json parts_json(const FileResult& result) {
 /// Objects and lists of plain values take one line each: a layer, a point, a row of a matrix.
 void append_json(std::string& text, const Json& value, std::size_t depth) {
     if (std::none_of(value.begin(), value.end(), [](const Json& item) { return item.is_structured(); })) {
-        text += value.dump(-1, ' ', false, Json::error_handler_t::replace);
+        text += compact_json(value);
         return;
     }
     const bool is_object = value.is_object();
@@ -158,7 +158,7 @@ void append_json(std::string& text, const Json& value, std::size_t depth) {
     for (const auto& [key, item] : value.items()) {
         text.append(separator).append(2 * depth + 2, ' ');
         if (is_object)
-            text.append(Json(key).dump()).append(": ");
+            text.append(compact_json(key)).append(": ");
         append_json(text, item, depth + 1);
         separator = ",\n";
     }

@@ -1,6 +1,7 @@
 #include "layering_options.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include "numbers.hpp"
 #include "options.hpp"
@@ -23,9 +24,9 @@ std::vector<HeightRange> parse_height_ranges(std::string_view text) {
         const std::size_t equals = one.find('=');
         const std::size_t colon = one.find(':');
         if (equals == std::string_view::npos || colon == std::string_view::npos || colon > equals)
-            throw Error(
-                ErrorKind::usage,
-                fmt::format("\"{}\" is no range of heights; expected one such as 0:5=0.1,5:20=0.2", one));
+            throw Error(ErrorKind::usage,
+                        fmt::format("\"{}\" is no range of heights; expected one such as 0:5=0.1,5:20=0.2",
+                                    excerpt(one)));
         ranges.push_back({parse_number(one.substr(0, colon)),
                           parse_number(one.substr(colon + 1, equals - colon - 1)),
                           parse_positive(one.substr(equals + 1))});
@@ -116,9 +117,9 @@ OptionGroup layering_options(LayeringOptions& target) {
              "layers as high as the slopes of the surface allow, between these heights",
              [&target](const std::string& text) {
                  if (text.starts_with(':') || text.ends_with(':'))
-                     throw Error(
-                         ErrorKind::usage,
-                         fmt::format("\"{}\" names one height; both are needed, such as 0.05:0.3", text));
+                     throw Error(ErrorKind::usage,
+                                 fmt::format("\"{}\" names one height; both are needed, such as 0.05:0.3",
+                                             excerpt(text)));
                  target.adaptive = parse_range(text);
              }),
          std::move(cusp)}};

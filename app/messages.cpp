@@ -1,5 +1,7 @@
 #include "messages.hpp"
 
+#include "lamella/core/printable.hpp"
+
 #include "standard_streams.hpp"
 #include "text_file.hpp"
 
@@ -21,13 +23,30 @@ void put(const std::string& text) {
     static_cast<void>(std::fflush(stderr));
 }
 
-std::string json_line(const Json& object) {
-    // Names of files need not be UTF-8.
-    return object.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+void put_json(const Json& object) {
+    put(compact_json(object) + "\n");
 }
 
-void put_json(const Json& object) {
-    put(json_line(object));
+/// Whether a terminal takes it for something else than a character, or a part of one. Tabs are ours.
+bool may_be_unfit(char c) {
+    return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f' || c < 0;
+}
+
+/// The text of a result, several lines, as a terminal can be shown it.
+std::string printable_lines(std::string_view text) {
+    std::string result;
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::string_view line = text.substr(0, end);
+        if (std::any_of(line.begin(), line.end(), may_be_unfit))
+            result += printable(line);
+        else
+            result += line;
+        if (end < text.size())
+            result += '\n';
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return result;
 }
 
 } // namespace
@@ -42,13 +61,26 @@ std::string result_line(std::string_view name, std::string_view value) {
     return fmt::format("  {:<11} {}\n", name, value);
 }
 
-std::string one_line(std::string text) {
-    for (char& c : text) {
-        const auto code = static_cast<unsigned char>(c);
-        if (code < 0x20 || code == 0x7f)
-            c = c == '\n' || c == '\r' || c == '\t' ? ' ' : '?';
+std::string one_line(std::string_view text) {
+    return printable(text);
+}
+
+std::string compact_json(const Json& value) {
+    // Names of files need not be UTF-8.
+    const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
+    // JSON asks for the escape of control characters below the blank only; outside of strings there are none.
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto code = static_cast<unsigned char>(text[i]);
+        const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : ' ');
+        if (code == 0x7f)
+            result += "\\u007f";
+        else if (code == 0xc2 && next < 0xa0)
+            result += fmt::format("\\u{:04x}", static_cast<unsigned char>(text[++i]));
+        else
+            result += text[i];
     }
-    return text;
+    return result;
 }
 
 void Messages::progress(const Progress& progress) {
@@ -74,7 +106,7 @@ void Messages::result(std::string_view text) {
     if (is_silent())
         return;
     clear_bar();
-    print(text);
+    print(printable_lines(text));
 }
 
 void Messages::warn_of(const std::string& name, const std::vector<std::string>& warnings) {
@@ -102,7 +134,7 @@ void Messages::error(const std::string& text, int exit_code) {
 void Messages::note(const std::string& text) {
     clear_bar();
     if (style_ != ProgressStyle::json && !is_silent())
-        put(text);
+        put(printable_lines(text));
 }
 
 void Messages::written(const std::string& text, std::string_view output) {
@@ -124,7 +156,7 @@ std::string Messages::last_words(const std::string& text, int exit_code) const {
 }
 
 std::string Messages::error_line(const std::string& text, int exit_code) const {
-    return style_ == ProgressStyle::json ? json_line({{"error", text}, {"exit_code", exit_code}})
+    return style_ == ProgressStyle::json ? compact_json({{"error", text}, {"exit_code", exit_code}}) + "\n"
                                          : "lamella: error: " + one_line(text) + "\n";
 }
 

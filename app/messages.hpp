@@ -81,7 +81,10 @@ class Messages {
     std::optional<Progress> last_; ///< that programs were told
 };
 
-/// The text on one line, without characters that would move a terminal's cursor.
-[[nodiscard]] std::string one_line(std::string text);
+/// The text on one line of valid UTF-8, control characters escaped: what a terminal can be shown.
+[[nodiscard]] std::string one_line(std::string_view text);
+
+/// The value on one line of valid UTF-8: what is none is replaced, and control characters are escaped.
+[[nodiscard]] std::string compact_json(const Json& value);
 
 } // namespace lamella::app

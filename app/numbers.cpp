@@ -1,6 +1,7 @@
 #include "numbers.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include <fast_float/fast_float.h>
 #include <fmt/format.h>
@@ -15,7 +16,7 @@ namespace lamella::app {
 namespace {
 
 [[noreturn]] void refuse(std::string_view found, std::string_view expected) {
-    throw Error(ErrorKind::usage, fmt::format("\"{}\" is not {}", found, expected));
+    throw Error(ErrorKind::usage, fmt::format("\"{}\" is not {}", excerpt(found), expected));
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -121,8 +122,9 @@ std::uint32_t parse_count_within(std::string_view text, std::uint32_t least, std
 
 std::uint64_t parse_byte_size(std::string_view text) {
     const auto refuse = [&] {
-        throw Error(ErrorKind::usage,
-                    fmt::format("\"{}\" is no amount of memory; expected such as 2G, 500M or 1GiB", text));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("\"{}\" is no amount of memory; expected such as 2G, 500M or 1GiB", excerpt(text)));
     };
     const std::size_t digits = text.find_first_not_of("0123456789.");
     std::string_view unit = digits == std::string_view::npos ? "" : text.substr(digits);
@@ -165,7 +167,8 @@ std::pair<double, double> parse_range(std::string_view text) {
     if (!std::isfinite(range.first) || !std::isfinite(range.second))
         refuse(text, expected);
     if (range.first > range.second)
-        throw Error(ErrorKind::usage, fmt::format("\"{}\" is empty: its end lies below its start", text));
+        throw Error(ErrorKind::usage,
+                    fmt::format("\"{}\" is empty: its end lies below its start", excerpt(text)));
     return range;
 }
 
@@ -173,9 +176,9 @@ std::pair<std::uint64_t, std::uint64_t> parse_index_range(std::string_view text)
     const auto range = read_range<std::uint64_t>(text, {0, std::numeric_limits<std::uint64_t>::max()},
                                                  "a range such as 0:100 (or 10: or :100)");
     if (range.first >= range.second)
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("\"{}\" holds no layer: the second number is the first layer left out", text));
+        throw Error(ErrorKind::usage,
+                    fmt::format("\"{}\" holds no layer: the second number is the first layer left out",
+                                excerpt(text)));
     return range;
 }
 

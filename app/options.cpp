@@ -1,6 +1,7 @@
 #include "options.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include "crash.hpp"
 #include "names.hpp"
@@ -35,7 +36,7 @@ Option scale_option(std::optional<std::vector<double>>& target) {
                    std::vector<double> factors = parse_numbers(text);
                    if (factors.size() != 1 && factors.size() != 3)
                        throw Error(ErrorKind::usage,
-                                   fmt::format("\"{}\" is neither one number nor three", text));
+                                   fmt::format("\"{}\" is neither one number nor three", excerpt(text)));
                    if (std::find(factors.begin(), factors.end(), 0.0) != factors.end())
                        throw Error(ErrorKind::usage, "a factor of 0 leaves nothing to slice");
                    target = std::move(factors);

@@ -1,6 +1,7 @@
 #include "picture_options.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include "numbers.hpp"
 #include "options.hpp"
@@ -20,7 +21,7 @@ AlongXY<double> parse_lengths(const std::string& text) {
     const std::vector<double> numbers = parse_numbers(text);
     if (numbers.size() > 2 || std::any_of(numbers.begin(), numbers.end(), [](double n) { return !(n > 0); }))
         throw Error(ErrorKind::usage,
-                    fmt::format("\"{}\" is not a length or two, such as 0.05 or 120,68", text));
+                    fmt::format("\"{}\" is not a length or two, such as 0.05 or 120,68", excerpt(text)));
     return {numbers.front(), numbers.back()};
 }
 
@@ -30,7 +31,7 @@ AlongXY<std::uint32_t> parse_pixels(const std::string& text) {
         throw Error(ErrorKind::usage,
                     fmt::format("\"{}\" is not a number of columns and of rows up to {}, such "
                                 "as 2560x1440",
-                                text, most_pixels));
+                                excerpt(text), most_pixels));
     };
     const auto cross = text.find('x');
     if (cross == std::string::npos)

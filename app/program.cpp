@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/core/version.hpp"
 
 #include "command_line.hpp"
@@ -12,6 +13,8 @@
 #include "interrupt.hpp"
 #include "messages.hpp"
 #include "names.hpp"
+#include "numbers.hpp"
+#include "standard_streams.hpp"
 #include "suggest.hpp"
 #include "text_file.hpp"
 
@@ -21,9 +24,11 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
+#include <new>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -34,17 +39,66 @@ namespace {
     const std::string meant = nearest(word, names_of(commands));
     std::error_code ignored;
     if (!meant.empty())
-        throw Error(ErrorKind::usage,
-                    fmt::format("there is no command \"{}\"; did you mean lamella {}?", word, meant));
+        throw Error(ErrorKind::usage, fmt::format("there is no command \"{}\"; did you mean lamella {}?",
+                                                  excerpt(word), meant));
     if (std::filesystem::exists(word, ignored))
         throw Error(
             ErrorKind::usage,
             fmt::format("\"{}\" is a file; say what to do with it, such as: lamella info {}", word, word));
-    throw Error(ErrorKind::usage, fmt::format("there is no command \"{}\"; lamella --help lists them", word));
+    throw Error(ErrorKind::usage,
+                fmt::format("there is no command \"{}\"; lamella --help lists them", excerpt(word)));
+}
+
+/// Errors about data say which: where neither the library nor the command has named a file of those given,
+/// the inputs are.
+int run_command(const Command& command, const Context& context) {
+    const auto inputs = [&] {
+        const std::vector<NamedFile> files = files_of(command, ValueKind::input);
+        if (files.empty())
+            return std::string();
+        return input_name(files.front().path) +
+               (files.size() > 1 ? fmt::format(" and {}", counted(files.size() - 1, "more file")) : "") +
+               ": ";
+    };
+    const auto is_named = [&](std::string_view text) {
+        for (const ValueKind kind : {ValueKind::input, ValueKind::output})
+            for (const NamedFile& file : files_of(command, kind))
+                if (text.find(kind == ValueKind::input ? input_name(file.path) : output_name(file.path)) !=
+                    std::string_view::npos)
+                    return true;
+        return false;
+    };
+    try {
+        return command.run(context);
+    } catch (const Error& error) {
+        const bool of_data = error.kind() == ErrorKind::limit || error.kind() == ErrorKind::input ||
+                             error.kind() == ErrorKind::defect || error.kind() == ErrorKind::internal;
+        if (!of_data || is_named(error.what()))
+            throw;
+        throw Error(error.kind(), inputs() + error.what());
+    } catch (const std::bad_alloc&) {
+        throw Error(ErrorKind::limit, inputs() + std::string(out_of_memory));
+    }
+}
+
+/// Who asks for JSON gets it whatever is wrong, be it the command line itself.
+void set_early_style(const std::vector<std::string>& words, Messages& messages) {
+    constexpr std::string_view option = "--progress";
+    std::string_view style;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const std::string_view word = words[i];
+        if (word == option && i + 1 < words.size())
+            style = words[i + 1];
+        else if (word.starts_with(option) && word.substr(option.size()).starts_with('='))
+            style = word.substr(option.size() + 1);
+    }
+    if (style == "json")
+        messages.set_style(ProgressStyle::json);
 }
 
 int run(std::vector<Command>& commands, const std::vector<std::string>& words, Messages& messages,
         const CancelFlag& cancel) {
+    set_early_style(words, messages);
     if (words.empty() || words[0] == "--help" || words[0] == "-h") {
         messages.result(program_help(commands));
         return 0;
@@ -67,7 +121,7 @@ int run(std::vector<Command>& commands, const std::vector<std::string>& words, M
     case Wish::run:
         break;
     }
-    return command->run({*command, messages, &cancel});
+    return run_command(*command, {*command, messages, &cancel});
 }
 
 } // namespace

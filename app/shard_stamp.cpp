@@ -123,7 +123,7 @@ std::string first_difference(const Json& one, const Json& other) {
         return {};
     const Json::json_pointer first(changes[0]["path"].get<std::string>());
     const auto told = [&](const Json& object) {
-        return object.contains(first) ? object[first].dump() : "nothing";
+        return object.contains(first) ? compact_json(object[first]) : "nothing";
     };
     return fmt::format("{} is {} in the one and {} in the other", first.to_string().substr(1), told(one),
                        told(other));
@@ -193,7 +193,7 @@ void stamp_shard(const FileJob& job, const std::string& stats, const FileResult&
                      {"output", output_json(job.output, execution)},
                      {"stats", file_json(stats, execution)},
                      {"report", file_json(job.report.path, execution)}};
-    write_text_file(stamp_path(job.output), stamp.dump(2) + "\n");
+    write_text_file(stamp_path(job.output), stamp.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 void check_stamps(const std::vector<std::string>& paths, const Execution& execution) {

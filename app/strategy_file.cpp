@@ -1,6 +1,7 @@
 #include "strategy_file.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/scan/strategy_fields.hpp"
 
 #include "numbers.hpp"
@@ -51,7 +52,7 @@ std::vector<ParameterSet> sets_of(const ScanStrategy& strategy) {
 
 std::string found_text(const TomlValue& value) {
     if (const auto* text = value.as<std::string>())
-        return fmt::format("\"{}\"", *text);
+        return fmt::format("\"{}\"", excerpt(*text));
     if (const auto* flag = value.as<bool>())
         return *flag ? "true" : "false";
     if (const auto* whole = value.as<std::int64_t>())
@@ -222,7 +223,7 @@ class StrategyReading {
             value.place,
             fmt::format("{} has no \"{}\"{}",
                         path.empty() ? "a strategy" : fmt::format("[{}]", path.substr(0, path.size() - 1)),
-                        key, meant(key, known)));
+                        excerpt(key), meant(key, known)));
     }
 
     /// The parameter set that a rule names.
@@ -301,8 +302,8 @@ class StrategyReading {
                 names.push_back(name);
             const std::string key = fmt::format("{}.{}", rule, parameters_key);
             refuse_toml(origins_.at(key).place,
-                        fmt::format("{} is \"{}\", but there is no [{}.{}]{}", key, parameters.name,
-                                    parameters_key, parameters.name, meant(parameters.name, names)));
+                        fmt::format("{} is \"{}\", but there is no [{}.{}]{}", key, excerpt(parameters.name),
+                                    parameters_key, excerpt(parameters.name), meant(parameters.name, names)));
         }
         Set& set = found->second;
         set.used = true;
@@ -319,8 +320,8 @@ class StrategyReading {
                 used.push_back(name);
         for (const auto& [name, set] : sets_)
             if (!set.used && !set.origin.place.empty())
-                refuse_toml(set.origin.place,
-                            fmt::format("[{}] is used nowhere{}", set.origin.name, meant(name, used)));
+                refuse_toml(set.origin.place, fmt::format("[{}] is used nowhere{}", excerpt(set.origin.name),
+                                                          meant(name, used)));
     }
 
     /// The library names the field; here it gets its place, or that of its table.

@@ -7,6 +7,7 @@
 #include "toml_file.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include "standard_streams.hpp"
 #include "text_file.hpp"
@@ -87,16 +88,17 @@ TomlTable read_toml(const std::string& path) {
 
 // TOML's basic strings escape as JSON's do, but for one character more.
 std::string toml_quoted(const std::string& text) {
-    std::string quoted;
+    std::string escaped;
     try {
-        quoted = nlohmann::json(text).dump();
+        escaped = nlohmann::json(text).dump();
     } catch (const nlohmann::json::type_error&) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("\"{}\" is not UTF-8, as text in a configuration file has to be", text));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("\"{}\" is not UTF-8, as text in a configuration file has to be", excerpt(text)));
     }
-    for (std::size_t at = 0; (at = quoted.find('\x7f', at)) != std::string::npos;)
-        quoted.replace(at, 1, "\\u007f");
-    return quoted;
+    for (std::size_t at = 0; (at = escaped.find('\x7f', at)) != std::string::npos;)
+        escaped.replace(at, 1, "\\u007f");
+    return escaped;
 }
 
 void refuse_toml(const std::string& place, std::string_view text) {

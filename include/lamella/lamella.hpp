@@ -13,9 +13,11 @@
 // Lengths are millimetres. Failures are lamella::Error, or std::bad_alloc where memory runs out. Nothing here
 // prints, exits or keeps global state, but for the temporary names in use (remove_unfinished).
 
-// What all have in common: failures, threads and progress, cosines of the same bits everywhere, the version.
+// What all have in common: failures, threads and progress, texts for messages, cosines of the same bits
+// everywhere, the version.
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/core/unit_circle.hpp"
 #include "lamella/core/version.hpp"
 

@@ -1,10 +1,10 @@
 #include "errors.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include <pybind11/pybind11.h>
 
-#include <cstring>
 #include <exception>
 #include <new>
 
@@ -33,12 +33,10 @@ const char* class_name(ErrorKind kind) {
     return "InternalError";
 }
 
-/// Texts name paths, and paths are bytes: those that are no UTF-8 are kept as Python keeps them.
+/// Texts name paths, and paths are bytes: what is no UTF-8 is escaped, as the program does it.
 void raise(ErrorKind kind, const char* text) {
     const py::object type = py::module_::import("lamella._errors").attr(class_name(kind));
-    const auto decoded = py::reinterpret_steal<py::object>(
-        PyUnicode_DecodeUTF8(text, static_cast<py::ssize_t>(std::strlen(text)), "surrogateescape"));
-    PyErr_SetObject(type.ptr(), decoded.ptr());
+    PyErr_SetObject(type.ptr(), py::str(printable(text)).ptr());
 }
 
 } // namespace

@@ -82,7 +82,7 @@ std::pair<StackPointer, py::list> read_stack(const std::string& path, std::uint6
         warnings = std::move(file.warnings);
         return stack_of(std::move(file));
     });
-    return {read, path_texts(warnings)};
+    return {read, message_texts(warnings)};
 }
 
 /// The mesh or the layers of the file, and its warnings.
@@ -103,7 +103,7 @@ read_either(const std::string& path, std::optional<double> unit_mm, bool strict,
         warnings = std::move(layers.warnings);
         return stack_of(std::move(layers));
     });
-    return {read, path_texts(warnings)};
+    return {read, message_texts(warnings)};
 }
 
 /// A slice file under construction. Closed or dropped before `finish`, it leaves nothing behind.
@@ -131,7 +131,7 @@ class StackWriter {
             const Unlocked released;
             writer().finish();
         }
-        return path_texts(writer().warnings());
+        return message_texts(writer().warnings());
     }
 
     void close() {
@@ -290,8 +290,7 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
         }
         options.strategy = strategy;
         if (!at.empty())
-            for (LayerPart& part : file.parts)
-                options.rule = place_cuts(part.layers, slice_at_named(at));
+            options.rule = place_cuts(file, slice_at_named(at));
         warnings = std::move(file.warnings);
         return verify_vectors(file.parts, options, execution);
     });
@@ -313,7 +312,7 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
     fields["cover"] = found.cover;
     fields["unbounded"] = found.unbounded;
     fields["findings"] = found.findings;
-    return {fields, path_texts(warnings)};
+    return {fields, message_texts(warnings)};
 }
 
 /// The tolerance; of each plane the numbers of its layers in the stacks, or None, same, agree, distance and

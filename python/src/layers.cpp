@@ -2,6 +2,7 @@
 
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/compare.hpp"
 #include "lamella/polygon/fill.hpp"
@@ -616,10 +617,10 @@ py::str path_text(const std::string& path) {
         PyUnicode_DecodeFSDefaultAndSize(path.data(), static_cast<py::ssize_t>(path.size())));
 }
 
-py::list path_texts(const std::vector<std::string>& texts) {
+py::list message_texts(const std::vector<std::string>& texts) {
     py::list list;
     for (const std::string& text : texts)
-        list.append(path_text(text));
+        list.append(printable(text)); // as the program shows them
     return list;
 }
 

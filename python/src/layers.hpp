@@ -11,7 +11,8 @@ namespace lamella::python {
 
 /// A path, or a text that may name one, as Python has it: bytes that are no UTF-8 are kept.
 [[nodiscard]] pybind11::str path_text(const std::string& path);
-[[nodiscard]] pybind11::list path_texts(const std::vector<std::string>& texts);
+/// Warnings as the program shows them (see printable).
+[[nodiscard]] pybind11::list message_texts(const std::vector<std::string>& texts);
 
 /// The classes Layer and Stack.
 void bind_layers(pybind11::module_& module);

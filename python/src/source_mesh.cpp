@@ -290,7 +290,7 @@ void bind_meshes(py::module_& module) {
             "unit_mm", [](const SourceMesh& self) { return self.origin().unit_mm; },
             "How many millimetres a unit of the file was taken for.")
         .def_property_readonly(
-            "warnings", [](const SourceMesh& self) { return path_texts(self.origin().warnings); },
+            "warnings", [](const SourceMesh& self) { return message_texts(self.origin().warnings); },
             "What was odd about the file, and what was made of it: a line each.")
         .def("_defects", &defects_of)
         .def("_transformed",

@@ -1,5 +1,7 @@
 #include "pipeline/plane_scan.hpp"
 
+#include "core/naming.hpp"
+
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
@@ -33,8 +35,10 @@ std::vector<Exposure> plane_exposures(const std::vector<bool>& supports, const S
 }
 
 PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
-                        const ScanStrategy& strategy, std::vector<ScanMemory>& memories) {
+                        std::span<const std::string> names, const ScanStrategy& strategy,
+                        std::vector<ScanMemory>& memories) {
     assert(supports.size() == plane.parts.size() && memories.size() == plane.parts.size());
+    assert(names.size() == plane.parts.size());
     const std::vector<Exposure> each = plane_exposures(supports, strategy);
     const auto of_supports = static_cast<std::size_t>(
         std::find_if(each.begin(), each.end(),
@@ -46,10 +50,11 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
     for (std::size_t part = 0; part < plane.parts.size(); ++part) {
         ScanMemory* const memory = &memories[part];
         std::uint64_t thin_rings = 0;
-        std::vector<Layer> scanned = supports[part]
-                                         ? scan_support(plane.parts[part], strategy, memory, &thin_rings)
-                                         : scan(plane.parts[part], layers_of(part, plane.below),
-                                                layers_of(part, plane.above), strategy, memory, &thin_rings);
+        std::vector<Layer> scanned = naming(names[part], [&] {
+            return supports[part] ? scan_support(plane.parts[part], strategy, memory, &thin_rings)
+                                  : scan(plane.parts[part], layers_of(part, plane.below),
+                                         layers_of(part, plane.above), strategy, memory, &thin_rings);
+        });
         vectors.thin_rings += thin_rings;
         const std::size_t first = supports[part] ? of_supports : 0;
         assert(scanned.size() == (supports[part] ? each.size() : of_supports) - first);

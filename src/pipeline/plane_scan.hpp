@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace lamella {
@@ -31,8 +32,10 @@ struct PlaneVectors {
 [[nodiscard]] std::vector<Exposure> plane_exposures(const std::vector<bool>& supports,
                                                     const ScanStrategy& strategy);
 
-/// See `scan`. The beam goes through the parts one after the other. `memories`: of each part.
+/// See `scan`. The beam goes through the parts one after the other. `memories`: of each part; `names`: of the
+/// parts, for errors, or empty texts.
 [[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
-                                      const ScanStrategy& strategy, std::vector<ScanMemory>& memories);
+                                      std::span<const std::string> names, const ScanStrategy& strategy,
+                                      std::vector<ScanMemory>& memories);
 
 } // namespace lamella

@@ -1,6 +1,7 @@
 #include "lamella/pipeline/plate.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include "core/byte_amount.hpp"
 #include "core/counted.hpp"
@@ -59,8 +60,8 @@ void check_build_volume(const Plate& plate, const Point3& size) {
                     fmt::format("the part \"{}\" reaches from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, "
                                 "{:.6g}) mm, out of the build volume from (0, 0, 0) to ({:.6g}, {:.6g}, "
                                 "{:.6g}); move it with `placement`",
-                                part.label, box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z,
-                                size.x, size.y, size.z));
+                                excerpt(part.label), box.min.x, box.min.y, box.min.z, box.max.x, box.max.y,
+                                box.max.z, size.x, size.y, size.z));
     }
 }
 

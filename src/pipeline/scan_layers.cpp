@@ -1,6 +1,7 @@
 #include "lamella/pipeline/scan_layers.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include "core/counted.hpp"
 #include "core/stopwatch.hpp"
@@ -76,8 +77,11 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
     const StackedPlanes planes = stacked(parts, rounding);
     ScanResult result;
     std::vector<bool> supports;
-    for (const PartInfo& part : info.parts)
+    std::vector<std::string> names;
+    for (const PartInfo& part : info.parts) {
         supports.push_back(part.support);
+        names.push_back(info.parts.size() > 1 ? fmt::format("part \"{}\"", excerpt(part.label)) : "");
+    }
     for (Exposure& exposure : plane_exposures(supports, strategy))
         result.exposures.push_back({std::move(exposure), {}});
     result.layers.resize(planes.size());
@@ -89,7 +93,7 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
     const auto vectors_of = [&](std::size_t i) {
         const Stopwatch scanning;
         PlaneVectors vectors =
-            scan_plane(with_its_neighbours(planes, i, strategy), supports, strategy, memories);
+            scan_plane(with_its_neighbours(planes, i, strategy), supports, names, strategy, memories);
         nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * scanning.seconds()),
                               std::memory_order_relaxed);
         result.layers[i] = std::move(vectors.figures);

@@ -1,6 +1,7 @@
 #include "lamella/pipeline/slice_file.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/mesh/inspect.hpp"
 
 #include "core/byte_amount.hpp"
@@ -52,13 +53,18 @@ void check_heights(const Plate& plate) {
     }
 }
 
+/// The file of a part, and where there are several parts, its label.
+std::string name_of(const Plate& plate, const PlatePart& part) {
+    const std::string& path = plate.files[plate.shapes[part.shape].input].path;
+    return plate.parts.size() == 1 ? path : fmt::format("{}, part \"{}\"", path, excerpt(part.label));
+}
+
 /// The part that decides how many layers there are, as errors begin: "plate.3mf, part "axle"".
 std::string highest_part(const Plate& plate) {
     const auto part =
         std::max_element(plate.parts.begin(), plate.parts.end(),
                          [](const PlatePart& a, const PlatePart& b) { return a.box.max.z < b.box.max.z; });
-    const std::string& path = plate.files[plate.shapes[part->shape].input].path;
-    return plate.parts.size() == 1 ? path : fmt::format("{}, part \"{}\"", path, part->label);
+    return name_of(plate, *part);
 }
 
 /// So many take nothing to speak of.
@@ -324,7 +330,10 @@ class LayerWay {
           first_index_(plan.layers.front().index), mine_(mine), totals_(totals), output_(output),
           window_(sliced, mine, job.scan ? job.scan->downskin.layers : 0,
                   job.scan ? job.scan->upskin.layers : 0,
-                  [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {}
+                  [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {
+        for (const PlatePart& part : plate.parts)
+            names_.push_back(name_of(plate, part));
+    }
 
     /// As PlateSink.
     [[nodiscard]] std::function<void()> operator()(std::span<const Layer> parts) {
@@ -387,7 +396,7 @@ class LayerWay {
 
     std::vector<Layer> vectors_of(const PlaneLayers& plane) {
         const Stopwatch scanning;
-        PlaneVectors vectors = scan_plane(plane, supports_, *job_.scan, memories_);
+        PlaneVectors vectors = scan_plane(plane, supports_, names_, *job_.scan, memories_);
         count(scanning, scan_nanoseconds_);
         totals_.add(plane.parts.front().layer().index, vectors.figures, vectors.thin_rings);
         return std::move(vectors.layers);
@@ -396,6 +405,7 @@ class LayerWay {
     const FileJob& job_;
     const Plate& plate_;
     const std::vector<bool>& supports_;
+    std::vector<std::string> names_;   ///< of the parts, for errors
     std::vector<ScanMemory> memories_; ///< of each part
     std::uint64_t first_index_;
     PlaneRange mine_;

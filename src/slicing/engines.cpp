@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include <fmt/format.h>
@@ -47,7 +48,7 @@ const Engine& engine(std::string_view name) {
         names += candidate.name;
     }
     throw Error(ErrorKind::usage,
-                fmt::format("there is no engine named '{}'; the engines are: {}", name, names));
+                fmt::format("there is no engine named '{}'; the engines are: {}", excerpt(name), names));
 }
 
 } // namespace lamella

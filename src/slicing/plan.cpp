@@ -1,6 +1,7 @@
 #include "lamella/slicing/plan.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include "slicing/stacking.hpp"
 
@@ -61,7 +62,7 @@ SliceAt slice_at_named(std::string_view name) {
     if (name == "top")
         return SliceAt::top;
     throw Error(ErrorKind::usage,
-                fmt::format("layers are cut at their bottom, middle or top, not at '{}'", name));
+                fmt::format("layers are cut at their bottom, middle or top, not at '{}'", excerpt(name)));
 }
 
 Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, SliceAt slice_at,

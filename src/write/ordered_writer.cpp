@@ -1,6 +1,7 @@
 #include "write/ordered_writer.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include <fmt/format.h>
 
@@ -21,7 +22,7 @@ void check_same_planes(std::span<const LayerStack> parts, const LayerFileInfo& i
                                                   info.parts.size(), parts.size()));
     const auto refuse = [&](std::size_t part, const std::string& difference) {
         throw Error(ErrorKind::usage, fmt::format("the part \"{}\" has other planes than the first one: {}",
-                                                  info.parts[part].label, difference));
+                                                  excerpt(info.parts[part].label), difference));
     };
     const auto same = [](double a, double b) {
         return std::abs(a - b) <= same_height_mm;

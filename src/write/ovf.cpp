@@ -3,6 +3,7 @@
 // is; they are written last.
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
 #include "container/ovf_format.hpp"
 #include "container/protobuf.hpp"
@@ -44,7 +45,7 @@ ProtobufMessage marking_params(const Exposure& exposure) {
         if (std::abs(value) > most)
             throw Error(ErrorKind::usage,
                         fmt::format("{} of parameters \"{}\" is {:g}; numbers of ovf reach to {:.2g}", name,
-                                    parameters.name, value, most));
+                                    excerpt(parameters.name), value, most));
         message.real(field, value);
     };
     put(ovf::marking::power_w, "power_w", parameters.power_w);

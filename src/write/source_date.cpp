@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/write/picture_options.hpp"
 
 #include <fmt/format.h>
@@ -22,7 +23,7 @@ std::int64_t source_date() {
     const auto [read_to, failure] = std::from_chars(text, end, seconds);
     if (failure != std::errc() || read_to != end || seconds < 0 || seconds > last)
         throw Error(ErrorKind::usage,
-                    fmt::format("{} is \"{}\", and not a number of seconds since 1970", name, text));
+                    fmt::format("{} is \"{}\", and not a number of seconds since 1970", name, excerpt(text)));
     return seconds;
 }
 

@@ -221,7 +221,7 @@ class BadInput(ProgramTest):
         self.assertEqual(self.bytes_of("out.cli"), b"older result")
 
     def test_errors_stay_on_one_line_whatever_a_file_is_called(self):
-        self.refuse(3, "bad name", "bad\nname\x1b[31m.stl")
+        self.refuse(3, r"bad\\x0aname\\x1b\[31m\.stl: there is no such file", "bad\nname\x1b[31m.stl")
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ class Result:
     def __init__(self, finished):
         self.code = finished.returncode
         self.out = finished.stdout
+        self.err_bytes = finished.stderr
         self.err = finished.stderr.decode("utf-8", "replace")
 
     @property
