@@ -62,6 +62,15 @@ void Deflater::append_piece(std::string_view bytes, std::string& out) {
 
 std::string deflated(std::string_view bytes) {
     std::string stream;
+    // zlib takes some hundred kilobytes at its start, and saves nothing of so few.
+    constexpr std::size_t few = 64;
+    if (bytes.size() <= few) {
+        constexpr char last_and_stored = 1;
+        const auto size = static_cast<char>(bytes.size());
+        for (const char c : {last_and_stored, size, '\0', static_cast<char>(~size), '\xff'})
+            stream += c;
+        return stream.append(bytes);
+    }
     Deflater().append_piece(bytes, stream);
     stream += deflate_end;
     return stream;

@@ -9,6 +9,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <new>
 
@@ -116,6 +117,24 @@ ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes, const Exe
         fail("nothing is packed in it, expected a file with content");
     memory->trim();
     return {source.name, memory->bytes(), memory};
+}
+
+std::string first_inflated(std::string_view packed, std::size_t most) {
+    // libdeflate unpacks all or nothing.
+    z_stream stream{};
+    constexpr int raw_window = -15;
+    if (inflateInit2(&stream, raw_window) != Z_OK)
+        throw std::bad_alloc();
+    std::string bytes(most, '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data())); // it is only read from
+    stream.avail_in =
+        static_cast<uInt>(std::min<std::size_t>(packed.size(), std::numeric_limits<uInt>::max()));
+    stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+    stream.avail_out = static_cast<uInt>(most);
+    static_cast<void>(::inflate(&stream, Z_SYNC_FLUSH));
+    bytes.resize(most - stream.avail_out);
+    inflateEnd(&stream);
+    return bytes;
 }
 
 } // namespace lamella

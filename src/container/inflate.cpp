@@ -20,7 +20,7 @@ std::uint32_t adler32_of(std::string_view bytes) noexcept {
 }
 
 std::uint64_t usual_most_unpacked(std::uint64_t packed_bytes) {
-    constexpr std::uint64_t least = std::uint64_t{4} << 30;
+    constexpr std::uint64_t least = std::uint64_t{64} << 20;
     constexpr std::uint64_t ratio = 64;
     return std::min(packed_bytes > least / ratio ? ratio * packed_bytes : least, usual_memory());
 }

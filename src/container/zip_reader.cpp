@@ -382,4 +382,13 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
     return content;
 }
 
+std::string ZipReader::first_bytes(const ZipEntry& entry, std::size_t most) const {
+    const std::string_view packed = source_.text().substr(entry.place, entry.packed_size);
+    if ((entry.flags & (flag_encrypted | flag_strongly_encrypted | flag_masked)) != 0)
+        return {};
+    if (entry.method == ZipMethod::stored)
+        return std::string(packed.substr(0, most));
+    return entry.method == ZipMethod::deflated ? first_inflated(packed, most) : std::string();
+}
+
 } // namespace lamella

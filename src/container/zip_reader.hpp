@@ -44,6 +44,10 @@ class ZipReader {
     /// damaged or not what it claims, and Error{limit} when the bytes are too many.
     [[nodiscard]] ByteSource read(const ZipEntry& entry) const;
 
+    /// Up to `most` of the first bytes of an entry, to see what it is: no more are unpacked, nothing is
+    /// checked, and they do not count. None where the entry cannot be read.
+    [[nodiscard]] std::string first_bytes(const ZipEntry& entry, std::size_t most) const;
+
     /// What is odd about the archive, one line each.
     [[nodiscard]] const std::vector<std::string>& oddities() const noexcept { return oddities_; }
     [[nodiscard]] const std::string& name() const noexcept { return source_.name; }

@@ -32,7 +32,7 @@ class AmfReader {
   public:
     AmfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
         : name_(source.name), remarks_(source.name, options.strict), selection_(options.include),
-          limits_(source.name, options), execution_(execution), executor_(execution) {
+          limits_(source, options), execution_(execution), executor_(execution) {
         source_ = is_zip(source.text()) ? unpacked(source, options) : source;
     }
 
@@ -247,8 +247,7 @@ class AmfReader {
 } // namespace
 
 bool is_amf(std::string_view text) {
-    constexpr std::size_t longest_preface = 1U << 16;
-    const std::string_view begin = after_blanks(text.substr(0, longest_preface));
+    const std::string_view begin = after_blanks(text.substr(0, amf_mark_within));
     return begin.starts_with('<') && begin.find("<amf") != std::string_view::npos;
 }
 

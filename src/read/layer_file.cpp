@@ -61,9 +61,7 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
 
 LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions& options,
                                const Execution& execution) {
-    ReadLimits limits(source.name, options);
-    if (!source.mapped)
-        limits.add_bytes(source.bytes.size());
+    ReadLimits limits(source, options);
     LayerFile file = read_source(source, options, limits, execution);
     check_length(source);
     return file;
@@ -79,7 +77,7 @@ LayerStack LayerFile::merged() const {
                 ErrorKind::usage,
                 fmt::format("{}: the part \"{}\" has {} layers and the first one has {}; parts can be "
                             "put together where all have the same planes",
-                            path, part.label, part.layers.size(), planes));
+                            path, excerpt(part.label), part.layers.size(), planes));
     LayerStack all;
     std::vector<Layer> plane(parts.size());
     for (std::size_t i = 0; i < planes; ++i) {

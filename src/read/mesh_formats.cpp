@@ -53,7 +53,7 @@ bool is_plain_or_packed_amf(const ByteSource& source, const MeshReadOptions& opt
     if (holds_model(zip))
         return false;
     return holds(zip, ".amf") || holds(zip, ".amf.xml") ||
-           (zip.entries().size() == 1 && is_amf(zip.read(zip.entries().front()).text()));
+           (zip.entries().size() == 1 && is_amf(zip.first_bytes(zip.entries().front(), amf_mark_within)));
 }
 
 /// Such as a job for a resin printer.

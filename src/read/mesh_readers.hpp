@@ -37,6 +37,8 @@ ReadMesh read_stl;
 
 /// AMF (ISO/ASTM 52915): objects as meshes in XML, plain or in a zip archive, and constellations of them.
 [[nodiscard]] bool is_amf(std::string_view text);
+/// Nothing behind these bytes tells whether a text is one.
+inline constexpr std::size_t amf_mark_within = std::size_t{1} << 16;
 /// The volumes of an object make one mesh, those of type support only where the options ask for them. Objects
 /// that no constellation places stand where they are. Edges and normals, which bend triangles, are passed
 /// over with a warning. Angles are degrees, but radians in the files of Slic3r and its descendants, which

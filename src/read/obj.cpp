@@ -214,7 +214,7 @@ bool looks_like_obj(std::string_view text) {
 
 MeshFile read_obj(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
     const std::string_view text = source.text();
-    ReadLimits limits(source.name, options);
+    ReadLimits limits(source, options);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, text.size());
     PieceFormat<FacePiece> format;

@@ -126,7 +126,7 @@ MeshFile read_off(const ByteSource& source, const MeshReadOptions& options, cons
         refuse_text(source, fault);
     }
     Remarks remarks(source.name, options.strict);
-    ReadLimits limits(source.name, options);
+    ReadLimits limits(source, options);
     FaceRows rows;
     rows.begin = counts.end;
     rows.rows = counts.vertices + counts.faces;

@@ -151,7 +151,7 @@ bool is_ply(std::string_view text) {
 
 MeshFile read_ply(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
     Remarks remarks(source.name, options.strict);
-    ReadLimits limits(source.name, options);
+    ReadLimits limits(source, options);
     const PlyHeader header = read_ply_header(source, remarks);
     const PlyPlaces places = find_places(header, source.name);
     MeshFile file = header.form == PlyForm::ascii

@@ -6,6 +6,7 @@
 #include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
 
+#include "core/byte_source.hpp"
 #include "core/memory_size.hpp"
 
 #include <fmt/format.h>
@@ -40,10 +41,11 @@ inline constexpr std::uint64_t node_bytes = 80;
 /// which names the place up to which was counted, where that is given.
 class ReadLimits {
   public:
-    ReadLimits(std::string file_name, const MeshReadOptions& options)
-        : ReadLimits(std::move(file_name), options.max_triangles, options.max_memory) {}
-    ReadLimits(std::string file_name, const LayerReadOptions& options)
-        : ReadLimits(std::move(file_name), 0, options.max_memory) {}
+    /// What is in memory of the file counts from the start, such as all of one that was packed.
+    ReadLimits(const ByteSource& source, const MeshReadOptions& options)
+        : ReadLimits(source, options.max_triangles, options.max_memory) {}
+    ReadLimits(const ByteSource& source, const LayerReadOptions& options)
+        : ReadLimits(source, 0, options.max_memory) {}
 
     void add_triangles(std::uint64_t count, std::string_view place = {}) {
         check_triangles(triangles_.fetch_add(count) + count, place);
@@ -87,9 +89,12 @@ class ReadLimits {
     }
 
   private:
-    ReadLimits(std::string file_name, std::uint64_t max_triangles, std::uint64_t max_memory)
-        : file_name_(std::move(file_name)), max_triangles_(max_triangles), asked_(max_memory != 0),
-          max_memory_(asked_ ? max_memory : usual_memory()) {}
+    ReadLimits(const ByteSource& source, std::uint64_t max_triangles, std::uint64_t max_memory)
+        : file_name_(source.name), max_triangles_(max_triangles), asked_(max_memory != 0),
+          max_memory_(asked_ ? max_memory : usual_memory()) {
+        if (!source.mapped)
+            add_bytes(source.bytes.size());
+    }
 
     [[noreturn]] void refuse_bytes(std::string_view place) const {
         throw Error(ErrorKind::limit,

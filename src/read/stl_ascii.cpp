@@ -490,7 +490,7 @@ bool is_stl_ascii(std::string_view text) {
 
 MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
                         const Execution& execution) {
-    ReadLimits limits(source.name, options);
+    ReadLimits limits(source, options);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, source.bytes.size());
     PieceParser<FacetPiece> parser(source, after_byte_order_mark(source.text()), format_of(source.text()),
@@ -509,7 +509,7 @@ MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options
 
 MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
                           const Execution& execution) {
-    ReadLimits limits(source.name, options);
+    ReadLimits limits(source, options);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, source.bytes.size());
     PieceParser<FacetPiece> parser(source, after_byte_order_mark(source.text()), format_of(source.text()),

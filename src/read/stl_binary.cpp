@@ -223,7 +223,7 @@ std::uint64_t check_head(const ByteSource& source, const MeshReadOptions& option
             fmt::format("{}: holds no triangle: a binary STL file whose count is {} and that ends after "
                         "{} bytes (its first triangle would end at byte {})",
                         source.name, declared, source.bytes.size(), stl_head_bytes + stl_record_bytes));
-    ReadLimits(source.name, options).add_triangles(stored);
+    ReadLimits(source, options).add_triangles(stored);
     if (!remark.empty())
         remarks.add(remark);
     return stored;
@@ -269,7 +269,7 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
     const auto [owner, corners, nonfinite] = read_records(source, stored, options, executor, progress);
     judge_nonfinite(nonfinite.total, nonfinite.first, stored, remarks);
     if (nonfinite.total != 0) // the others are copied
-        ReadLimits(source.name, options).add_bytes((stored - nonfinite.total) * sizeof(Triangle3f));
+        ReadLimits(source, options).add_bytes((stored - nonfinite.total) * sizeof(Triangle3f));
 
     MeshFile file = describe(source, stored, nonfinite.total, nonfinite.first, remarks);
     file.objects.front().mesh =

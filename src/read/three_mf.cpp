@@ -207,7 +207,7 @@ class ThreeMfReader {
   public:
     ThreeMfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
         : package_(source, options.max_memory), remarks_(source.name, options.strict),
-          selection_(options.include), limits_(source.name, options), executor_(execution),
+          selection_(options.include), limits_(source, options), executor_(execution),
           loader_(package_, remarks_, limits_, executor_, execution) {}
 
     MeshFile read() {

@@ -206,7 +206,11 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
     Thinning thinning(parts, grid.step_mm);
     const Cost most{most_shares * thinned.bytes, thinned.points};
     bool saves = true;
-    for (Cost cost = cost_of(pictures.back()); !cost.within(thinned) && !thinning.at_end();) {
+    const auto shows_nothing = [](const Picture& made) {
+        return made.contours_shown == 0 && made.hatches_shown == 0;
+    };
+    for (Cost cost = cost_of(pictures.back());
+         !cost.within(thinned) && !thinning.at_end() && !shows_nothing(pictures.back());) {
         if (!saves && cost.within(most))
             break; // what is left is many small rings: better a larger page than a crude one
         thinning.coarsen();

@@ -87,6 +87,27 @@ class ReadLimits(ProgramTest):
                 with self.subTest(arguments=arguments):
                     self.refuse(f"{name}: .*20000000 bytes", *arguments)
 
+    def test_what_info_makes_of_a_mesh(self):
+        self.succeed("make", "sphere", "-o", "ball.stl")
+        triangles = self.run_program("info", "ball.stl", "--json").json()["triangles"]
+        self.succeed("info", "ball.stl", "--max-memory", 400 * triangles)
+        self.fail_with(5, r"ball\.stl: .* triangles take up to", "info", "ball.stl", "--max-memory", 399 * triangles)
+
+    def test_small_archives_unpack_to_a_bounded_size_without_an_option(self):
+        self.write("zeros.obj.gz", gzip.compress(b"\n" * 80_000_000))
+        for arguments in [("info", "zeros.obj.gz"), ("slice", "zeros.obj.gz", "-o", "a.cli")]:
+            self.fail_with(5, r"zeros\.obj\.gz: unpacks to more than 67108864 bytes, .*--max-memory", *arguments)
+
+    def test_an_archive_is_not_unpacked_to_see_what_it_is(self):
+        with zipfile.ZipFile(self.path("zeros.stl"), "w", zipfile.ZIP_DEFLATED) as archive:
+            archive.writestr("anything", bytes(UNPACKED))
+
+        def allowed():
+            resource.setrlimit(resource.RLIMIT_AS, (ALLOWED, ALLOWED))
+
+        result = self.run_program("info", "zeros.stl", preexec_fn=allowed)
+        self.assertEqual(result.code, 3, result.err)
+
     def test_too_many_triangles(self):
         self.write("box.stl", binary_stl(box_triangles(20, 30, 10)))
         self.succeed("slice", "box.stl", "-o", "box.cli")

@@ -83,6 +83,14 @@ TEST(Gzip, StopsAtTheLimit) {
     EXPECT_EQ(content(bomb, 8'000'000).size(), 8'000'000U);
 }
 
+TEST(Gzip, UnpacksSmallFilesToNoMoreThanTheyAreMeantToUnlessAsked) {
+    const std::string bomb = packed(std::string(100'000'000, '\0'));
+    EXPECT_LT(bomb.size(), 200'000U);
+    EXPECT_NE(error_of(bomb, 0, ErrorKind::limit).find("unpacks to more than 67108864 bytes"),
+              std::string::npos);
+    EXPECT_EQ(content(bomb, 200'000'000).size(), 100'000'000U);
+}
+
 TEST(Gzip, NamesTheByteOfADefect) {
     const std::string whole = packed("a text");
     for (std::size_t size = 3; size < whole.size(); ++size)

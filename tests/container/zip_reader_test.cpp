@@ -303,6 +303,20 @@ TEST(ZipReader, UnpacksNoMoreThanItMayAndSaysWhichOptionAllowsMore) {
     EXPECT_TRUE(says(error_of(bytes, 1, ErrorKind::limit), "zip entry 'a'"));
 }
 
+TEST(ZipReader, FirstBytesOfAnEntryTakeNoMoreThanThese) {
+    const std::string content(10'000'000, 'a');
+    for (const bool deflated : {true, false}) {
+        const std::string bytes = zip_bytes({{.name = "a", .content = content, .deflated = deflated}});
+        const ZipReader zip(copy_bytes(std::as_bytes(std::span(bytes)), "a.zip"), 1000);
+        EXPECT_EQ(zip.first_bytes(zip.entries().front(), 5), "aaaaa");
+        EXPECT_EQ(zip.first_bytes(zip.entries().front(), 70'000), content.substr(0, 70'000));
+        EXPECT_EQ(zip.unpacked(), 0U);
+    }
+    const std::string small = zip_bytes({{.name = "a", .content = "abc"}});
+    const ZipReader zip(copy_bytes(std::as_bytes(std::span(small)), "a.zip"), 1000);
+    EXPECT_EQ(zip.first_bytes(zip.entries().front(), 100), "abc");
+}
+
 TEST(ZipReader, EveryPrefixIsRefused) {
     const std::string bytes = zip_bytes(
         {{.name = "a", .content = "text text text"}, {.name = "b/c", .content = "more", .deflated = false}},
