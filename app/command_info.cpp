@@ -98,8 +98,7 @@ std::vector<ExposureResult> exposures_of(const LayerFile& file) {
 
 /// Times and energies are told where the file says speeds and powers; jumps at a speed that it does not say
 /// take no time.
-Figures vector_figures(const LayerFile& file) {
-    const std::vector<ExposureResult> exposures = exposures_of(file);
+Figures vector_figures(const std::vector<ExposureResult>& exposures) {
     const auto all_have = [&](double ParameterSet::*number) {
         return std::all_of(exposures.begin(), exposures.end(), [&](const ExposureResult& one) {
             return one.figures.vectors == 0 || one.exposure.parameters.*number > 0;
@@ -118,7 +117,7 @@ Figures vector_figures(const LayerFile& file) {
     return figures;
 }
 
-Figures figures_of(const LayerFile& file) {
+Figures figures_of(const LayerFile& file, const std::vector<ExposureResult>& exposures) {
     LayerMeasure all;
     double volume_mm3 = 0;
     std::uint64_t other_hatches = 0; // of no exposure
@@ -145,7 +144,7 @@ Figures figures_of(const LayerFile& file) {
     if (holds_vectors(file)) {
         // Contours of an exposure lie within those of others: they bound no volume together.
         std::erase_if(figures, [](const Figure& figure) { return figure.key == "volume_mm3"; });
-        for (Figure& figure : vector_figures(file))
+        for (Figure& figure : vector_figures(exposures))
             figures.push_back(std::move(figure));
     }
     return figures;
@@ -158,7 +157,8 @@ std::vector<std::string> labels_of(const LayerFile& file) {
     return labels;
 }
 
-std::string layers_text(const LayerFile& file, const Figures& figures) {
+std::string layers_text(const LayerFile& file, const Figures& figures,
+                        const std::vector<RegionFigures>& regions) {
     std::string text = fmt::format("{}: slice file, {}\n", one_line(file.path), file.format);
     std::string_view name = file.parts.size() == 1 ? "label" : "parts";
     for (const std::string& label : labels_of(file)) {
@@ -167,16 +167,22 @@ std::string layers_text(const LayerFile& file, const Figures& figures) {
         text += result_line(name, label.empty() ? "(without a label)" : one_line(label));
         name = "";
     }
-    return text + as_lines(figures);
+    text += as_lines(figures);
+    for (const RegionFigures& region : regions)
+        text += result_line(region.name, region.text);
+    return text;
 }
 
-Json layers_json(const std::string& path, const LayerFile& file, const Figures& figures) {
+Json layers_json(const std::string& path, const LayerFile& file, const Figures& figures,
+                 const std::vector<RegionFigures>& regions) {
     Json json = {{"path", path},
                  {"format", file.format},
                  {"label", file.parts.front().label},
                  {"parts", labels_of(file)},
                  {"units_mm", file.units_mm}};
     json.update(as_json(figures));
+    for (const RegionFigures& region : regions)
+        json["regions"][region.name] = region.json;
     return json;
 }
 
@@ -191,9 +197,11 @@ int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Con
             fmt::format("{}: --self-intersections and --report are for meshes; lamella view writes a page of "
                         "a slice file",
                         file.path));
-    const Figures figures = figures_of(file);
-    context.messages.result(arguments.json ? json_text(layers_json(arguments.input, file, figures))
-                                           : layers_text(file, figures));
+    const std::vector<ExposureResult> exposures = exposures_of(file);
+    const Figures figures = figures_of(file, exposures);
+    const std::vector<RegionFigures> regions = region_figures(exposures);
+    context.messages.result(arguments.json ? json_text(layers_json(arguments.input, file, figures, regions))
+                                           : layers_text(file, figures, regions));
     const std::uint64_t open_chains = as_json(figures)["open_chains"];
     if (arguments.strict && open_chains > 0)
         throw Error(ErrorKind::defect,

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 namespace lamella::app {
 namespace {
@@ -26,6 +27,22 @@ Sums sums_of(std::span<const ExposureResult> exposures) {
         sums.all += figures;
     }
     return sums;
+}
+
+/// Those that have exposures.
+std::vector<std::pair<ScanRegion, std::vector<ExposureResult>>>
+by_region(std::span<const ExposureResult> exposures) {
+    std::vector<std::pair<ScanRegion, std::vector<ExposureResult>>> regions;
+    for (const ScanRegion region :
+         {ScanRegion::core, ScanRegion::upskin, ScanRegion::downskin, ScanRegion::support}) {
+        std::vector<ExposureResult> its;
+        for (const ExposureResult& one : exposures)
+            if (one.exposure.region == region)
+                its.push_back(one);
+        if (!its.empty())
+            regions.emplace_back(region, std::move(its));
+    }
+    return regions;
 }
 
 std::string length_text(double mm) {
@@ -69,18 +86,26 @@ Figures scan_figures(std::span<const ExposureResult> exposures) {
 Json scan_json(std::span<const ExposureResult> exposures) {
     Json object = as_json(scan_figures(exposures));
     Json regions = Json::object();
-    for (const ScanRegion region :
-         {ScanRegion::core, ScanRegion::upskin, ScanRegion::downskin, ScanRegion::support}) {
-        std::vector<ExposureResult> its;
-        for (const ExposureResult& one : exposures)
-            if (one.exposure.region == region)
-                its.push_back(one);
-        if (!its.empty())
-            regions[std::string(scan_region_name(region))] = as_json(scan_figures(its));
-    }
+    for (const auto& [region, its] : by_region(exposures))
+        regions[std::string(scan_region_name(region))] = as_json(scan_figures(its));
     if (regions.size() > 1)
         object["regions"] = std::move(regions);
     return object;
+}
+
+std::vector<RegionFigures> region_figures(std::span<const ExposureResult> exposures) {
+    std::vector<RegionFigures> regions;
+    for (const auto& [region, its] : by_region(exposures)) {
+        const Sums sums = sums_of(its);
+        regions.push_back(
+            {std::string(scan_region_name(region)),
+             {{"contour_vectors", sums.contour_vectors},
+              {"hatch_vectors", sums.hatch_vectors},
+              {"marked_mm", sums.all.marked_mm}},
+             fmt::format("{} on contours, {} in hatches, {} marked", counted(sums.contour_vectors, "vector"),
+                         grouped(sums.hatch_vectors), length_text(sums.all.marked_mm))});
+    }
+    return regions;
 }
 
 Json scan_json(std::span<const ExposureResult> exposures, std::span<const ScanFigures> layer) {

@@ -17,6 +17,14 @@ namespace lamella::app {
 
 /// The same figures as an object; with `regions` by their names, where there are several.
 [[nodiscard]] Json scan_json(std::span<const ExposureResult> exposures);
+/// What each region has, by their names in the order of the table: contour_vectors, hatch_vectors, marked_mm.
+struct RegionFigures {
+    std::string name;
+    Json json;
+    std::string text;
+};
+[[nodiscard]] std::vector<RegionFigures> region_figures(std::span<const ExposureResult> exposures);
+
 /// Of one layer, whose figures are in the order of the exposures.
 [[nodiscard]] Json scan_json(std::span<const ExposureResult> exposures, std::span<const ScanFigures> layer);
 

@@ -10,9 +10,68 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
 namespace lamella {
+
+namespace {
+
+/// Of millimetres, up to what a box in a header rounds them.
+constexpr double one_height = 1e-6;
+
+/// Of each part: contours, where it has some and no hatch line.
+std::vector<VectorKind> kinds_held(std::span<const RawLayer> layers, std::size_t parts) {
+    std::vector<bool> contours(parts);
+    std::vector<bool> hatches(parts);
+    for (const RawLayer& layer : layers) {
+        for (const RawLayer::Contour& contour : layer.ends)
+            contours[contour.part] = true;
+        std::size_t begin = 0;
+        for (const RawLayer::Hatches& lines : layer.hatch_ends) {
+            hatches[lines.part] = hatches[lines.part] || lines.end != begin;
+            begin = lines.end;
+        }
+    }
+    std::vector<VectorKind> kinds;
+    for (std::size_t i = 0; i < parts; ++i)
+        kinds.push_back(contours[i] && !hatches[i] ? VectorKind::contour : VectorKind::hatch);
+    return kinds;
+}
+
+std::string name_of(const BeamSettings& beam) {
+    std::string name;
+    const auto add = [&](const std::optional<double>& number, std::string_view unit) {
+        if (number)
+            name += fmt::format("{}{:.6g} {}", name.empty() ? "" : ", ", *number, unit);
+    };
+    add(beam.power_w, "W");
+    add(beam.speed_mm_s, "mm/s");
+    add(beam.focus_mm, "mm focus");
+    return name;
+}
+
+/// Gives a part the exposure that its label says, or else the one that settings make of it.
+void expose(LayerPart& part, const CommonLayerPart& of, std::optional<Exposure> labelled) {
+    part.exposure = std::move(labelled);
+    if (!of.beam.any())
+        return;
+    if (!part.exposure) {
+        part.exposure = {.part = part.label.empty() ? fmt::format("part {}", of.number) : part.label,
+                         .kind = of.kind,
+                         .contour = of.kind == VectorKind::contour ? 1U : 0U,
+                         .parameters = unknown_parameters()};
+        part.label = part.exposure->label();
+    }
+    ParameterSet& set = part.exposure->parameters;
+    set.name = name_of(of.beam);
+    set.power_w = of.beam.power_w.value_or(set.power_w);
+    set.speed_mm_s = of.beam.speed_mm_s.value_or(set.speed_mm_s);
+    set.focus_mm = of.beam.focus_mm.value_or(set.focus_mm);
+}
+
+} // namespace
 
 bool is_common_layer(std::string_view bytes) {
     constexpr std::size_t longest_preface = 1U << 16; // comments before the header
@@ -21,9 +80,9 @@ bool is_common_layer(std::string_view bytes) {
 }
 
 CommonLayerContent read_common_layer_content(std::string_view bytes, const std::string& name,
-                                             const ExposureOfLabel& exposure_of, ReadLimits& limits,
+                                             const ExposureOfPart& exposure_of, ReadLimits& limits,
                                              const Execution& execution) {
-    const CommonLayerHeader header = read_common_layer_header(bytes, name);
+    const CommonLayerHeader header = read_common_layer_header(bytes, name, limits);
     CommonLayerContent content{
         .file = {.path = name, .format = header.binary ? "cli" : "cli-ascii", .units_mm = header.units_mm},
         .layers = {},
@@ -39,19 +98,27 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
         throw Error(ErrorKind::input,
                     fmt::format("{}, byte {}: found no layer; a slice file must have at least one", name,
                                 header.end));
+    file.warnings = header.warnings;
     if (header.layers && *header.layers != found)
         file.warnings.push_back(
             fmt::format("the header announces {} layers; the file has {}", *header.layers, found));
     file.rounding = geometry.rounding(header.binary);
     geometry.say(file.warnings);
-    geometry.number_parts(header, file);
-    for (LayerPart& part : file.parts)
-        part.exposure = exposure_of(part.label);
+    const std::vector<CommonLayerPart> parts = geometry.number_parts(header, file);
     content.layers = std::move(geometry.layers());
+    const std::vector<VectorKind> held = kinds_held(content.layers, parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        expose(file.parts[i], parts[i], exposure_of(file.parts[i].label, held[i]));
     sort_by_height(content.layers, file.warnings);
-    content.lowest = header.dimension ? (*header.dimension)[2] : 0.0;
     const RawLayer& first = content.layers.front();
-    content.on_bottom = first.drawn && (header.dimension ? first.z <= content.lowest : first.z == 0);
+    // The heights of a box tell where the part begins, unless they are those of the first and the last plane,
+    // which some programs write.
+    const auto lies_at = [&](std::size_t corner, double z) {
+        return std::abs((*header.dimension)[corner] - z) <= one_height * std::max(1.0, std::abs(z));
+    };
+    const bool has_box = header.dimension && !(lies_at(2, first.z) && lies_at(5, content.layers.back().z));
+    content.lowest = has_box ? (*header.dimension)[2] : 0.0;
+    content.on_bottom = first.drawn && (has_box ? first.z <= content.lowest : first.z == 0);
     return content;
 }
 
@@ -81,11 +148,13 @@ LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms,
     const double first = layers.front().z;
     double bottom = first;
     if (!bottoms.empty()) {
-        if (content.on_bottom)
-            file.warnings.push_back(
+        if (content.on_bottom) {
+            file.guess =
                 fmt::format("the first layer, at the bottom of the part (z = {} mm), has contours; heights "
                             "are taken for the bottoms of layers",
-                            first));
+                            first);
+            file.warnings.push_back(file.guess);
+        }
         const double top = bottoms.back() + (bottoms.back() - bottoms[bottoms.size() - 2]);
         for (RawLayer& raw : layers) {
             const auto next = std::upper_bound(bottoms.begin(), bottoms.end(), raw.z);
@@ -104,7 +173,9 @@ LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms,
 
 LayerFile read_common_layer(std::string_view bytes, const std::string& name, ReadLimits& limits,
                             const Execution& execution) {
-    CommonLayerContent content = read_common_layer_content(bytes, name, labelled_exposure, limits, execution);
+    CommonLayerContent content = read_common_layer_content(
+        bytes, name, [](std::string_view label, VectorKind) { return labelled_exposure(label); }, limits,
+        execution);
     const std::vector<double> bottoms = bottoms_of({&content, 1}, 0, limits);
     return layers_of(std::move(content), bottoms, limits);
 }

@@ -26,11 +26,11 @@ struct CommonLayerContent {
     bool on_bottom = false; ///< the first layer lies there and has contours
 };
 
-/// Tells what the part of a label is.
-using ExposureOfLabel = std::function<std::optional<Exposure>(std::string_view label)>;
+/// What a part is of, by its label and by what it holds: contours and no hatch lines, or else.
+using ExposureOfPart = std::function<std::optional<Exposure>(std::string_view label, VectorKind held)>;
 
 [[nodiscard]] CommonLayerContent read_common_layer_content(std::string_view bytes, const std::string& name,
-                                                           const ExposureOfLabel& exposure_of,
+                                                           const ExposureOfPart& exposure_of,
                                                            ReadLimits& limits, const Execution& execution);
 
 /// Heights are tops of layers. Exports exist whose first layer lies on the bottom of the part and has

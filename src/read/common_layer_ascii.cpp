@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace lamella {
@@ -20,6 +21,16 @@ std::int64_t integer(CommonLayerText& text, const char* what) {
     if (value != std::floor(value) || std::abs(value) > 9e15)
         text.fail(fmt::format("{}", value), fmt::format("{} must be a whole number", what));
     return static_cast<std::int64_t>(value);
+}
+
+/// What "/100.0" says behind a command that is not of the standard; none where anything else stands there.
+std::optional<double> take_only_number(CommonLayerText& text) {
+    double number = 0;
+    if (!text.take("/") || !text.take_number(number))
+        return std::nullopt;
+    const bool ends = text.done() || is_line_end(text.rest()[0]) || text.rest().starts_with("//") ||
+                      text.rest().starts_with("$$");
+    return ends ? std::optional(number) : std::nullopt;
 }
 
 CommonLayerDirection take_direction(CommonLayerText& text) {
@@ -110,6 +121,10 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
                 geometry.end_polyline(part, direction, place);
         } else {
             // Extensions such as $$POWER/100.0 stand between polylines.
+            const auto place = [&] {
+                return fmt::format("line {}", line_at(bytes, command_at));
+            };
+            geometry.take_setting(command, take_only_number(text), place);
             text.skip_to_command();
         }
     }

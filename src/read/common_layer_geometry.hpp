@@ -2,10 +2,12 @@
 
 // The layers of a Common Layer Interface file, as the commands of its geometry section say them.
 
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "container/common_layer_format.hpp"
@@ -21,6 +23,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -63,13 +66,49 @@ class Decimals {
     std::size_t places_ = 0;
 };
 
+/// What commands beyond the standard, as CLI+ has them, say of the vectors that follow. They hold until
+/// others come.
+struct BeamSettings {
+    std::optional<double> power_w;
+    std::optional<double> speed_mm_s;
+    std::optional<double> focus_mm;
+
+    [[nodiscard]] bool any() const noexcept { return power_w || speed_mm_s || focus_mm; }
+    friend auto operator<=>(const BeamSettings&, const BeamSettings&) = default;
+};
+
+/// What of a part of the file becomes a part: all of it, or where the file says how vectors are exposed,
+/// those of one kind that are exposed alike.
+struct CommonLayerPart {
+    std::int64_t number = 0;
+    BeamSettings beam = {};
+    VectorKind kind = VectorKind::contour; ///< of what has settings
+
+    friend auto operator<=>(const CommonLayerPart&, const CommonLayerPart&) = default;
+};
+
 /// Collects what the geometry section says, however it is coded.
 class CommonLayerGeometry {
   public:
     CommonLayerGeometry(const CommonLayerHeader& header, const std::string& name, ReadLimits& limits)
-        : units_(header.units_mm), name_(name), limits_(limits), parts_(limits) {
-        for (const auto& [number, label] : header.labels)
-            parts_.number_of(number, [] { return std::string_view("the header"); });
+        : units_(header.units_mm), name_(name), limits_(limits), parts_(limits) {}
+
+    /// A command beyond the standard, and its number, if it has one: those that say how vectors are exposed
+    /// that follow. Others are left out, and counted.
+    template <class Place>
+    void take_setting(std::string_view command, std::optional<double> number, const Place& place) {
+        const bool usable = number && !is_too_far(*number) && (*number >= 0 || command == "FOCUS");
+        std::optional<double>* const setting = command == "POWER"   ? &beam_.power_w
+                                               : command == "SPEED" ? &beam_.speed_mm_s
+                                               : command == "FOCUS" ? &beam_.focus_mm
+                                                                    : nullptr;
+        if (setting == nullptr || !usable) {
+            unknown_.note([&] { return fmt::format("{}, $${}", place(), excerpt(command)); });
+            if (setting != nullptr)
+                setting->reset();
+            return;
+        }
+        *setting = *number + 0.0;
     }
 
     void start_layer(double units, std::string place) {
@@ -97,7 +136,7 @@ class CommonLayerGeometry {
     }
     template <class Place>
     void end_hatches(std::int64_t part, const Place& place) {
-        layers_.back().end_hatches(parts_.number_of(part, place), limits_, place);
+        layers_.back().end_hatches(number_of(part, VectorKind::hatch, place), limits_, place);
     }
 
     /// Ends a polyline of the direction given.
@@ -105,10 +144,17 @@ class CommonLayerGeometry {
     void end_polyline(std::int64_t part, CommonLayerDirection direction, const Place& place) {
         RawLayer& layer = layers_.back();
         const std::size_t begin = layer.contour_begin();
-        const bool closed = direction != CommonLayerDirection::open;
         const bool returns = layer.returns();
-        if (!layer.end_contour(closed, parts_.number_of(part, place), limits_, place, dropped_) || !closed)
+        const bool returning_chain = direction == CommonLayerDirection::open && layer.is_returning_chain();
+        const bool closed = direction != CommonLayerDirection::open || returning_chain;
+        if (!layer.end_contour(closed, number_of(part, VectorKind::contour, place), limits_, place,
+                               dropped_) ||
+            !closed)
             return;
+        if (returning_chain) {
+            returning_.note(place);
+            return;
+        }
         if (!returns)
             unclosed_.note(place);
         // Where the points run the other way, the stated direction holds.
@@ -120,14 +166,27 @@ class CommonLayerGeometry {
         }
     }
 
-    /// Puts the parts into `file` in the order of their numbers.
-    void number_parts(const CommonLayerHeader& header, LayerFile& file) {
+    /// Puts the parts into `file` in the order of their numbers, with those that have a label only, and says
+    /// what of the file each of them is.
+    std::vector<CommonLayerPart> number_parts(const CommonLayerHeader& header, LayerFile& file) {
+        const auto at_end = [] {
+            return std::string_view("the end");
+        };
+        for (const auto& [number, label] : header.labels)
+            if (const CommonLayerPart* const known = parts_.first_from({number});
+                known == nullptr || known->number != number)
+                parts_.number_of({number}, at_end);
         if (parts_.empty())
-            parts_.number_of(1, [] { return std::string_view("the end"); });
-        parts_.put(file, layers_, [&](std::int64_t number) {
-            const auto label = header.labels.find(number);
-            return LayerPart{label == header.labels.end() ? std::string() : label->second, {}};
+            parts_.number_of({1}, at_end);
+        ReadLabels labels;
+        std::vector<CommonLayerPart> parts;
+        parts_.put(file, layers_, [&](const CommonLayerPart& part) {
+            parts.push_back(part);
+            const auto label = header.labels.find(part.number);
+            return LayerPart{label == header.labels.end() ? std::string() : labels.of(label->second), {}};
         });
+        labels.say(file.warnings);
+        return parts;
     }
 
     [[nodiscard]] std::vector<RawLayer>& layers() { return layers_; }
@@ -141,11 +200,17 @@ class CommonLayerGeometry {
 
     void say(std::vector<std::string>& warnings) const {
         unclosed_.say(warnings);
+        returning_.say(warnings);
         turned_.say(warnings);
         dropped_.say(warnings);
+        unknown_.say(warnings);
     }
 
   private:
+    template <class Place>
+    std::uint32_t number_of(std::int64_t part, VectorKind kind, const Place& place) {
+        return parts_.number_of({part, beam_, beam_.any() ? kind : VectorKind::contour}, place);
+    }
     [[nodiscard]] double in_mm(double units, const std::string& place) const {
         const double mm = units * units_;
         if (is_too_far(mm))
@@ -161,11 +226,15 @@ class CommonLayerGeometry {
     ReadLimits& limits_;
     std::vector<RawLayer> layers_;
     Decimals decimals_;
-    PartNumbers<std::int64_t> parts_;
+    BeamSettings beam_; ///< of what follows
+    PartNumbers<CommonLayerPart> parts_;
     UnclosedContours unclosed_;
+    ReturningChains returning_;
     Oddity turned_{"contour ran against its stated direction; it was turned round",
                    "contours ran against their stated direction; they were turned round"};
     DroppedContours dropped_;
+    Oddity unknown_{"command is unknown here, or has no number that it can have; it was left out",
+                    "commands are unknown here, or have no numbers that they can have; they were left out"};
 };
 
 /// Reads the geometry behind the header of an ASCII file. Throws Error{input} naming the line, Error{limit},

@@ -2,6 +2,7 @@
 
 #include "container/xml.hpp"
 #include "read/common_layer_text.hpp"
+#include "read/read_limits.hpp"
 
 #include <fmt/format.h>
 
@@ -37,9 +38,28 @@ std::optional<std::int64_t> label_number(std::string_view line) {
     return error == std::errc() ? std::optional(number) : std::nullopt;
 }
 
+/// The six numbers of $$DIMENSION. Nothing depends on it so much that a file with fewer, or with words, is
+/// refused.
+std::optional<std::array<double, 6>> take_dimension(CommonLayerText& text,
+                                                    std::vector<std::string>& warnings) {
+    const std::size_t begin = text.at();
+    std::array<double, 6> box{};
+    for (std::size_t i = 0; i < box.size(); ++i) {
+        if (!text.take(i == 0 ? "/" : ",") || !text.take_number(box[i])) {
+            warnings.push_back(
+                fmt::format("$$DIMENSION (line {}) has {} numbers and not six, two corners; it was left out",
+                            text.line(begin), i));
+            text.skip_to_command();
+            return std::nullopt;
+        }
+    }
+    return box;
+}
+
 } // namespace
 
-CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::string& name) {
+CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::string& name,
+                                           ReadLimits& limits) {
     CommonLayerHeader header;
     CommonLayerText text(bytes, bytes.find(common_layer_start) + common_layer_start.size(), name);
     bool ascii = false;
@@ -68,25 +88,21 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
             if (!(header.units_mm > 0))
                 text.fail(fmt::format("units of {} mm", header.units_mm), "they must be above 0");
         } else if (command == "DIMENSION") {
-            text.expect('/', "the dimensions");
-            std::array<double, 6> box{};
-            for (std::size_t i = 0; i < box.size(); ++i) {
-                if (i > 0)
-                    text.expect(',', "the next dimension");
-                box[i] = text.number("a dimension");
-            }
-            header.dimension = box;
+            header.dimension = take_dimension(text, header.warnings);
         } else if (command == "LAYERS") {
             text.expect('/', "the number of layers");
             const double count = text.number("the number of layers");
             if (count >= 0 && count < 1e15)
                 header.layers = static_cast<std::uint64_t>(count);
         } else if (command == "LABEL") {
-            const std::size_t line_end = std::min(bytes.find_first_of("\r\n", text.at()), bytes.size());
-            const std::string_view line = bytes.substr(text.at(), line_end - text.at());
+            // Not to the end of whatever line there is: a file may be one line of many labels.
+            constexpr std::size_t longest_line = std::size_t{1} << 13;
+            std::string_view line = text.rest().substr(0, longest_line);
+            line = line.substr(0, std::min(line.find('\n'), line.find('\r')));
             const std::size_t comma = line.find(',');
             if (const auto part = label_number(line); part && comma != std::string_view::npos) {
                 const std::string_view label = label_of(line.substr(comma + 1));
+                limits.add_bytes_at(node_bytes + label.size(), [&] { return text.line_text(); });
                 header.labels.try_emplace(*part, label);
                 if (!label.empty())
                     text.move_to(static_cast<std::size_t>(label.data() + label.size() - bytes.data()));

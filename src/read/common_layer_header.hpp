@@ -9,23 +9,28 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lamella {
 
 inline constexpr std::string_view common_layer_start = "$$HEADERSTART";
+
+class ReadLimits;
 
 /// What the header says.
 struct CommonLayerHeader {
     bool binary = false;
     double units_mm = 0;
     bool aligned = false;
-    std::map<std::int64_t, std::string> labels;     ///< of the parts, by their numbers
+    std::map<std::int64_t, std::string> labels;     ///< of the parts, by their numbers, as they stand there
     std::optional<std::array<double, 6>> dimension; ///< mm
     std::optional<std::uint64_t> layers;
-    std::size_t end = 0; ///< the byte behind $$HEADEREND
+    std::size_t end = 0;               ///< the byte behind $$HEADEREND
+    std::vector<std::string> warnings; ///< about what was passed over
 };
 
-/// Reads the header of a file that has one. Throws Error{input} naming the line.
-[[nodiscard]] CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::string& name);
+/// Reads the header of a file that has one. Throws Error{input} naming the line, and Error{limit}.
+[[nodiscard]] CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::string& name,
+                                                         ReadLimits& limits);
 
 } // namespace lamella

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -71,21 +72,35 @@ class CommonLayerText {
     }
 
     double number(const char* what) {
+        const std::size_t before = at_;
         skip_blanks();
         double value = 0;
         const char* const to = read_decimal(text_.data() + at_, text_.data() + text_.size(), value);
         if (to == nullptr)
-            fail(fmt::format("'{}'", printable(rest().substr(0, rest().find_first_of(", \t\r\n")), 40)),
-                 fmt::format("{} must be a number", what));
+            fail_behind(before, rest().substr(0, rest().find_first_of(", \t\r\n")),
+                        fmt::format("{} must be a number", what));
         at_ = static_cast<std::size_t>(to - text_.data());
         return value;
+    }
+
+    /// Likewise where there may be none: then nothing is taken but the blanks before it.
+    bool take_number(double& value) {
+        skip_spaces();
+        const char* const to = read_decimal(text_.data() + at_, text_.data() + text_.size(), value);
+        if (to == nullptr)
+            return false;
+        at_ = static_cast<std::size_t>(to - text_.data());
+        skip_spaces();
+        return true;
     }
 
     /// One that nothing follows but a blank, a comment or a command: what comes behind "1,5" or "1.5abc"
     /// would be passed over.
     double last_number(const char* what) {
+        const std::size_t before = at_;
         skip_blanks();
         const std::size_t begin = at_;
+        at_ = before;
         const double value = number(what);
         const bool ends =
             done() || is_blank(text_[at_]) || rest().starts_with("//") || rest().starts_with("$$");
@@ -98,12 +113,30 @@ class CommonLayerText {
     }
 
     void expect(char separator, const char* what) {
+        const std::size_t before = at_;
         skip_blanks();
         if (done() || text_[at_] != separator)
-            fail(done() ? "the end of the file" : fmt::format("'{}'", printable(rest().substr(0, 1), 8)),
-                 fmt::format("'{}' must stand before {}", separator, what));
+            fail_behind(before, rest().substr(0, 1),
+                        fmt::format("'{}' must stand before {}", separator, what));
         ++at_;
     }
+
+    /// A list of numbers goes on over lines, but where a command follows, or nothing, the error is where the
+    /// list ends: behind what is `before` here.
+    [[noreturn]] void fail_behind(std::size_t before, std::string_view found, const std::string& expected) {
+        const std::string_view blanks = text_.substr(before, at_ - before);
+        if (done())
+            fail("the end of the file", expected);
+        if (rest().starts_with("$$") && blanks.find_first_of("\r\n") != std::string_view::npos) {
+            at_ = before;
+            fail("the end of the line", expected);
+        }
+        fail(fmt::format("'{}'", printable(found, 40)), expected);
+    }
+
+    [[nodiscard]] std::uint64_t line(std::size_t at) const { return line_at(text_, at); }
+    /// "line 12", where the cursor is.
+    [[nodiscard]] std::string line_text() const { return fmt::format("line {}", line(at_)); }
 
     [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
         throw Error(ErrorKind::input,
@@ -111,6 +144,12 @@ class CommonLayerText {
     }
 
   private:
+    /// Blanks within the line.
+    void skip_spaces() {
+        while (!done() && is_blank(text_[at_]) && !is_line_end(text_[at_]))
+            ++at_;
+    }
+
     std::string_view text_;
     std::size_t at_;
     const std::string& name_;

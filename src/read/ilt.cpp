@@ -131,47 +131,152 @@ void tell_unlisted(const ZipReader& zip, const std::set<const ZipEntry*>& listed
                     "Common Layer Interface files are not in the list of parameters; they were left out");
     for (const ZipEntry& entry : zip.entries())
         if (listed.count(&entry) == 0 && lower_case(entry.name).ends_with(".cli"))
-            unlisted.note([&] { return printable(entry.name, 80); });
+            unlisted.note([&] { return excerpt(entry.name); });
     unlisted.say(warnings);
 }
 
-/// What the name of a file, such as "modelsection_001_s1_vs.cli", says of its vectors; see docs/formats.md.
-Exposure named_exposure(std::string_view name) {
-    name = name.substr(0, name.rfind('.'));
-    const std::size_t last = name.rfind('_');
-    const std::string_view code = last == std::string_view::npos ? name : name.substr(last + 1);
-    std::string_view rest = name.substr(0, last == std::string_view::npos ? 0 : last);
-    const bool support = rest.ends_with("_st") || code == "sx";
-    rest = rest.substr(0, std::min(rest.rfind('_'), rest.size()));
+/// What a word in the name of a file says of its vectors.
+struct NameWord {
+    std::string_view word; ///< in lower case
+    std::optional<ScanRegion> region = {};
+    std::optional<VectorKind> kind = {};
+    std::uint32_t contour = 1; ///< of contours, that of the outermost ones
+};
+
+/// Initials of German words: v (Volumen) core, u (unten) downskin, s (Schraffur) hatch, k (Kontur) contour;
+/// see docs/formats.md.
+constexpr NameWord codes[] = {
+    {"vs", ScanRegion::core, VectorKind::hatch},       {"vk", ScanRegion::core, VectorKind::contour},
+    {"kv", ScanRegion::core, VectorKind::contour, 2},  {"us", ScanRegion::downskin, VectorKind::hatch},
+    {"uk", ScanRegion::downskin, VectorKind::contour}, {"kvu", ScanRegion::downskin, VectorKind::contour, 2},
+    {"sx", ScanRegion::support, VectorKind::hatch},    {"skin", ScanRegion::upskin, VectorKind::hatch}};
+
+/// Regions as 3DXpert calls them: of hatches alone, of contours behind their number, as in "c1md".
+constexpr NameWord short_regions[] = {{"md", ScanRegion::core},
+                                      {"up", ScanRegion::upskin},
+                                      {"dn", ScanRegion::downskin},
+                                      {"sp", ScanRegion::support}};
+
+/// Words as people use them, and netfabb, which calls files as they call stacks of slices.
+constexpr NameWord plain_words[] = {
+    {"hatch", {}, VectorKind::hatch},      {"hatches", {}, VectorKind::hatch},
+    {"hatching", {}, VectorKind::hatch},   {"hatchings", {}, VectorKind::hatch},
+    {"fill", {}, VectorKind::hatch},       {"infill", {}, VectorKind::hatch},
+    {"filling", {}, VectorKind::hatch},    {"contour", {}, VectorKind::contour},
+    {"contours", {}, VectorKind::contour}, {"outline", {}, VectorKind::contour},
+    {"border", {}, VectorKind::contour},   {"core", ScanRegion::core},
+    {"volume", ScanRegion::core},          {"inskin", ScanRegion::core},
+    {"upskin", ScanRegion::upskin},        {"skin", ScanRegion::upskin},
+    {"downskin", ScanRegion::downskin},    {"support", ScanRegion::support},
+    {"supports", ScanRegion::support}};
+
+const NameWord* find_word(std::span<const NameWord> words, std::string_view word) {
+    const auto found =
+        std::find_if(words.begin(), words.end(), [&](const NameWord& known) { return known.word == word; });
+    return found == words.end() ? nullptr : &*found;
+}
+
+bool is_number(std::string_view word) {
+    return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+/// Walks over the words of a name from its end.
+class NameWords {
+  public:
+    explicit NameWords(std::string name) : rest_(std::move(name)) {}
+
+    [[nodiscard]] std::string_view last() const {
+        const std::string_view rest = rest_;
+        return rest.substr(rest.find_last_of(separators) + 1); // or all of it
+    }
+    void drop_last() {
+        const std::size_t at = rest_.find_last_of(separators);
+        rest_.resize(at == std::string::npos ? 0 : at);
+    }
+    [[nodiscard]] std::size_t left() const { return rest_.size(); }
+
+  private:
+    static constexpr std::string_view separators = "_- .";
+    std::string rest_;
+};
+
+/// What the name of a file, such as "modelsection_001_s1_vs.cli", says of its vectors. Where it says nothing,
+/// or not of what kind they are, that is told by what the file holds; `known` says whether there was
+/// anything.
+Exposure named_exposure(std::string_view file, VectorKind held, bool& known) {
+    const std::string_view name = file.substr(0, file.rfind('.'));
+    NameWords words(lower_case(std::string(name)));
     Exposure exposure;
-    exposure.part = rest.empty() ? name : rest;
-    if (support)
-        exposure.region = ScanRegion::support;
-    else if (code == "us" || code == "uk")
-        exposure.region = ScanRegion::downskin;
-    else if (code == "skin")
-        exposure.region = ScanRegion::upskin;
-    const bool contour = code.starts_with('k') || code.ends_with('k');
-    exposure.kind = contour ? VectorKind::contour : VectorKind::hatch;
-    exposure.contour = !contour ? 0 : code.starts_with('k') ? 2 : 1;
+    exposure.kind = held;
+    std::optional<std::uint32_t> contour;
+    known = true;
+    const auto take = [&](const NameWord& word) {
+        exposure.region = word.region.value_or(exposure.region);
+        exposure.kind = word.kind.value_or(exposure.kind);
+        words.drop_last();
+    };
+    if (const NameWord* const code = find_word(codes, words.last());
+        code != nullptr && words.left() > code->word.size()) {
+        NameWords before = words;
+        before.drop_last();
+        const std::string area(before.last());
+        const bool of_shell =
+            area.size() >= 2 && area[0] == 's' && is_number(std::string_view(area).substr(1));
+        const bool has_area = area == "st" || area == "k" || of_shell;
+        if (has_area || code->word != "skin") {
+            take(*code);
+            contour = code->contour;
+        }
+        if (has_area)
+            words.drop_last();
+        if (area == "st")
+            exposure.region = ScanRegion::support;
+        if (has_area && code->word == "skin")
+            exposure.kind = held; // the one name for both
+    }
+    if (!contour) {
+        const std::string last(words.last());
+        const std::size_t digits = std::min(last.find_first_not_of("0123456789", 1), last.size());
+        const bool numbered = last.starts_with('c') && digits > 1 && digits <= 4;
+        if (const NameWord* const region =
+                find_word(short_regions, numbered ? std::string_view(last).substr(digits) : last)) {
+            take(*region);
+            exposure.kind = numbered ? VectorKind::contour : held;
+            contour = numbered ? static_cast<std::uint32_t>(std::stoul(last.substr(1, digits - 1))) : 1;
+        }
+    }
+    if (!contour) {
+        while (const NameWord* const word = find_word(plain_words, words.last())) {
+            take(*word);
+            contour = word->contour;
+        }
+        known = contour.has_value();
+    }
+    exposure.part = name.substr(0, words.left());
+    if (exposure.part.empty())
+        exposure.part = name;
+    exposure.contour = exposure.kind == VectorKind::contour ? std::max(1U, contour.value_or(1)) : 0;
     return exposure;
 }
 
-/// Of the parts of a file in the archive. What neither has a speed nor is called scan vectors is none.
-std::optional<Exposure> exposure_of(const Section& section, std::string_view label) {
+/// Of the parts of a file in the archive. What neither has a speed nor is called scan vectors is none;
+/// `unknown` notes names that say nothing.
+std::optional<Exposure> exposure_of(const Section& section, std::string_view label, VectorKind held,
+                                    Oddity& unknown) {
     std::optional<Exposure> exposure = labelled_exposure(label);
-    if (!exposure && section.parameters.speed_mm_s > 0)
-        exposure = named_exposure(section.name);
+    if (!exposure && section.parameters.speed_mm_s > 0) {
+        bool known = false;
+        exposure = named_exposure(section.name, held, known);
+        if (!known)
+            unknown.note([&] { return excerpt(section.name); });
+    }
     if (exposure)
         exposure->parameters = section.parameters;
     return exposure;
 }
 
-/// Heights no further apart are the same plane, although files round them each in its own way.
-constexpr double one_plane_mm = 1e-5;
-
 bool same_height(double a, double b) {
-    return std::abs(a - b) <= one_plane_mm;
+    return std::abs(a - b) <= ilt_one_plane_mm;
 }
 
 /// The planes of all files, as empty layers.
@@ -220,7 +325,7 @@ LayerStack on_planes(LayerStack layers, const LayerStack& planes, const std::str
             ErrorKind::input,
             fmt::format("{}: found layers at z = {} mm that are thinner than {} mm; they cannot be told "
                         "apart",
-                        file, layers[next].top, one_plane_mm));
+                        file, layers[next].top, ilt_one_plane_mm));
     return result;
 }
 
@@ -237,6 +342,9 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     std::uint64_t bytes = 0;
     std::vector<std::string> sections; // of `contents`
     std::set<const ZipEntry*> known;
+    Oddity unknown(
+        "file has a name that says nothing of its vectors; they are taken for those of the core",
+        "files have names that say nothing of their vectors; they are taken for those of the core");
     Oddity pulsed("file is for a pulsed beam; the distance and time of its points were left out",
                   "files are for a pulsed beam; the distance and time of its points were left out");
     Oddity one_of_two("file has but one of LaserSpeed and LaserPower; the other one is taken to be 0",
@@ -247,13 +355,13 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
         if (entry == nullptr)
             throw Error(ErrorKind::input,
                         fmt::format("{}, line {}: found parameters of '{}'; the archive has no such file",
-                                    list.name, section.line, printable(section.name, 80)));
+                                    list.name, section.line, excerpt(section.name)));
         if (!known.insert(entry).second)
             throw Error(
                 ErrorKind::input,
                 fmt::format("{}, line {}: found parameters of '{}' a second time; there must be one list "
                             "for each file",
-                            list.name, section.line, printable(section.name, 80)));
+                            list.name, section.line, excerpt(section.name)));
         if (section.pulsed)
             pulsed.note(at_line(section.line));
         if (section.has_speed != section.has_power)
@@ -267,7 +375,10 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
                             "archive must have one",
                             source.name));
         contents.push_back(read_common_layer_content(
-            source.text(), source.name, [&](std::string_view label) { return exposure_of(section, label); },
+            source.text(), source.name,
+            [&](std::string_view label, VectorKind held) {
+                return exposure_of(section, label, held, unknown);
+            },
             limits, execution));
         sections.push_back(section.name);
     }
@@ -275,13 +386,14 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
         throw Error(ErrorKind::input,
                     fmt::format("{}: found parameters of no file; there must be one at least", list.name));
     // The files tell together whether heights are tops or bottoms of layers.
-    const std::vector<double> bottoms = bottoms_of(contents, one_plane_mm, limits);
+    const std::vector<double> bottoms = bottoms_of(contents, ilt_one_plane_mm, limits);
     std::vector<LayerFile> files;
     for (std::size_t i = 0; i < contents.size(); ++i) {
         files.push_back(layers_of(std::move(contents[i]), bottoms, limits));
         for (const std::string& warning : files.back().warnings)
             result.warnings.push_back(fmt::format("{}: {}", sections[i], warning));
     }
+    unknown.say(result.warnings);
     one_of_two.say(result.warnings);
     pulsed.say(result.warnings);
     tell_unlisted(zip, known, result.warnings);
@@ -292,7 +404,13 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     const LayerStack planes = planes_of(files, limits);
     for (LayerFile& file : files)
         for (LayerPart& part : file.parts) {
-            result.parts.push_back({std::move(part.label), {}, std::move(part.exposure)});
+            std::string label = std::move(part.label);
+            if (part.exposure && !labelled_exposure(label)) {
+                if (file.parts.size() > 1 && !label.empty())
+                    part.exposure->part += ' ' + label;
+                label = part.exposure->label();
+            }
+            result.parts.push_back({std::move(label), {}, std::move(part.exposure)});
             check_part_planes(result, planes.size(), bytes);
             limits.add_bytes(planes.size() * (sizeof(Layer) + of_empty_layer), file.path);
             result.parts.back().layers = on_planes(std::move(part.layers), planes, file.path);

@@ -66,6 +66,22 @@ std::string_view negative_parameter(const ParameterSet& set) {
                                      : "";
 }
 
+std::string ReadLabels::of(std::string_view label) {
+    constexpr std::size_t longest = 4096; // what writers keep of one
+    std::string text = printable(label, longest);
+    if (text != label && changed_++ == 0)
+        first_ = text;
+    return text;
+}
+
+void ReadLabels::say(std::vector<std::string>& warnings) const {
+    if (changed_ != 0)
+        warnings.push_back(
+            fmt::format("{} bytes that are no text (UTF-8), or more than 4096 of them; the first "
+                        "is read as '{}'",
+                        counted(changed_, "label has", "labels have"), excerpt(first_)));
+}
+
 void say(const DistinctNames& names, std::vector<std::string>& warnings) {
     constexpr std::size_t longest = 60;
     if (const std::uint64_t changed = names.changed(); changed != 0)

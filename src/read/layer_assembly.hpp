@@ -57,6 +57,24 @@ struct UnclosedContours : Oddity {
         : Oddity("closed contour did not return to its first point; it was closed",
                  "closed contours did not return to their first point; they were closed") {}
 };
+struct ReturningChains : Oddity {
+    ReturningChains()
+        : Oddity("open contour ends where it began; it is taken for a closed one",
+                 "open contours end where they began; they are taken for closed ones") {}
+};
+
+/// Labels of parts, as a file has them, made fit for messages and other files.
+class ReadLabels {
+  public:
+    /// As printable() makes it, and no longer than any label is meant to be.
+    [[nodiscard]] std::string of(std::string_view label);
+    /// Warns of labels that were changed.
+    void say(std::vector<std::string>& warnings) const;
+
+  private:
+    std::uint64_t changed_ = 0;
+    std::string first_; ///< of those, as it is now
+};
 
 /// The contours of one height of the file, in millimetres.
 struct RawLayer {
@@ -85,6 +103,9 @@ struct RawLayer {
     [[nodiscard]] bool returns() const {
         return points.size() > contour_begin() && points.back() == points[contour_begin()];
     }
+
+    /// Whether it may be a ring, although the file calls it open.
+    [[nodiscard]] bool is_returning_chain() const { return returns() && points.size() - contour_begin() > 3; }
 
     /// Ends it. Points equal to the one before are dropped, and so is a ring's last point that repeats its
     /// first one. False when fewer than three points (of a chain: two) were left: then none is kept, and
@@ -120,6 +141,11 @@ class PartNumbers {
     explicit PartNumbers(ReadLimits& limits) : limits_(limits) {}
 
     [[nodiscard]] bool empty() const noexcept { return numbers_.empty(); }
+    /// The first key that is not below this one; null for none.
+    [[nodiscard]] const Key* first_from(const Key& key) const {
+        const auto found = numbers_.lower_bound(key);
+        return found == numbers_.end() ? nullptr : &found->first;
+    }
 
     template <class Place>
     std::uint32_t number_of(const Key& key, const Place& place) {

@@ -186,7 +186,9 @@ class SvgReader {
                         fmt::format("{}: found no layer; a layered SVG holds one <g> with slic3r:z for "
                                     "each layer",
                                     name_));
+        labels_.say(file_.warnings);
         open_.say(file_.warnings);
+        returning_.say(file_.warnings);
         outside_.say(file_.warnings);
         other_.say(file_.warnings);
         transformed_.say(file_.warnings);
@@ -252,7 +254,7 @@ class SvgReader {
             file_.parts.emplace_back();
         }
         if (LayerPart& drawn = file_.parts[part_]; drawn.label.empty()) {
-            drawn.label = attributes.find("data-lamella-label");
+            drawn.label = labels_.of(attributes.find("data-lamella-label"));
             drawn.exposure = labelled_exposure(drawn.label);
         }
     }
@@ -332,8 +334,15 @@ class SvgReader {
     /// Where one is under construction.
     void end_contour(bool closed, std::size_t line) {
         RawLayer& layer = groups_.back();
-        if (layer.points.size() != layer.contour_begin() &&
-            layer.end_contour(closed, part_, limits_, at_line(line), dropped_) && !closed)
+        if (layer.points.size() == layer.contour_begin())
+            return;
+        const bool returning_chain = !closed && layer.is_returning_chain();
+        closed = closed || returning_chain;
+        if (!layer.end_contour(closed, part_, limits_, at_line(line), dropped_))
+            return;
+        if (returning_chain)
+            returning_.note(at_line(line));
+        else if (!closed)
             open_.note(at_line(line));
     }
 
@@ -360,6 +369,8 @@ class SvgReader {
                   "elements are no outlines; they were passed over"};
     Oddity transformed_{"element has transforms, which were not followed",
                         "elements have transforms, which were not followed"};
+    ReturningChains returning_;
+    ReadLabels labels_;
     DroppedContours dropped_;
 };
 

@@ -85,6 +85,7 @@ class LayersJsonReader {
     void read_parts() {
         if (!file_.parts.empty())
             text_.fail("\"parts\" a second time", "they must come once, before the layers");
+        ReadLabels labels;
         text_.array([&] {
             std::string label;
             text_.object([&](const std::string& key) {
@@ -94,8 +95,10 @@ class LayersJsonReader {
                     text_.skip();
             });
             make_room(file_.parts);
+            label = labels.of(label);
             file_.parts.push_back({label, {}, labelled_exposure(label)});
         });
+        labels.say(file_.warnings);
     }
 
     void read_layers() {

@@ -53,7 +53,7 @@ class Array {
         else if (type_ == "<f4")
             value = at<float>(i);
         else
-            fail(fmt::format("numbers of type '{}'", type_), "lengths are '<f8' or '<f4'");
+            fail(fmt::format("numbers of type '{}'", excerpt(type_)), "lengths are '<f8' or '<f4'");
         if (is_too_far(value))
             fail(fmt::format("the number {}", value),
                  fmt::format("lengths must lie within {} mm", farthest_mm));
@@ -72,7 +72,7 @@ class Array {
         else if (type_ == "|b1" || type_ == "|u1")
             value = at<std::uint8_t>(i);
         else
-            fail(fmt::format("numbers of type '{}'", type_),
+            fail(fmt::format("numbers of type '{}'", excerpt(type_)),
                  "whole numbers are '<i8', '<u8', '<i4' or '<u4'");
         if (value > most)
             fail(fmt::format("{} at place {}", static_cast<std::int64_t>(value), i),
@@ -83,7 +83,7 @@ class Array {
     /// A string of fixed width, its zeros at the end left out, as UTF-8.
     [[nodiscard]] std::string text(std::uint64_t i) const {
         if (!type_.starts_with("<U"))
-            fail(fmt::format("elements of type '{}'", type_), "strings are '<U...'");
+            fail(fmt::format("elements of type '{}'", excerpt(type_)), "strings are '<U...'");
         const std::uint64_t width = element_ / sizeof(char32_t);
         std::string result;
         for (std::uint64_t k = 0; k < width; ++k) {
@@ -223,10 +223,12 @@ class NpzReader {
         if (labels.size() > most_parts || labels.size() > zip_.unpacked() + 1)
             labels.fail(fmt::format("{} parts", labels.size()), "so many are not possible");
         limits_.make_room(file_.parts, labels.size(), [] { return std::string_view("array 'labels'"); });
+        ReadLabels read_labels;
         for (std::uint64_t i = 0; i < labels.size(); ++i) {
-            const std::string label = labels.text(i);
+            const std::string label = read_labels.of(labels.text(i));
             file_.parts.push_back({label, {}, labelled_exposure(label)});
         }
+        read_labels.say(file_.warnings);
         check_part_planes(file_, z.size(), zip_.unpacked());
         read_rule();
 

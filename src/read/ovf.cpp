@@ -82,7 +82,7 @@ class JobShell {
     [[nodiscard]] std::int64_t first_part() const { return labels_.empty() ? 0 : labels_.begin()->first; }
     [[nodiscard]] std::string label(std::int64_t part) const {
         const auto label = labels_.find(part);
-        return label == labels_.end() ? std::string() : printable(label->second, most_text);
+        return label == labels_.end() ? std::string() : label->second;
     }
     /// The key may name none.
     [[nodiscard]] bool has_parameters(std::int64_t key) const { return parameters_.count(key) != 0; }
@@ -423,11 +423,12 @@ class OvfReader {
     void number_parts() {
         if (parts_.empty())
             parts_.number_of({.part = job_.first_part()}, at_byte(bytes_.size()));
+        ReadLabels read_labels;
         std::map<std::int64_t, std::string> labels; // of parts that have vectors
         parts_.put(file_, layers_, [&](const BlockKind& kind) {
             const auto [label, is_new] = labels.try_emplace(kind.part);
             if (is_new)
-                label->second = names_.of(job_.label(kind.part));
+                label->second = names_.of(read_labels.of(job_.label(kind.part)));
             LayerPart part{label->second, {}, job_.exposure(kind)};
             if (part.exposure) {
                 part.exposure->part = label->second;
@@ -435,6 +436,7 @@ class OvfReader {
             }
             return part;
         });
+        read_labels.say(file_.warnings);
     }
 
     /// Heights are tops of layers.

@@ -101,6 +101,7 @@ class SliceModelReader {
     }
     void say(std::vector<std::string>& warnings) const {
         open_.say(warnings);
+        returning_.say(warnings);
         dropped_.say(warnings);
     }
 
@@ -182,8 +183,11 @@ class SliceModelReader {
     void end_polygon() {
         if (!in_slice() || !start_)
             return;
-        const bool closed = last_ == start_;
-        if (!closed)
+        const bool returning_chain = last_ != start_ && raw().is_returning_chain();
+        const bool closed = last_ == start_ || returning_chain;
+        if (returning_chain)
+            returning_.note(place());
+        else if (!closed)
             open_.note(place());
         raw().end_contour(closed, 0, limits_, place(), dropped_);
         start_.reset();
@@ -222,6 +226,7 @@ class SliceModelReader {
     std::uint32_t last_ = 0;
     Object* object_ = nullptr;
     Oddity open_{"contour is open", "contours are open"};
+    ReturningChains returning_;
     DroppedContours dropped_;
 };
 
@@ -440,11 +445,14 @@ class PackageReader {
                         fmt::format("{}: found slice stacks without slices; a slice file must have "
                                     "at least one layer",
                                     zip_.name()));
+        ReadLabels labels;
         for (std::size_t k = 0; k < placed_.size(); ++k) {
             limits_.make_room(file_.parts, 1, place_of(k));
             limits_.add_bytes_at(placed_[k].label.size(), place_of(k));
-            file_.parts.push_back({.label = placed_[k].label, .layers = {}, .support = placed_[k].support});
+            file_.parts.push_back(
+                {.label = labels.of(placed_[k].label), .layers = {}, .support = placed_[k].support});
         }
+        labels.say(file_.warnings);
         check_part_planes(file_, heights.size() - 1, std::max(points, zip_.unpacked()));
         std::uint64_t left = 64 * (points + heights.size() + (std::uint64_t{1} << 20));
         for (std::size_t k = 0; k < placed_.size(); ++k)

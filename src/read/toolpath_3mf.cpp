@@ -357,15 +357,17 @@ class ToolpathReader {
         std::vector<const Toolpath::Profile*> profiles(toolpath.profiles.size());
         for (const auto& [uuid, profile] : toolpath.profiles)
             profiles[profile.number] = &profile;
+        ReadLabels read_labels;
         std::map<std::size_t, std::string> names; // of items that have vectors
         kinds_.put(file_, layers, [&](const SegmentKind& kind) {
             const auto [name, is_new] = names.try_emplace(kind.item);
             if (is_new)
-                name->second = names_.of(labels[kind.item]);
+                name->second = names_.of(read_labels.of(labels[kind.item]));
             return part_of(kind, name->second, *profiles[kind.profile]);
         });
         if (file_.parts.empty())
-            file_.parts.push_back({labels.empty() ? std::string() : labels.front(), {}});
+            file_.parts.push_back({labels.empty() ? std::string() : read_labels.of(labels.front()), {}});
+        read_labels.say(file_.warnings);
     }
 
     static LayerPart part_of(const SegmentKind& kind, const std::string& label,

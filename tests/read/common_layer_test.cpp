@@ -123,7 +123,7 @@ TEST(ReadCommonLayer, IntegersLeadingZerosCommentsAndUnknownCommandsAreFine) {
         "$$LAYER/0\r\n$$LAYER/50 // top //\r\n$$POWER/100.0\r\n$$POLYLINE/1,1,5,0,0,1000,0,\r\n"
         "1000,1000,0,+1000,.0,0.\r\n$$GEOMETRYEND\r\nanything");
     expect_ring(file, 100);
-    EXPECT_EQ(file.parts.at(0).label, "a part");
+    EXPECT_EQ(file.parts.at(0).exposure.value().part, "a part");
     EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
 }
 
@@ -134,6 +134,116 @@ TEST(ReadCommonLayer, CommandsMayFollowUnknownOnesOnTheirLine) {
     const std::string power =
         "$$POWER/100.0 // $$LAYER/90 // $$POLYLINE/1,1,5,0,0,1000,0,1000,1000,0,1000,0,0\n";
     expect_ring(read(ascii("$$LAYER/0\n$$LAYER/50\n" + power)), 100);
+}
+
+TEST(ReadCommonLayer, PowerSpeedAndFocusAreParametersOfTheVectorsThatFollow) {
+    const std::string square = "$$POLYLINE/1,1,5,0,0,9,0,9,9,0,9,0,0\n";
+    const LayerFile file = read(ascii(
+        "$$LAYER/0\n$$LAYER/50\n" + square + "$$POWER/100.0\n$$SPEED/800\n$$FOCUS/-1.5 // mm //\n" + square +
+            "$$HATCHES/1,1,1,1,8,8\n$$LAYER/90\n$$HATCHES/1,1,2,2,8,8\n$$POWER/150\n$$HATCHES/1,1,3,3,8,8\n",
+        "$$UNITS/0.01\n$$LABEL/1,cube\n"));
+    EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
+    ASSERT_EQ(file.parts.size(), 4U);
+    EXPECT_FALSE(file.parts[0].exposure);
+    EXPECT_EQ(file.parts[0].label, "cube");
+    EXPECT_EQ(file.parts[0].layers[0].rings, 1U);
+    for (std::size_t i = 1; i < 4; ++i) {
+        const Exposure& exposure = file.parts[i].exposure.value();
+        EXPECT_EQ(exposure.part, "cube");
+        EXPECT_EQ(file.parts[i].label, exposure.label());
+        EXPECT_EQ(exposure.parameters.power_w, i < 3 ? 100 : 150);
+        EXPECT_EQ(exposure.parameters.speed_mm_s, 800);
+        EXPECT_EQ(exposure.parameters.focus_mm, -1.5);
+        EXPECT_EQ(exposure.kind, i == 1 ? VectorKind::contour : VectorKind::hatch);
+        EXPECT_EQ(exposure.contour, i == 1 ? 1U : 0U);
+    }
+    EXPECT_EQ(file.parts[1].layers[0].rings, 1U);
+    EXPECT_EQ(file.parts[2].layers[0].hatches.size(), 2U);
+    EXPECT_EQ(file.parts[2].layers[1].hatches.size(), 2U);
+    EXPECT_EQ(file.parts[3].layers[1].hatches.size(), 2U);
+}
+
+TEST(ReadCommonLayer, ParametersGoWithWhatLabelsSay) {
+    const LayerFile file = read(ascii("$$LAYER/0\n$$LAYER/50\n$$SPEED/900\n$$HATCHES/1,1,1,1,8,8\n",
+                                      "$$UNITS/0.01\n$$LABEL/1,\"cube upskin hatch\"\n"));
+    ASSERT_EQ(file.parts.size(), 1U);
+    EXPECT_EQ(file.parts[0].exposure->region, ScanRegion::upskin);
+    EXPECT_EQ(file.parts[0].exposure->parameters.speed_mm_s, 900);
+}
+
+TEST(ReadCommonLayer, CommandsThatNobodyKnowsAreCounted) {
+    const LayerFile file = read(ascii("$$LAYER/0\n$$LAYER/50\n$$DELAY/7\n$$POWER/much\n$$SPEED/"
+                                      "-5\n$$POLYLINE/1,1,5,0,0,9,0,9,9,0,9,0,0\n"));
+    ASSERT_EQ(file.warnings.size(), 1U);
+    EXPECT_TRUE(file.warnings[0].starts_with("3 commands are unknown here")) << file.warnings[0];
+    EXPECT_NE(file.warnings[0].find("line 9, $$DELAY"), std::string::npos) << file.warnings[0];
+    EXPECT_FALSE(file.parts.at(0).exposure);
+}
+
+TEST(ReadCommonLayer, OpenContoursThatEndWhereTheyBeganAreClosed) {
+    const LayerFile file =
+        read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,2,5,0,0,1000,0,1000,1000,0,1000,0,0\n"
+                   "$$POLYLINE/1,2,3,0,0,5,5,0,0\n"));
+    const Layer& layer = file.parts.at(0).layers.at(0);
+    EXPECT_EQ(layer.rings, 1U);
+    EXPECT_EQ(layer.open_chains(), 1U); // which bounds nothing, forth and back
+    ASSERT_EQ(file.warnings.size(), 1U);
+    EXPECT_TRUE(file.warnings[0].starts_with("1 open contour ends where it began")) << file.warnings[0];
+}
+
+TEST(ReadCommonLayer, ABoxOfTheFirstAndTheLastPlaneTellsNoBottom) {
+    const std::string layers =
+        "$$LAYER/10\n" + ring.substr(ring.find("$$POLY")) + "$$LAYER/20\n" + ring.substr(ring.find("$$POLY"));
+    for (const std::string box : {"0,0,0.1,10,10,0.2", "0,0,0.10000001,10,10,0.2"}) {
+        const LayerFile file = read(ascii(layers, "$$UNITS/0.01\n$$DIMENSION/" + box + "\n"));
+        EXPECT_TRUE(file.warnings.empty()) << file.warnings.front();
+        EXPECT_TRUE(file.guess.empty());
+        EXPECT_DOUBLE_EQ(file.parts.at(0).layers.at(0).bottom, 0);
+        EXPECT_DOUBLE_EQ(file.parts[0].layers[0].top, 0.1);
+    }
+    const LayerFile bottoms = read(ascii(layers, "$$UNITS/0.01\n$$DIMENSION/0,0,0.1,10,10,0.3\n"));
+    EXPECT_DOUBLE_EQ(bottoms.parts.at(0).layers.at(0).bottom, 0.1);
+    ASSERT_EQ(bottoms.warnings.size(), 1U);
+    EXPECT_EQ(bottoms.guess, bottoms.warnings[0]);
+}
+
+TEST(ReadCommonLayer, ABoxWithoutSixNumbersIsLeftOut) {
+    for (const std::string box :
+         {"$$DIMENSION/0,0,0,10\n", "$$DIMENSION\n", "$$DIMENSION/0,0,low,10,10,1\n"}) {
+        const LayerFile file = read(ascii(ring, box + "$$UNITS/0.01\n"));
+        expect_ring(file, 96);
+        ASSERT_EQ(file.warnings.size(), 1U) << box;
+        EXPECT_TRUE(file.warnings[0].starts_with("$$DIMENSION (line 3) has")) << file.warnings[0];
+    }
+}
+
+TEST(ReadCommonLayer, ErrorsNameTheLineOnWhichSomethingIsMissing) {
+    expect_error(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,1,5,0,0,1,0,1,1\n\n\n$$LAYER/90\n"),
+                 "line 9: found the end of the line; ',' must stand before the next coordinate");
+    expect_error(ascii("$$LAYER/0\n$$LAYER/\n$$LAYER/90\n"),
+                 "line 8: found the end of the line; the layer's height");
+    expect_error(ascii(ring, "$$VERSION/200\n$$UNITS/\n$$DATE/1\n"),
+                 "line 4: found the end of the line; the units");
+    // Numbers may go on over lines: what is wrong with one stands on its own line.
+    expect_error(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,1,5,0,0,\n1,x,1,1\n"), "line 10: found 'x'");
+}
+
+TEST(ReadCommonLayer, LabelsAreTextAndNoLongerThanOneIsMeantToBe) {
+    const LayerFile odd = read(ascii(ring, "$$UNITS/0.01\n$$LABEL/1,\"b\xe4r\x1b[31m\x7f\"\n"));
+    EXPECT_EQ(odd.parts.at(0).label, "b\\xe4r\\x1b[31m\\x7f");
+    ASSERT_EQ(odd.warnings.size(), 1U);
+    EXPECT_TRUE(odd.warnings[0].starts_with("1 label has bytes")) << odd.warnings[0];
+    const LayerFile longer = read(ascii(ring, "$$UNITS/0.01\n$$LABEL/1," + std::string(100'000, 'x') + "\n"));
+    EXPECT_LT(longer.parts.at(0).label.size(), 5000U);
+    EXPECT_LT(longer.warnings.at(0).size(), 500U);
+}
+
+TEST(ReadCommonLayer, LabelsCountAgainstTheLimitOfMemory) {
+    const std::string bytes = ascii(ring, "$$UNITS/0.01\n$$LABEL/1," + std::string(100'000, 'x') + "\n");
+    const std::string error = test::error_of(ErrorKind::limit, [&] {
+        static_cast<void>(read_layers(std::as_bytes(std::span(bytes)), "test.cli", {.max_memory = bytes.size() + 1000}));
+    });
+    EXPECT_NE(error.find("line 4"), std::string::npos) << error;
 }
 
 TEST(ReadCommonLayer, LabelsEndWhereACommentBegins) {

@@ -8,6 +8,7 @@
 
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella::ilt_cases {
@@ -67,6 +68,66 @@ TEST(ReadIlt, HeightsOfAllFilesAreBottomsWhereTheLowestOnesAre) {
     EXPECT_EQ(read(archive_of({"2", "3"}, {"1", "2"})).parts.at(0).layers.at(0).bottom, 0);
 }
 
+/// The exposure of a file of this name, which holds a hatch line or else a square.
+std::pair<Exposure, std::vector<std::string>> read_named(const std::string& name, bool hatch) {
+    const std::string vectors =
+        "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/0\n$$LAYER/1\n" +
+        std::string(hatch ? "$$HATCHES/1,1,0,0,5,5\n" : "$$POLYLINE/1,1,5,0,0,5,0,5,5,0,5,0,0\n") +
+        "$$GEOMETRYEND\n";
+    const LayerFile file =
+        read(zip_test::zip_bytes({{.name = std::string(ilt_parameters),
+                                   .content = "[" + name + "]\nLaserSpeed = 800\nLaserPower = 200\n"},
+                                  {.name = name, .content = vectors}}));
+    EXPECT_EQ(file.parts.at(0).label, file.parts[0].exposure->label());
+    return {*file.parts[0].exposure, file.warnings};
+}
+
+TEST(ReadIlt, NamesOfFilesSayRegionAndKind) {
+    struct Named {
+        const char* name;
+        bool hatch;
+        const char* part;
+        ScanRegion region;
+        std::uint32_t contour; // 0 for hatches
+    };
+    for (const Named& named : {
+             Named{"modelsection_001_s1_vs.cli", true, "modelsection_001", ScanRegion::core, 0},
+             Named{"modelsection_001_s1_vk.cli", false, "modelsection_001", ScanRegion::core, 1},
+             Named{"modelsection_001_s1_kv.cli", false, "modelsection_001", ScanRegion::core, 2},
+             Named{"modelsection_001_s2_us.cli", true, "modelsection_001", ScanRegion::downskin, 0},
+             Named{"modelsection_001_st_vk.cli", false, "modelsection_001", ScanRegion::support, 1},
+             Named{"modelsection_001_s1_skin.cli", true, "modelsection_001", ScanRegion::upskin, 0},
+             Named{"modelsection_001_s1_skin.cli", false, "modelsection_001", ScanRegion::upskin, 1},
+             Named{"cyl_001_Standard_x0.04_md.cli", true, "cyl_001_Standard_x0.04", ScanRegion::core, 0},
+             Named{"cyl_001_Standard_x0.04_c1md.cli", false, "cyl_001_Standard_x0.04", ScanRegion::core, 1},
+             Named{"cyl_001_Standard_x0.04_c2dn.cli", false, "cyl_001_Standard_x0.04", ScanRegion::downskin,
+                   2},
+             Named{"cyl_001_Standard_x0.04_dn.cli", true, "cyl_001_Standard_x0.04", ScanRegion::downskin, 0},
+             Named{"cyl_001_Standard_x0.04_UP.cli", true, "cyl_001_Standard_x0.04", ScanRegion::upskin, 0},
+             Named{"bracket_support_contours.cli", false, "bracket", ScanRegion::support, 1},
+             Named{"bracket-Hatching.cli", true, "bracket", ScanRegion::core, 0},
+             Named{"bracket downskin hatch.cli", true, "bracket", ScanRegion::downskin, 0},
+         }) {
+        const auto [exposure, warnings] = read_named(named.name, named.hatch);
+        EXPECT_EQ(exposure.part, named.part);
+        EXPECT_EQ(exposure.region, named.region) << named.name;
+        EXPECT_EQ(exposure.kind, named.contour > 0 ? VectorKind::contour : VectorKind::hatch) << named.name;
+        EXPECT_EQ(exposure.contour, named.contour) << named.name;
+        EXPECT_TRUE(warnings.empty()) << named.name << ": " << warnings.front();
+    }
+}
+
+TEST(ReadIlt, WarnsOfNamesThatSayNothingAndGoesByWhatTheFilesHold) {
+    for (const bool hatch : {true, false}) {
+        const auto [exposure, warnings] = read_named("layer7.cli", hatch);
+        EXPECT_EQ(exposure.part, "layer7");
+        EXPECT_EQ(exposure.region, ScanRegion::core);
+        EXPECT_EQ(exposure.kind, hatch ? VectorKind::hatch : VectorKind::contour);
+        ASSERT_EQ(warnings.size(), 1U);
+        EXPECT_TRUE(warnings[0].starts_with("1 file has a name that says nothing")) << warnings[0];
+    }
+}
+
 TEST(ReadIlt, UnitsCount) {
     const LayerFile file =
         read(archive("LaserSpeed = 0.8 m/s\nLaserPower = 0.2 kW\nFocusShift = -1500 \xc2\xb5m\n"));
@@ -124,8 +185,8 @@ TEST(ReadIlt, SaysWhichFilesAreForAPulsedBeam) {
 
 TEST(ReadIlt, SaysWhichFilesTheListDoesNotName) {
     const std::string bytes = zip_test::zip_bytes(
-        {{.name = std::string(ilt_parameters), .content = "[a.cli]\nLaserSpeed = 1\nLaserPower = 1\n"},
-         {.name = "a.cli",
+        {{.name = std::string(ilt_parameters), .content = "[a_vs.cli]\nLaserSpeed = 1\nLaserPower = 1\n"},
+         {.name = "a_vs.cli",
           .content = "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/1\n"
                      "$$HATCHES/1,1,0,0,5,5\n$$GEOMETRYEND\n"},
          {.name = "b.CLI", .content = "not looked at"},

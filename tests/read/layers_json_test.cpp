@@ -29,7 +29,7 @@ std::string layer(const std::string& part, const std::string& z = "1") {
 TEST(ReadLayersJson, TellsAllThatALayerHas) {
     const LayerFile found = read(file(layer(R"({"rings": [[0, 0, 1e1, 0, 0, 10]], "chains": [[1, 1, 2, 2]],
                                                "hatches": [0, 1, 2, 3]})")));
-    EXPECT_EQ(found.parts.front().label, "\xc3\xa4\xf0\x9f\x98\x80\n");
+    EXPECT_EQ(found.parts.front().label, "\xc3\xa4\xf0\x9f\x98\x80\\x0a");
     const Layer& only = found.parts.front().layers.front();
     EXPECT_EQ(only.index, 5U);
     EXPECT_EQ(only.z, 1);

@@ -43,6 +43,9 @@ struct LayerFile {
     PlaneRule rule = PlaneRule::section_above;
     std::vector<LayerPart> parts = {};      ///< at least one; all have the same planes
     std::vector<std::string> warnings = {}; ///< one line each: what was odd and what was made of it
+    /// That of the warnings which says that heights are taken for bottoms of layers, where that is a guess
+    /// and the format has tops.
+    std::string guess = {};
 
     /// All parts as one: the layers of the only part, or for each plane the contours of all. O(points).
     /// Throws Error{usage} where the caller has made the parts differ in the number of their layers.
