@@ -74,7 +74,7 @@ Json verification_json(const Verification& found) {
                 {"volume_mm3", found.volume_mm3},   {"max_area_error_mm2", nullptr},
                 {"displaced", found.displaced},     {"height_overlaps", found.height_overlaps},
                 {"hatches", found.hatches},         {"heights", heights_json(found.heights)},
-                {"findings", found.findings}};
+                {"findings", found.findings},       {"hint", nullptr}};
     if (found.max_area_error_mm2)
         object["max_area_error_mm2"] = *found.max_area_error_mm2;
     if (!found.open_layers.empty()) {
@@ -87,7 +87,7 @@ Json verification_json(const Verification& found) {
     return object;
 }
 
-std::string verification_text(const std::string& mesh, const Verification& found) {
+std::string verification_text(const std::string& mesh, const Verification& found, const std::string& hint) {
     std::string text;
     for (const std::string& finding : found.findings)
         text += fmt::format("  {}\n", finding);
@@ -98,8 +98,8 @@ std::string verification_text(const std::string& mesh, const Verification& found
         text +=
             fmt::format("  areas differ from the sections of {} by at most {} mm2{}\n", one_line(mesh),
                         brief(*found.max_area_error_mm2), found.areas_agree ? ", as rounding allows" : "");
-    if (!found.areas_agree)
-        text += "  layers that were rounded before may be off by more: say by how much with --tolerance MM\n";
+    if (!hint.empty())
+        text += fmt::format("  {}\n", hint);
     text += heights_text(found.heights);
     if (found.ok())
         text += fmt::format(
@@ -124,10 +124,12 @@ Json vectors_json(const VectorVerification& found) {
             {"unbounded", found.unbounded},
             {"cover", found.cover ? Json(*found.cover) : Json()},
             {"heights", heights_json(found.heights)},
-            {"findings", found.findings}};
+            {"findings", found.findings},
+            {"hint", nullptr}};
 }
 
-std::string vectors_text(const std::string& mesh, bool strategy, const VectorVerification& found) {
+std::string vectors_text(const std::string& mesh, bool strategy, const VectorVerification& found,
+                         const std::string& hint) {
     std::string text;
     for (const std::string& finding : found.findings)
         text += fmt::format("  {}\n", finding);
@@ -136,6 +138,8 @@ std::string vectors_text(const std::string& mesh, bool strategy, const VectorVer
     if (found.cover)
         text += fmt::format("  lines times their distance cover {:.2f} % of what they are to fill\n",
                             100 * *found.cover);
+    if (!hint.empty())
+        text += fmt::format("  {}\n", hint);
     text += heights_text(found.heights);
     const std::uint64_t all = found.contour_vectors + found.hatch_vectors;
     if (found.ok() && found.unbounded < all)
@@ -149,10 +153,31 @@ std::string vectors_text(const std::string& mesh, bool strategy, const VectorVer
     return text;
 }
 
-/// The parts with scan vectors, or those without.
-LayerFile parts_of(const LayerFile& file, bool vectors) {
-    LayerFile some = file;
-    std::erase_if(some.parts, [&](const LayerPart& part) { return part.exposure.has_value() != vectors; });
+/// What may be the cause where layers do not agree with a mesh, and what to do: of a format that does not
+/// keep where layers were cut, that they were not cut half-way up. `agree(file, rule)` checks them anew.
+template <class Agree>
+std::string cut_hint(const LayerFile& file, const Agree& agree) {
+    const std::string guess =
+        fmt::format("{} does not keep where layers were cut; the middle was assumed", file.format);
+    for (const SliceAt at : {SliceAt::top, SliceAt::bottom}) {
+        LayerFile moved = file;
+        const PlaneRule rule = place_cuts(moved, at);
+        if (agree(moved, rule))
+            return fmt::format("{}: add --slice-at {}, by which they agree", guess,
+                               at == SliceAt::top ? "top" : "bottom");
+    }
+    return guess +
+           ": where they were cut elsewhere, say so by --slice-at, or check a file of a format that keeps "
+           "cuts, such as json; where they were rounded before, say by how much with --tolerance MM";
+}
+
+/// Takes the parts with scan vectors, or those without, out of the file.
+LayerFile taken_parts(LayerFile& file, bool vectors) {
+    LayerFile some{.path = file.path, .format = file.format, .rounding = file.rounding, .rule = file.rule};
+    for (LayerPart& part : file.parts)
+        if (part.exposure.has_value() == vectors)
+            some.parts.push_back(std::move(part));
+    std::erase_if(file.parts, [&](const LayerPart& part) { return part.exposure.has_value() == vectors; });
     return some;
 }
 
@@ -168,16 +193,12 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
 
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
-    context.messages.warn_of(input_name(file.path), file.warnings);
     std::optional<ScanStrategy> strategy;
     if (arguments.scan || arguments.scanning.given())
         strategy = arguments.scanning.strategy();
-    PlaneRule rule = file.rule;
-    if (!arguments.slice_at.empty()) {
-        const SliceAt at = slice_at_named(arguments.slice_at);
-        for (LayerPart& part : file.parts)
-            rule = place_cuts(part.layers, at);
-    }
+    const PlaneRule rule =
+        arguments.slice_at.empty() ? file.rule : place_cuts(file, slice_at_named(arguments.slice_at));
+    context.messages.warn_of(input_name(file.path), file.warnings);
     std::optional<Plate> plate;
     std::optional<Mesh> mesh;
     if (!arguments.mesh.empty()) {
@@ -191,12 +212,13 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         mesh = joined(*plate, execution);
     }
 
-    const LayerFile plain = parts_of(file, false);
-    const LayerFile vectors = parts_of(file, true);
+    const LayerFile plain = taken_parts(file, false);
+    const LayerFile vectors = taken_parts(file, true);
     if (strategy && vectors.parts.empty())
         throw Error(
             ErrorKind::usage,
             fmt::format("{}: holds no scan vectors; a strategy says nothing of its contours", file.path));
+    const bool cut_is_assumed = mesh && arguments.slice_at.empty() && !layer_format(file.format, {}).cuts;
     bool ok = !arguments.strict || file.warnings.empty();
     Json object{{"path", arguments.input}, {"ok", ok}, {"warnings", file.warnings}};
     std::string text;
@@ -204,31 +226,53 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         for (const std::string& warning : file.warnings)
             text += fmt::format("  {}\n", one_line(warning));
     if (!plain.parts.empty()) {
-        const Verification found = verify(plain.merged(),
-                                          {.mesh = mesh,
-                                           .plate = plate,
-                                           .rule = rule,
-                                           .steps = steps,
-                                           .rounding = file.rounding,
-                                           .tolerance_mm = arguments.tolerance},
-                                          execution);
+        VerifyOptions options{.mesh = mesh,
+                              .plate = plate,
+                              .rule = rule,
+                              .steps = steps,
+                              .rounding = file.rounding,
+                              .tolerance_mm = arguments.tolerance};
+        const LayerStack several = plain.parts.size() > 1 ? plain.merged() : LayerStack();
+        const Verification found =
+            verify(plain.parts.size() > 1 ? several : plain.parts.front().layers, options, execution);
         ok = ok && found.ok();
         object.update(verification_json(found));
-        text += verification_text(arguments.mesh, found);
+        std::string hint;
+        if (cut_is_assumed && (!found.areas_agree || found.displaced > 0))
+            hint = cut_hint(plain, [&](const LayerFile& moved, PlaneRule moved_rule) {
+                options.rule = moved_rule;
+                const Verification again = verify(moved.merged(), options, execution);
+                return again.areas_agree && again.displaced == 0;
+            });
+        else if (!found.areas_agree)
+            hint = "layers that were rounded before may be off by more: say by how much with --tolerance MM";
+        if (!hint.empty())
+            object["hint"] = hint;
+        text += verification_text(arguments.mesh, found, hint);
     }
     if (!vectors.parts.empty()) {
-        const VectorVerification found = verify_vectors(vectors.parts,
-                                                        {.mesh = mesh,
-                                                         .plate = plate,
-                                                         .rule = rule,
-                                                         .steps = steps,
-                                                         .rounding = file.rounding,
-                                                         .tolerance_mm = arguments.tolerance,
-                                                         .strategy = strategy},
-                                                        execution);
+        VerifyOptions options{.mesh = mesh,
+                              .plate = plate,
+                              .rule = rule,
+                              .steps = steps,
+                              .rounding = file.rounding,
+                              .tolerance_mm = arguments.tolerance,
+                              .strategy = strategy};
+        const VectorVerification found = verify_vectors(vectors.parts, options, execution);
         ok = ok && found.ok();
         object["vectors"] = vectors_json(found);
-        text += vectors_text(arguments.mesh, strategy.has_value(), found);
+        const auto disagree = [](const VectorVerification& one) {
+            return one.outside > 0 || one.miscovered > 0 || one.wrong_contours > 0;
+        };
+        std::string hint;
+        if (cut_is_assumed && disagree(found))
+            hint = cut_hint(vectors, [&](const LayerFile& moved, PlaneRule moved_rule) {
+                options.rule = moved_rule;
+                return !disagree(verify_vectors(moved.parts, options, execution));
+            });
+        if (!hint.empty())
+            object["vectors"]["hint"] = hint;
+        text += vectors_text(arguments.mesh, strategy.has_value(), found, hint);
     }
     object["ok"] = ok;
     context.messages.result(arguments.json

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace lamella {
 
@@ -166,6 +167,24 @@ PlaneRule place_cuts(LayerStack& layers, SliceAt at) {
             layer.z = cut;
     }
     return at == SliceAt::top ? PlaneRule::section_below : PlaneRule::section_above;
+}
+
+PlaneRule place_cuts(LayerFile& file, SliceAt at) {
+    PlaneRule rule = file.rule;
+    const bool guessed = at == SliceAt::top && !file.guess.empty();
+    for (LayerPart& part : file.parts) {
+        for (std::size_t i = guessed ? part.layers.size() : 0; i-- > 0;) {
+            Layer& layer = part.layers[i];
+            const double below = i > 0 ? part.layers[i - 1].bottom : 2 * layer.bottom - layer.top;
+            layer.top = std::exchange(layer.bottom, below);
+        }
+        rule = place_cuts(part.layers, at);
+    }
+    if (guessed) {
+        std::erase(file.warnings, file.guess);
+        file.guess.clear();
+    }
+    return rule;
 }
 
 Verification verify(std::span<const Layer> layers, const VerifyOptions& options, const Execution& execution) {

@@ -1,6 +1,8 @@
 // An archive holds one file after the other, and layers come for all of them at once. The first one goes to
 // the archive as it comes, the others wait in a store for their turn.
 
+#include "lamella/core/error.hpp"
+
 #include "container/byte_store.hpp"
 #include "container/ilt_format.hpp"
 #include "container/zip_writer.hpp"
@@ -12,6 +14,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
@@ -118,7 +121,8 @@ class IltWriter final : public OrderedWriter {
                                .parameters = true,
                                .kept = kept_in_list,
                                .not_kept = "jump speeds, delays and spot sizes"}),
-          zip_(path, Overwriting::yes), sections_(sections_of(info.parts)), entries_(sections_.size()) {
+          zip_(path, Overwriting::yes), sections_(sections_of(info.parts)), entries_(sections_.size()),
+          units_(options.units_mm), short_form_(options.short_form) {
         zip_.add(ilt_parameters, parameters_text(sections_));
         zip_.begin(sections_.front().name, ZipMethod::stored);
         for (std::size_t i = 0; i < sections_.size(); ++i)
@@ -160,7 +164,8 @@ class IltWriter final : public OrderedWriter {
                 layers.push_back(parts[part]);
             writes.push_back(entries_[i].writer->prepare(layers));
         }
-        return [writes = std::move(writes)](const PlanePlace&) {
+        return [this, writes = std::move(writes)](const PlanePlace& place) {
+            check_apart(place);
             for (const std::function<void()>& write : writes)
                 write();
         };
@@ -182,6 +187,20 @@ class IltWriter final : public OrderedWriter {
             zip_.end();
         }
         zip_.finish();
+    }
+
+    /// Readers take heights for one that differ by so little as files round them.
+    void check_apart(const PlanePlace& place) {
+        const double units = place.top / units_;
+        const double top =
+            units_ * (short_form_ ? std::nearbyint(units) : static_cast<double>(static_cast<float>(units)));
+        if (place.position > 0 && top - last_top_ <= ilt_one_plane_mm)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("layer {}: its top, z = {} mm, is not more than {} mm above the one before, and "
+                            "planes of ilt that are no further apart are read as one; choose higher layers",
+                            place.index, place.top, ilt_one_plane_mm));
+        last_top_ = top;
     }
 
     /// All of the file is one piece, which goes where it is put.
@@ -230,6 +249,9 @@ class IltWriter final : public OrderedWriter {
     std::vector<Entry> entries_; ///< of sections_; their pieces stay where they are
     ByteStore store_;
     std::uint64_t waiting_ = 0; ///< bytes in it that are not in the archive
+    double units_;
+    bool short_form_;
+    double last_top_ = 0; ///< as readers have it
 };
 
 } // namespace

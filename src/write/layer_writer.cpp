@@ -1,8 +1,11 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/write/layer_page.hpp"
 
+#include "contour/same_height.hpp"
+#include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
 #include "write/layer_writers.hpp"
@@ -55,6 +58,7 @@ constexpr std::array formats{
                 .summary = "all layers in one SVG file as Slic3r writes it; coordinates to 0.001 mm",
                 .open = open_layered_svg,
                 .pieces = true,
+                .cuts = true,
                 .rounding = text_rounding},
     LayerFormat{.name = "slc",
                 .extension = ".slc",
@@ -72,6 +76,7 @@ constexpr std::array formats{
                 .open = open_dxf,
                 .pieces = true,
                 .one_way = true,
+                .cuts = true,
                 .rounding = text_rounding},
     LayerFormat{.name = "geojson",
                 .extension = ".geojson",
@@ -79,17 +84,20 @@ constexpr std::array formats{
                 .open = open_geojson,
                 .pieces = true,
                 .one_way = true,
+                .cuts = true,
                 .rounding = text_rounding},
     LayerFormat{.name = "json",
                 .extension = ".json",
                 .summary = "all that layers have as JSON; exact",
                 .open = open_layers_json,
                 .pieces = true,
+                .cuts = true,
                 .rounding = unrounded},
     LayerFormat{.name = "npz",
                 .extension = ".npz",
                 .summary = "NumPy arrays; exact",
                 .open = open_npz,
+                .cuts = true,
                 .rounding = unrounded},
     LayerFormat{.name = "ilt",
                 .extension = ".ilt",
@@ -118,13 +126,15 @@ constexpr std::array formats{
                 .extension = ".html",
                 .summary = "a page to look at the layers with any browser; see docs/viewer.md",
                 .open = open_page,
-                .one_way = true},
+                .one_way = true,
+                .cuts = true},
     LayerFormat{.name = "svg-layers",
                 .extension = "",
                 .summary = "a folder with one SVG picture per layer; coordinates to 0.001 mm",
                 .open = open_svg_layers,
                 .directory = true,
                 .one_way = true,
+                .cuts = true,
                 .rounding = text_rounding},
     LayerFormat{.name = "png",
                 .extension = "",
@@ -132,12 +142,14 @@ constexpr std::array formats{
                 .open = open_picture_folder,
                 .directory = true,
                 .one_way = true,
+                .cuts = true,
                 .picture = true},
     LayerFormat{.name = "png-zip",
                 .extension = ".zip",
                 .summary = "the same pictures in a zip archive",
                 .open = open_picture_archive,
                 .one_way = true,
+                .cuts = true,
                 .picture = true},
     LayerFormat{.name = "sl1",
                 .extension = ".sl1",
@@ -154,6 +166,15 @@ constexpr std::array formats{
                 .picture = true,
                 .exposure = true},
 };
+
+/// "json, npz and svg": those that keep where layers were cut, and can be read.
+std::string names_of_exact() {
+    std::vector<std::string_view> texts;
+    for (const LayerFormat& format : formats)
+        if (format.cuts && !format.one_way)
+            texts.push_back(format.name);
+    return fmt::format("{} and {}", fmt::join(texts.begin(), texts.end() - 1, ", "), texts.back());
+}
 
 std::string names() {
     std::vector<std::string> texts;
@@ -174,17 +195,56 @@ void check_info(const LayerFileInfo& info) {
                     "a slice file needs the box of its part, and that is empty or not finite");
 }
 
+/// Counts layers that were not cut half-way up.
+class MovedCuts {
+  public:
+    void note(const PlanePlace& layer) {
+        const auto is_at = [&](double z) {
+            return std::abs(layer.z - z) <= same_height_mm;
+        };
+        if (is_at(layer.bottom + (layer.top - layer.bottom) / 2))
+            return;
+        if (all_++ == 0)
+            lowest_ = layer.z;
+        bottoms_ += is_at(layer.bottom) ? 1 : 0;
+        tops_ += is_at(layer.top) ? 1 : 0;
+    }
+    /// A warning, where there are any: of a format that has no place for them.
+    [[nodiscard]] std::vector<std::string> warnings() const {
+        if (all_ == 0)
+            return {};
+        return {fmt::format(
+            "{} cut {}, the lowest at z = {:.6g} mm: the format has no place for that, and readers "
+            "take the middle; {} have",
+            counted(all_, "layer was", "layers were"),
+            tops_ == all_      ? "at the top"
+            : bottoms_ == all_ ? "at the bottom"
+                               : "elsewhere than in the middle",
+            lowest_, names_of_exact())};
+    }
+
+  private:
+    std::uint64_t all_ = 0;
+    std::uint64_t bottoms_ = 0;
+    std::uint64_t tops_ = 0;
+    double lowest_ = 0;
+};
+
 /// Another writer, held to LayerWriteOptions::most_bytes and `strict`: throws after the layer that was too
-/// much, and instead of ending a file that there are warnings of.
+/// much, and instead of ending a file that there are warnings of. Warns of what the table says of the format.
 class HeldWriter final : public LayerWriter {
   public:
-    HeldWriter(std::unique_ptr<LayerWriter> writer, std::string path, const LayerWriteOptions& options)
-        : writer_(std::move(writer)), path_(std::move(path)), most_bytes_(options.most_bytes),
-          strict_(options.strict) {}
+    HeldWriter(std::unique_ptr<LayerWriter> writer, std::string path, const LayerFormat& format,
+               const LayerWriteOptions& options)
+        : writer_(std::move(writer)), path_(std::move(path)), keeps_cuts_(format.cuts),
+          most_bytes_(options.most_bytes), strict_(options.strict) {}
 
     std::function<void()> prepare(std::span<const Layer> parts) override {
-        return [this, write = writer_->prepare(parts)] {
+        std::function<void()> write = writer_->prepare(parts);
+        return [this, write = std::move(write), place = plane_place(parts)] {
             write();
+            if (!keeps_cuts_)
+                moved_cuts_.note(place);
             check_bytes(path_, bytes(), most_bytes_);
         };
     }
@@ -197,13 +257,20 @@ class HeldWriter final : public LayerWriter {
     }
 
     std::uint64_t bytes() const noexcept override { return writer_->bytes(); }
-    std::vector<std::string> warnings() const override { return writer_->warnings(); }
+    std::vector<std::string> warnings() const override {
+        std::vector<std::string> lines = writer_->warnings();
+        for (std::string& line : moved_cuts_.warnings())
+            lines.push_back(std::move(line));
+        return lines;
+    }
 
   private:
     std::unique_ptr<LayerWriter> writer_;
     std::string path_;
+    bool keeps_cuts_;
     std::uint64_t most_bytes_;
     bool strict_;
+    MovedCuts moved_cuts_;
 };
 
 } // namespace
@@ -243,7 +310,8 @@ const LayerFormat& layer_format(std::string_view name, const std::string& path) 
     if (found != formats.end() && (!name.empty() || !extension.empty()))
         return *found;
     if (!name.empty())
-        throw Error(ErrorKind::usage, fmt::format("there is no format '{}'; choose from {}", name, names()));
+        throw Error(ErrorKind::usage,
+                    fmt::format("there is no format '{}'; choose from {}", excerpt(name), names()));
     if (path == "-")
         throw Error(ErrorKind::usage,
                     fmt::format("standard output has no extension to tell the format; choose a `format`: {}",
@@ -269,9 +337,9 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
             fmt::format("{} writes a folder, so standard output is not possible; give the path of a folder",
                         format.name));
     std::unique_ptr<LayerWriter> writer = format.open(path, info, options);
-    if (options.most_bytes == 0 && !options.strict)
+    if (options.most_bytes == 0 && !options.strict && format.cuts)
         return writer;
-    return std::make_unique<HeldWriter>(std::move(writer), path, options);
+    return std::make_unique<HeldWriter>(std::move(writer), path, format, options);
 }
 
 void write_planes(LayerWriter& writer, std::size_t planes,

@@ -6,7 +6,8 @@ import math
 from program import ProgramTest, binary_stl, main
 
 KEYS = ["path", "ok", "warnings", "layers", "contours", "open_chains", "crossings", "misoriented", "overlapping",
-        "volume_mm3", "max_area_error_mm2", "displaced", "height_overlaps", "hatches", "heights", "findings"]
+        "volume_mm3", "max_area_error_mm2", "displaced", "height_overlaps", "hatches", "heights", "findings",
+        "hint"]
 
 
 def ascii_cli(*polylines):
@@ -24,6 +25,21 @@ def walls(points, height):
     for (ax, ay), (bx, by) in zip(points, points[1:] + points[:1]):
         yield (ax, ay, 0), (bx, by, 0), (bx, by, height)
         yield (ax, ay, 0), (bx, by, height), (ax, ay, height)
+
+
+def pyramid(size, height):
+    """A frustum of four sides: at height h each stands 0.8 h inwards, for a size twice the height."""
+    top = [(0.4 * size, 0.4 * size, height), (0.6 * size, 0.4 * size, height), (0.6 * size, 0.6 * size, height),
+           (0.4 * size, 0.6 * size, height)]
+    base = [(0, 0, 0), (size, 0, 0), (size, size, 0), (0, size, 0)]
+    yield base[0], base[2], base[1]
+    yield base[0], base[3], base[2]
+    yield top[0], top[1], top[2]
+    yield top[0], top[2], top[3]
+    for i in range(4):
+        j = (i + 1) % 4
+        yield base[i], base[j], top[j]
+        yield base[i], top[j], top[i]
 
 
 def even_triangles(n, angle=0.3, more=0.1):
@@ -202,6 +218,50 @@ class Verify(ProgramTest):
                 self.succeed("slice", "ball.stl", "-o", "ball.cli", "--slice-at", at, "--layer-height", "0.5")
                 self.verify("ball.cli", "--mesh", "ball.stl", "--slice-at", at)
         self.verify("ball.cli", "--mesh", "ball.stl", "--slice-at", "bottom", code=4)
+
+    def test_cuts_that_a_format_does_not_keep_are_told_and_their_cure_is_named(self):
+        self.succeed("make", "rook", "-o", "rook.stl")
+        for where in ["top", "bottom"]:
+            for name in ["a.cli", "a.slc", "a.3mf"]:
+                with self.subTest(where=where, name=name):
+                    options = ["slice", "rook.stl", "--layer-height", "2", "--slice-at", where, "-o", name]
+                    err = self.succeed(*options).err
+                    self.assertRegex(err, rf"{name}: \d+ layers were cut at the {where}, the lowest at z = .* json and npz")
+                    self.path(name).unlink()
+                    self.fail_with(4, f"layers were cut at the {where}", *options, "--strict")
+                    self.succeed(*options)
+                    found = self.run_program("verify", name, "--mesh", "rook.stl")
+                    self.assertEqual(found.code, 4)
+                    self.assertIn(f"does not keep where layers were cut; the middle was assumed: add --slice-at {where}",
+                                  found.text)
+                    self.assertNotIn("--tolerance", found.text)
+                    self.assertIn(where, self.run_program("verify", name, "--mesh", "rook.stl", "--json").json()["hint"])
+                    self.succeed("verify", name, "--mesh", "rook.stl", "--slice-at", where)
+        for name in ["a.json", "a.npz", "a.svg"]:
+            self.assertEqual(self.succeed("slice", "rook.stl", "--slice-at", "top", "--strict", "-o", name).err, "")
+
+    def test_listed_cuts_that_a_format_does_not_keep_are_told(self):
+        self.succeed("make", "rook", "-o", "rook.stl")
+        self.write("z.txt", "1\n2\n4\n5\n9\n")
+        result = self.succeed("slice", "rook.stl", "--z-list", "z.txt", "-o", "a.cli")
+        self.assertRegex(result.err, r"3 layers were cut elsewhere than in the middle, the lowest at z = 2 mm")
+        found = self.run_program("verify", "a.cli", "--mesh", "rook.stl")
+        self.assertEqual(found.code, 4)
+        self.assertIn("cli does not keep where layers were cut; the middle was assumed: where they were", found.text)
+        self.succeed("slice", "rook.stl", "--z-list", "z.txt", "-o", "a.json", "--strict")
+        self.succeed("verify", "a.json", "--mesh", "rook.stl")
+
+    def test_tops_with_a_box_of_planes_are_tops(self):
+        self.write("frustum.stl", binary_stl(list(pyramid(20, 10))))
+        planes = "".join(f"$$LAYER/{100 * i}\n$$POLYLINE/1,1,5," + ",".join(
+            f"{x}" for x in [80 * i, 80 * i, 20000 - 80 * i, 80 * i, 20000 - 80 * i, 20000 - 80 * i, 80 * i,
+                             20000 - 80 * i, 80 * i, 80 * i]) + "\n" for i in range(1, 100))
+        for box in ["0,0,0.1,20,20,9.9", "0,0,0.1,20,20,10"]:
+            with self.subTest(box):
+                self.write("tops.cli", f"$$HEADERSTART\n$$ASCII\n$$UNITS/0.001\n$$LABEL/1,part\n$$DIMENSION/{box}\n"
+                                       f"$$HEADEREND\n$$GEOMETRYSTART\n{planes}$$GEOMETRYEND\n")
+                # By the second box the heights are bottoms, which is a guess: the option knows better.
+                self.succeed("verify", "tops.cli", "--mesh", "frustum.stl", "--slice-at", "top", "--strict")
 
     def test_formats_that_keep_cuts_keep_the_rule_of_the_plane(self):
         self.succeed("make", "rook", "-o", "rook.stl")

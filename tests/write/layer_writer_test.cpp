@@ -117,6 +117,65 @@ TEST(LayerWriter, SaysWhichGapsBetweenLayersAreLost) {
         << error;
 }
 
+TEST(LayerWriter, SaysWhichCutsAreLost) {
+    // As the table says, but for those that can be read back.
+    const std::string_view keep[] = {"json", "npz", "svg"};
+    for (const LayerFormat& format : layer_formats()) {
+        if (!format.one_way) {
+            EXPECT_EQ(format.cuts, std::find(std::begin(keep), std::end(keep), format.name) != std::end(keep))
+                << format.name;
+        }
+        const TemporaryFolder folder;
+        const auto warning = [&](double fraction) {
+            LayerStack layers = square_with_hole();
+            for (Layer& layer : layers)
+                layer.z = layer.bottom + fraction * layer.thickness();
+            for (const std::string& line :
+                 write_layers(folder.file("layers"), format, layers, info_of(layers), options_for_any()))
+                if (line.find(" cut ") != std::string::npos)
+                    return line;
+            return std::string();
+        };
+        EXPECT_EQ(warning(0.5), "");
+        for (const auto& [fraction, text] :
+             {std::pair{0.0, "2 layers were cut at the bottom, the lowest at z = 0 mm"},
+              {1.0, "2 layers were cut at the top, the lowest at z = 0.5 mm"},
+              {0.3, "2 layers were cut elsewhere than in the middle"}})
+            EXPECT_EQ(warning(fraction).starts_with(text), !format.cuts)
+                << format.name << ": " << warning(fraction);
+        LayerStack layers = square_with_hole();
+        layers.back().z = layers.back().top;
+        LayerWriteOptions options = options_for_any();
+        options.strict = true;
+        if (!format.cuts && !format.filled_parts) { // which warn of parts without parameters
+            EXPECT_TRUE(error_of(ErrorKind::defect,
+                                 [&] {
+                                     write_layers(folder.file("layers"), format, layers, info_of(layers),
+                                                  options);
+                                 })
+                            .find("1 layer was cut at the top") != std::string::npos)
+                << format.name;
+        }
+    }
+}
+
+TEST(LayerWriter, RefusesPlanesThatIltReadersWouldTakeForOne) {
+    const TemporaryFolder folder;
+    LayerStack layers = square_with_hole();
+    for (const auto& [thickness, fits] : {std::pair{9e-6, false}, {5e-5, true}}) {
+        layers[1].bottom = layers[0].top;
+        layers[1].top = layers[0].top + thickness;
+        layers[1].z = layers[0].top + thickness / 2;
+        const auto write = [&] {
+            write_layers(folder.file("a.ilt"), layer_format("ilt", ""), layers, info_of(layers));
+        };
+        if (fits)
+            EXPECT_NO_THROW(write());
+        else
+            EXPECT_NE(error_of(ErrorKind::usage, write).find("layer 1: its top"), std::string::npos);
+    }
+}
+
 TEST(LayerWriter, RefusesHeightsThatTheFileCannotTellApartOrHold) {
     const TemporaryFolder folder;
     for (const LayerFormat* format : plain_formats()) {

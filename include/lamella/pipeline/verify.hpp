@@ -55,6 +55,10 @@ struct VerifyOptions {
 /// changes their z, but where it is off by 1e-6 mm at most. Returns the rule that goes with it. O(layers).
 PlaneRule place_cuts(LayerStack& layers, SliceAt at);
 
+/// The same for all parts of a file. Layers that were cut at their tops are those whose tops the file has:
+/// what was guessed otherwise (LayerFile::guess) is taken back.
+PlaneRule place_cuts(LayerFile& file, SliceAt at);
+
 /// Between which heights layers lie, and the mesh that they are compared with, in mm.
 struct CoveredHeights {
     double bottom = 0; ///< of the first layer

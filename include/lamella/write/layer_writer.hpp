@@ -109,6 +109,7 @@ struct LayerFormat {
     bool joins = false;        ///< files of consecutive layers can be put together as they are
     bool one_way = false;      ///< layers cannot be read back
     bool filled_parts = false; ///< files know only those parts that have something in them
+    bool cuts = false;         ///< keeps where layers were cut; readers of other formats take the middle
     /// Of coordinates, with the options as they are by default; none where contours are not kept as such.
     std::optional<Rounding> rounding = {};
 
@@ -126,8 +127,8 @@ struct LayerFormat {
 [[nodiscard]] const LayerFormat& layer_format(std::string_view name, const std::string& path);
 
 /// Writes one slice file. Layers must arrive in ascending z. Nothing appears at the path before `finish`:
-/// data wait in the same folder, in a file without a name or, where the file system has none, of a hidden one,
-/// of which nothing is left when the writer is destroyed unfinished.
+/// data wait in the same folder, in a file without a name or, where the file system has none, of a hidden
+/// one, of which nothing is left when the writer is destroyed unfinished.
 /// "-" writes standard output.
 class LayerWriter {
   public:
