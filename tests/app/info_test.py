@@ -1,5 +1,7 @@
 """lamella info, of meshes and of slice files."""
 
+import zipfile
+
 from program import ProgramTest, binary_stl, box_triangles, main, open_box
 
 MESH_KEYS = ["path", "format", "unit", "triangles", "vertices", "bbox", "volume_mm3", "area_mm2", "closed",
@@ -149,6 +151,25 @@ class Info(ProgramTest):
                 self.assertAlmostEqual(found["volume_mm3"], 6000, delta=1)
                 self.assertIn("slice file", self.succeed("info", name).text)
                 self.assertEqual(self.info("-", stdin=self.bytes_of(name))["layers"], 10)
+
+    def test_regions_of_scan_vectors_are_told(self):
+        def vectors(command):
+            return f"$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/0\n$$LAYER/1\n{command}\n" \
+                   "$$GEOMETRYEND\n"
+
+        files = {"cyl_1_md.cli": "$$HATCHES/1,2,0,0,5,5,0,1,5,6", "cyl_1_c1md.cli": "$$POLYLINE/1,1,5,0,0,5,0,5,5,0,5,0,0",
+                 "cyl_1_dn.cli": "$$HATCHES/1,1,0,0,3,4"}
+        with zipfile.ZipFile(self.path("a.ilt"), "w") as archive:
+            for name, command in files.items():
+                archive.writestr(name, vectors(command))
+            archive.writestr("modelsection_param.txt", "".join(
+                f"[{name}]\nLaserSpeed = 800 mm/s\nLaserPower = 200 watt\n" for name in files))
+        found = self.info("a.ilt")
+        self.assertEqual(found["parts"], ["cyl_1 core hatch", "cyl_1 core contour 1", "cyl_1 downskin hatch"])
+        self.assertEqual(list(found["regions"]), ["core", "downskin"])
+        self.assertEqual((found["regions"]["core"]["contour_vectors"], found["regions"]["core"]["hatch_vectors"]), (4, 2))
+        self.assertEqual(found["regions"]["downskin"], {"contour_vectors": 0, "hatch_vectors": 1, "marked_mm": 5})
+        self.assertRegex(self.succeed("info", "a.ilt").text, r"(?m)^  downskin +0 vectors on contours, 1 in hatches, 5\.0 mm")
 
     def test_bad_files(self):
         self.write("empty", b"")

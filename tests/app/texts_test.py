@@ -99,7 +99,8 @@ class Texts(ProgramTest):
                           ["info", "broken.cli"], ["convert", "broken.cli", "a.svg"], ["verify", "broken.cli"],
                           ["verify", "turned.cli"], ["view", "broken.cli", "-o", "a.html"],
                           ["scan", "broken.cli", "-o", "a.cli"], ["compare", "broken.cli", "broken.cli"],
-                          ["slice", "box.stl", "--layer-height", "9", "-o", "a.cli"]]:
+                          ["slice", "box.stl", "--layer-height", "9", "-o", "a.cli"],
+                          ["slice", "box.stl", "--layer-height", "much", "-o", "a.cli"], ["slice", "--bogus"]]:
             with self.subTest(arguments):
                 result = self.run_program(*arguments, "--progress", "json")
                 self.assertNotEqual(result.code, 0)
