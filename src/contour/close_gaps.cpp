@@ -81,6 +81,12 @@ bool lies_inside(const Point2& p, const Piece& piece) noexcept {
                                   : (piece.a.y < p.y) == (p.y < piece.b.y) && p.y != piece.b.y;
 }
 
+/// The pieces cross, each with its ends strictly on either side of the other.
+bool cross(const Piece& one, const Piece& other) noexcept {
+    return orientation(one.a, one.b, other.a) * orientation(one.a, one.b, other.b) < 0 &&
+           orientation(other.a, other.b, one.a) * orientation(other.a, other.b, one.b) < 0;
+}
+
 /// The join crosses the piece, or runs through one of its ends.
 bool is_barred(const Piece& join, const Piece& by) noexcept {
     if (std::max(join.a.x, join.b.x) < std::min(by.a.x, by.b.x) ||
@@ -90,8 +96,7 @@ bool is_barred(const Piece& join, const Piece& by) noexcept {
         return false;
     if (lies_inside(by.a, join) || lies_inside(by.b, join))
         return true;
-    return orientation(join.a, join.b, by.a) * orientation(join.a, join.b, by.b) < 0 &&
-           orientation(by.a, by.b, join.a) * orientation(by.a, by.b, join.b) < 0;
+    return cross(join, by);
 }
 
 /// The segments of a layer by rows of y, which are at least as high as a join is long.
@@ -155,6 +160,62 @@ class Rows {
     std::vector<std::vector<Piece>> rows_;
 };
 
+/// Chains in a row.
+struct JoinedContour {
+    std::vector<Point2> points;
+    std::vector<std::size_t> joins; ///< the points from which ends were joined to the next point
+    bool closed = false;
+};
+
+/// Chains that overlap cross where they are joined: on the edge of a mesh with a vertex of a neighbour on it,
+/// the two ends are one point but for rounding, and the join may lead back. Where the segments before and
+/// after a join cross, one of its ends is left out.
+///
+///        p ------------- a                  p ------------ a
+///                   b ---+---- q    ->                      `----- q
+///
+/// Returns the points that stay, in their order. Neither is left out where the new segment would cross
+/// another.
+std::vector<Point2> without_overlaps(const JoinedContour& contour, Rows& rows) {
+    const std::vector<Point2>& points = contour.points;
+    const std::size_t n = points.size();
+    constexpr std::size_t none = ~std::size_t{0};
+    std::vector<std::size_t> next(n);
+    std::vector<std::size_t> before(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        next[i] = i + 1 < n ? i + 1 : contour.closed ? 0 : none;
+        before[i] = i > 0 ? i - 1 : contour.closed ? n - 1 : none;
+    }
+    std::vector<bool> left_out(n, false);
+    std::size_t left = n;
+    const auto leave_out = [&](std::size_t i) {
+        left_out[i] = true;
+        --left;
+        next[before[i]] = next[i];
+        before[next[i]] = before[i];
+        rows.add({points[before[i]], points[next[i]]});
+    };
+    for (std::size_t a : contour.joins) {
+        a = std::min(a, n - 1); // the last point of a ring may have been its first one, too
+        while (left_out[a])
+            a = before[a];
+        const std::size_t b = next[a];
+        const std::size_t p = before[a];
+        const std::size_t q = b == none ? none : next[b];
+        if (p == none || q == none || left <= 3 || !cross({points[p], points[a]}, {points[b], points[q]}))
+            continue;
+        if (!rows.bar({points[a], points[q]}))
+            leave_out(b);
+        else if (!rows.bar({points[p], points[b]}))
+            leave_out(a);
+    }
+    std::vector<Point2> kept;
+    for (std::size_t i = 0; i < n; ++i)
+        if (!left_out[i])
+            kept.push_back(points[i]);
+    return kept;
+}
+
 /// What has been joined so far: chains in a row, each known by its first one and by its last one.
 class Joined {
   public:
@@ -189,24 +250,27 @@ class Joined {
         first_[last] = first;
     }
 
-    /// visit(points, closed) for what there is now.
+    /// visit(contour) for what there is now.
     template <class Visit>
     void for_each(const Visit& visit) const {
         std::vector<bool> done(layer_.contours(), false);
-        std::vector<Point2> points;
         const auto follow = [&](std::size_t from) {
-            points.clear();
+            JoinedContour contour;
             std::size_t c = from;
             do {
                 done[c] = true;
                 for (const Point2& p : layer_.contour(c))
-                    if (points.empty() || points.back() != p)
-                        points.push_back(p);
+                    if (contour.points.empty() || contour.points.back() != p)
+                        contour.points.push_back(p);
                 c = next_[c];
+                if (c != none)
+                    contour.joins.push_back(contour.points.size() - 1);
             } while (c != none && c != from);
-            if (c == from && points.size() > 1 && points.front() == points.back())
-                points.pop_back();
-            visit(std::span<const Point2>(points), c == from);
+            contour.closed = c == from;
+            if (contour.closed && contour.points.size() > 1 &&
+                contour.points.front() == contour.points.back())
+                contour.points.pop_back();
+            visit(std::move(contour));
         };
         for (std::size_t c = layer_.rings; c < layer_.contours(); ++c)
             if (!continued_[c])
@@ -273,8 +337,11 @@ ClosedGaps close_gaps(const Layer& layer, double within_mm) {
     LayerBuilder builder;
     for (std::size_t c = 0; c < layer.rings; ++c)
         builder.add_contour(layer.contour(c), true);
-    joined.for_each(
-        [&](std::span<const Point2> points, bool closed) { builder.add_contour(points, closed); });
+    joined.for_each([&](const JoinedContour& contour) {
+        const std::vector<Point2> points = without_overlaps(contour, rows);
+        result.left_out += contour.points.size() - points.size();
+        builder.add_contour(points, contour.closed);
+    });
     result.layer = builder.finish(layer.index, layer.z, layer.bottom, layer.top);
     // Each join makes one chain of two, or a ring of one.
     assert(result.layer.open_chains() + result.joins.size() == layer.open_chains());

@@ -187,6 +187,47 @@ TEST(RepairedMeshes, VerticesOnEdgesOfNeighboursLeaveGapsOfRoundingOnly) {
     }
 }
 
+/// Splits some triangles at a point of one of their edges, whose other side stays whole.
+Soup with_vertices_on_edges(const Soup& soup, double share, Random& random) {
+    Soup split;
+    for (Triangle3 t : soup) {
+        if (random.real(0, 1) >= share) {
+            split.push_back(t);
+            continue;
+        }
+        std::rotate(t.begin(), t.begin() + random.integer(0, 2), t.end());
+        const double s = random.integer(0, 2) == 0 ? 0.5 : random.real(0.02, 0.98);
+        const auto between = [&](double a, double b) {
+            return a + s * (b - a);
+        };
+        const Point3 on{between(t[0].x, t[1].x), between(t[0].y, t[1].y), between(t[0].z, t[1].z)};
+        split.push_back({t[0], on, t[2]});
+        split.push_back({on, t[1], t[2]});
+    }
+    return split;
+}
+
+TEST(RepairedMeshes, LayersOfMeshesWithVerticesOnEdgesVerifyOnceTheirGapsAreClosed) {
+    Random random(108);
+    std::uint64_t left_out = 0;
+    for (int round = 0; round < rounds_within_reason(400); ++round) {
+        SCOPED_TRACE(round);
+        Soup soup = random_solids(random, false);
+        for (std::int64_t level = random.integer(1, 4); level > 0; --level)
+            soup = with_vertices_on_edges(soup, random.real(0.05, 0.5), random);
+        LayerStack layers = slice(welded(soup), plan_listed(random_heights(soup, random, 10)));
+        for (Layer& layer : layers) {
+            ClosedGaps closed = close_gaps(layer, 1e-4);
+            left_out += closed.left_out;
+            layer = std::move(closed.layer);
+        }
+        const Verification verified = verify(layers);
+        ASSERT_TRUE(verified.ok()) << verified.findings.front();
+        ASSERT_EQ(verified.overlapping, 0U);
+    }
+    EXPECT_GT(left_out, 0U);
+}
+
 /// How often the surface winds around a point: what a ray upwards passes through.
 int winding(const Soup& soup, const Point3& p) {
     int sum = 0;

@@ -180,7 +180,7 @@ TEST(CloseGaps, NeverLosesAPointNorMakesAnEndTwiceOnRandomLayers) {
             EXPECT_LE(join.length_mm, within);
             zero += join.length_mm == 0 ? 1 : 0;
         }
-        EXPECT_EQ(closed.layer.points.size() + zero, layer.points.size());
+        EXPECT_EQ(closed.layer.points.size() + zero + closed.left_out, layer.points.size());
         // A join takes one chain away.
         EXPECT_EQ(closed.layer.open_chains() + closed.joins.size(), layer.open_chains());
         EXPECT_GE(closed.layer.rings, layer.rings);
@@ -189,6 +189,41 @@ TEST(CloseGaps, NeverLosesAPointNorMakesAnEndTwiceOnRandomLayers) {
             EXPECT_TRUE(close_gaps(closed.layer, within).joins.empty());
         }
     }
+}
+
+TEST(CloseGaps, LeavesOutAnEndWhereChainsOverlapSoThatNoSegmentsCross) {
+    // A square whose sides end before they meet in a corner, and one whose sides end behind it.
+    const double by = 0x1p-40;
+    const Points rest{{10, 0}, {10, 10}, {0, 10}};
+    const auto with_ends = [&](const Point2& first, const Point2& last) {
+        Points points{first};
+        points.insert(points.end(), rest.begin(), rest.end());
+        points.push_back(last);
+        return points;
+    };
+    const Points apart = with_ends({by, 0}, {0, by});
+    const ClosedGaps closed = close_gaps(normal_layer({}, {apart}), 1e-4);
+    EXPECT_EQ(closed.joins.size(), 1U);
+    EXPECT_EQ(closed.left_out, 0U);
+    EXPECT_TRUE(same_contours(closed.layer, normal_layer({apart}, {})));
+    const ClosedGaps crossing = close_gaps(normal_layer({}, {with_ends({-by, 0}, {0, -by})}), 1e-4);
+    EXPECT_EQ(crossing.joins.size(), 1U);
+    EXPECT_EQ(crossing.left_out, 1U);
+    EXPECT_TRUE(same_contours(crossing.layer, normal_layer({{{0, -by}, {10, 0}, {10, 10}, {0, 10}}}, {})));
+}
+
+TEST(CloseGaps, LeavesNoEndOutWhereTheNewSegmentWouldCrossAContour) {
+    const Points one{{-0.1, 0.2}, {3.2, -0.1}};
+    const Points other{{2.7, -0.1}, {6, 0.2}};
+    EXPECT_EQ(close_gaps(normal_layer({}, {one, other}), 1).left_out, 1U);
+    // Each of these lies between one of the two and the segment that would take its place.
+    const Points below_one{{1.98, -0.05}, {2.02, -0.05}, {2.02, -0.01}, {1.98, -0.01}};
+    const Points below_other{{3.88, -0.05}, {3.92, -0.05}, {3.92, -0.01}, {3.88, -0.01}};
+    EXPECT_EQ(close_gaps(normal_layer({below_one}, {one, other}), 1).left_out, 1U);
+    EXPECT_EQ(close_gaps(normal_layer({below_other}, {one, other}), 1).left_out, 1U);
+    const ClosedGaps closed = close_gaps(normal_layer({below_one, below_other}, {one, other}), 1);
+    EXPECT_EQ(closed.joins.size(), 1U);
+    EXPECT_EQ(closed.left_out, 0U);
 }
 
 TEST(CloseGaps, RefusesDistancesThatAreNone) {

@@ -24,6 +24,7 @@ struct ClosedGaps {
     double total_mm = 0;
     std::uint64_t refused =
         0; ///< pairs of ends that were free and close enough, but were not joined; see below
+    std::uint64_t left_out = 0; ///< ends left out where chains overlapped; see below
 };
 
 /// Joins the last point of a chain to the first point of a chain no further away than `within_mm`: material
@@ -34,6 +35,10 @@ struct ClosedGaps {
 /// run through a point of one; and where it would make a ring of less than three points or of a chain that is
 /// not at least twice as long as its gap: a short straight piece is no ring. For each last point the 64
 /// closest first points are looked at.
+///
+/// Where the two chains overlap, so that the segments before and after the join cross, one of the two ends is
+/// left out. So it is where a vertex lies on the edge of a neighbour (a T-junction): both ends are one point
+/// but for rounding.
 ///
 /// A layer without chains is passed through. O(n + c log c) for n points and c chains that few others are
 /// near of. Throws Error{usage} for a distance that is not a positive finite number.
