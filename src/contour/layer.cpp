@@ -1,9 +1,17 @@
 #include "lamella/contour/layer.hpp"
 
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
+
+#include "core/farthest.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
+#include <cstdint>
+#include <string>
 #include <utility>
 
 namespace lamella {
@@ -12,6 +20,38 @@ PointArray::PointArray(std::vector<Point2> points) {
     const auto shared = std::make_shared<const std::vector<Point2>>(std::move(points));
     points_ = *shared;
     owner_ = shared;
+}
+
+void check(const Layer& layer) {
+    // As whole numbers, which ascend with the absolute values of numbers, and NaN is beyond all: no branches,
+    // and several at a time.
+    const auto any_too_far = [](std::span<const Point2> points) {
+        constexpr std::uint64_t farthest = std::bit_cast<std::uint64_t>(farthest_mm);
+        constexpr std::uint64_t absolute = ~(std::uint64_t{1} << 63);
+        std::uint64_t below_0 = 0;
+        for (const Point2& p : points)
+            below_0 |= (farthest - (std::bit_cast<std::uint64_t>(p.x) & absolute)) |
+                       (farthest - (std::bit_cast<std::uint64_t>(p.y) & absolute));
+        return (below_0 >> 63) != 0;
+    };
+    const auto refuse = [&](const std::string& thing, double length) {
+        throw Error(ErrorKind::usage,
+                    fmt::format("layer {}, {}: found {}; coordinates must be finite and within {} mm",
+                                layer.index, thing, length, farthest_mm));
+    };
+    const auto refuse_first_of = [&](const std::string& thing, std::span<const Point2> points) {
+        for (const Point2& p : points)
+            if (is_too_far(p.x) || is_too_far(p.y))
+                refuse(thing, is_too_far(p.x) ? p.x : p.y);
+    };
+    for (const double height : {layer.z, layer.bottom, layer.top})
+        if (is_too_far(height))
+            refuse("its heights", height);
+    if (any_too_far(layer.points.span()))
+        for (std::size_t i = 0; i < layer.contours(); ++i)
+            refuse_first_of(fmt::format("contour {}", i), layer.contour(i));
+    if (any_too_far(layer.hatches.span()))
+        refuse_first_of("its hatches", layer.hatches.span());
 }
 
 void LayerBuilder::end_contour(bool closed) {

@@ -5,6 +5,11 @@
 #include "core/executor.hpp"
 #include "mesh/folds.hpp"
 
+#include <fmt/format.h>
+
+#include <array>
+#include <cstring>
+
 namespace lamella {
 
 namespace {
@@ -39,6 +44,25 @@ Box3 placed_box(const TriangleSoup& soup, std::size_t begin, std::size_t end) {
     return box;
 }
 
+/// One pass without a branch; then the culprit is looked for.
+void require_finite(const TriangleSoup& soup) {
+    const auto is_finite = [&](std::size_t i) {
+        std::array<float, 9> numbers;
+        std::memcpy(&numbers, soup.data() + i * soup.stride(), sizeof numbers);
+        float sum = 0;
+        for (const float number : numbers)
+            sum += number * 0.0F; // which is 0 for finite ones only
+        return sum == 0;
+    };
+    bool all = true;
+    for (std::size_t i = 0; i < soup.size(); ++i)
+        all &= is_finite(i);
+    for (std::size_t i = 0; !all; ++i)
+        if (!is_finite(i))
+            throw Error(ErrorKind::input,
+                        fmt::format("triangle {} (numbered from 0) has a corner that is not finite", i));
+}
+
 } // namespace
 
 TriangleSoup::TriangleSoup(std::vector<Triangle3f> triangles) {
@@ -46,6 +70,13 @@ TriangleSoup::TriangleSoup(std::vector<Triangle3f> triangles) {
     first_ = reinterpret_cast<const std::byte*>(owned->data());
     count_ = owned->size();
     owner_ = owned;
+    require_finite(*this);
+}
+
+TriangleSoup::TriangleSoup(std::shared_ptr<const void> owner, const std::byte* first, std::size_t stride,
+                           std::size_t count)
+    : TriangleSoup(KnownFinite{}, std::move(owner), first, stride, count) {
+    require_finite(*this);
 }
 
 TriangleSoup TriangleSoup::transformed(const Transform& map) const {

@@ -1,10 +1,7 @@
 #include "pipeline/layer_check.hpp"
 
-#include "lamella/core/error.hpp"
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"
-
-#include "core/farthest.hpp"
 
 #include <fmt/format.h>
 
@@ -25,26 +22,6 @@ bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding)
 }
 
 } // namespace
-
-void check_coordinates(std::span<const Layer> layers) {
-    const auto refuse = [](const Layer& layer, const std::string& thing, double length) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("layer {}, {}: found {}; coordinates must be finite and within {} mm",
-                                layer.index, thing, length, farthest_mm));
-    };
-    for (const Layer& layer : layers) {
-        for (const double height : {layer.z, layer.bottom, layer.top})
-            if (is_too_far(height))
-                refuse(layer, "its heights", height);
-        for (std::size_t i = 0; i < layer.contours(); ++i)
-            for (const Point2& p : layer.contour(i))
-                if (is_too_far(p.x) || is_too_far(p.y))
-                    refuse(layer, fmt::format("contour {}", i), is_too_far(p.x) ? p.x : p.y);
-        for (const Point2& p : layer.hatches)
-            if (is_too_far(p.x) || is_too_far(p.y))
-                refuse(layer, "its hatches", is_too_far(p.x) ? p.x : p.y);
-    }
-}
 
 LayerCheck check_layer(const Layer& layer, const Rounding& rounding) {
     LayerCheck result;

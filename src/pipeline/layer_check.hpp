@@ -39,10 +39,6 @@ struct LayerCheck {
     ContourFindings found;
 };
 
-/// Throws Error{usage} that names layer and contour where a length is NaN or infinite, or so large that sums
-/// overflow.
-void check_coordinates(std::span<const Layer> layers);
-
 [[nodiscard]] LayerCheck check_layer(const Layer& layer, const Rounding& rounding);
 
 /// "layer 12 (z 0.375 mm)"

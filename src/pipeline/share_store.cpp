@@ -95,8 +95,8 @@ TriangleSoup ShareStore::take(std::size_t share, std::size_t shape, const Execut
     const Stretch& from = stretch(share, shape);
     const std::uint64_t count = from.end - from.begin;
     if (memory_)
-        return {memory_, reinterpret_cast<const std::byte*>(memory_->data() + from.begin), sizeof(Triangle3f),
-                count};
+        return {TriangleSoup::KnownFinite{}, memory_,
+                reinterpret_cast<const std::byte*>(memory_->data() + from.begin), sizeof(Triangle3f), count};
     const auto memory = std::make_shared<const PageArray<Triangle3f>>(count);
     constexpr std::uint64_t at_once = std::uint64_t{1} << 15;
     Executor executor(execution);
@@ -106,7 +106,8 @@ TriangleSoup ShareStore::take(std::size_t share, std::size_t shape, const Execut
     });
     executor.check_cancelled();
     from.file->forget(from.begin * sizeof(Triangle3f), count * sizeof(Triangle3f));
-    return {memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), count};
+    return {TriangleSoup::KnownFinite{}, memory, reinterpret_cast<const std::byte*>(memory->data()),
+            sizeof(Triangle3f), count};
 }
 
 } // namespace lamella

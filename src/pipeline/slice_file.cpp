@@ -200,6 +200,7 @@ LayerFileInfo file_info(const FileJob& job, const Plate& plate, const Plan& plan
         info.parts.push_back(
             {.label = part.label, .box = box_after(job.steps, part.box), .support = part.support});
     info.rule = plan.rule;
+    info.known_finite = true;
     return job.scan ? with_exposures(info, *job.scan) : info;
 }
 

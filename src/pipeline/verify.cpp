@@ -188,7 +188,8 @@ PlaneRule place_cuts(LayerFile& file, SliceAt at) {
 }
 
 Verification verify(std::span<const Layer> layers, const VerifyOptions& options, const Execution& execution) {
-    check_coordinates(layers);
+    for (const Layer& layer : layers)
+        check(layer);
     std::vector<LayerCheck> checks(layers.size());
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::polygon, layers.size());

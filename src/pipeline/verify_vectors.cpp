@@ -522,7 +522,8 @@ void tell_row(std::uint32_t number, const ContourRow& row, std::vector<std::stri
 VectorVerification verify_vectors(std::span<const LayerPart> parts, const VerifyOptions& options,
                                   const Execution& execution) {
     for (const LayerPart& part : parts)
-        check_coordinates(part.layers);
+        for (const Layer& layer : part.layers)
+            check(layer);
     const std::vector<Group> groups = groups_of(parts, options.mesh.has_value());
     // What is asked of contours goes by the part. A mesh of several does not tell these apart.
     const std::vector<Group> of_parts = options.strategy ? groups_of(parts, false) : std::vector<Group>();

@@ -374,7 +374,8 @@ TriangleSoup join(std::vector<FacetPiece>& pieces, Executor& executor) {
         std::copy(pieces[i].triangles.begin(), pieces[i].triangles.end(), memory->data() + first[i]);
         let_go(pieces[i].triangles);
     });
-    return {memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), count};
+    return {TriangleSoup::KnownFinite{}, memory, reinterpret_cast<const std::byte*>(memory->data()),
+            sizeof(Triangle3f), count};
 }
 
 /// Adds up what the pieces hold, which come in order.

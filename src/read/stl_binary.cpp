@@ -166,7 +166,7 @@ TriangleSoup copy_finite(const std::byte* corners, std::uint64_t n, const NonFin
                 std::memcpy(to++, corners + i * stl_record_bytes, sizeof *to);
     });
     const auto* first = reinterpret_cast<const std::byte*>(memory->data());
-    return {memory, first, sizeof(Triangle3f), kept};
+    return {TriangleSoup::KnownFinite{}, memory, first, sizeof(Triangle3f), kept};
 }
 
 /// The header's text: what stands before the first byte that no text has, without the blanks around it.
@@ -272,9 +272,10 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
         ReadLimits(source, options).add_bytes((stored - nonfinite.total) * sizeof(Triangle3f));
 
     MeshFile file = describe(source, stored, nonfinite.total, nonfinite.first, remarks);
-    file.objects.front().mesh =
-        nonfinite.total == 0 ? Mesh(TriangleSoup(owner, corners, stl_record_bytes, stored, nonfinite.box))
-                             : Mesh(copy_finite(corners, stored, nonfinite, executor));
+    file.objects.front().mesh = nonfinite.total == 0
+                                    ? Mesh(TriangleSoup(TriangleSoup::KnownFinite{}, owner, corners,
+                                                        stl_record_bytes, stored, nonfinite.box))
+                                    : Mesh(copy_finite(corners, stored, nonfinite, executor));
     progress.finish();
     return file;
 }
@@ -303,7 +304,8 @@ MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink, c
                  batch->span().first((end - begin) * stl_record_bytes - normal_bytes));
         const Survey surveyed = survey(at, end - begin);
         if (surveyed.finite) {
-            sink(TriangleSoup(batch, at, stl_record_bytes, end - begin, surveyed.box),
+            sink(TriangleSoup(TriangleSoup::KnownFinite{}, batch, at, stl_record_bytes, end - begin,
+                              surveyed.box),
                  begin / batch_triangles);
         } else {
             std::vector<Triangle3f> finite;

@@ -214,7 +214,8 @@ class IltWriter final : public OrderedWriter {
                                 .bottom = info.bottom,
                                 .parts = {},
                                 .rule = info.rule,
-                                .piece = &entry.piece};
+                                .piece = &entry.piece,
+                                .known_finite = true}; // or found to be so by this writer
         for (const std::size_t part : sections_[section].parts) {
             PartInfo known = info.parts[part];
             known.support = false; // the warning is of the whole archive

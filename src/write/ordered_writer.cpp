@@ -44,7 +44,8 @@ void check_same_planes(std::span<const LayerStack> parts, const LayerFileInfo& i
 }
 
 PlaneOrder::PlaneOrder(const LayerFileInfo& info, Ascending ascending)
-    : is_piece_(info.piece != nullptr), before_(info.piece != nullptr ? info.piece->before : 0),
+    : is_piece_(info.piece != nullptr), known_finite_(info.known_finite),
+      before_(info.piece != nullptr ? info.piece->before : 0),
       announced_(info.piece != nullptr ? info.piece->layers : info.layers), parts_(info.parts.size()),
       ascending_(ascending) {}
 
@@ -52,11 +53,14 @@ void PlaneOrder::check_parts(std::span<const Layer> parts) const {
     if (parts.size() != parts_)
         throw Error(ErrorKind::usage, fmt::format("{} parts were announced and a plane has layers of {}",
                                                   parts_, parts.size()));
-    for (const Layer& layer : parts)
+    for (const Layer& layer : parts) {
+        if (!known_finite_)
+            check(layer);
         if (layer.hatches.size() % 2 != 0)
             throw Error(ErrorKind::usage,
                         fmt::format("layer {} has {} points of hatch lines; each line has two", layer.index,
                                     layer.hatches.size()));
+    }
 }
 
 void PlaneOrder::next(PlanePlace& plane) {

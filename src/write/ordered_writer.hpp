@@ -46,7 +46,8 @@ class PlaneOrder {
   public:
     explicit PlaneOrder(const LayerFileInfo& info, Ascending ascending = Ascending::z);
 
-    /// Throws Error{usage} when there is not one layer for each part, or one has half a hatch line.
+    /// Throws Error{usage} when there is not one layer for each part, one has a length that is not finite, or
+    /// half a hatch line.
     void check_parts(std::span<const Layer> parts) const;
     /// Tells the plane its position. Throws Error{usage} when it does not follow the one before.
     void next(PlanePlace& plane);
@@ -62,6 +63,7 @@ class PlaneOrder {
 
   private:
     bool is_piece_;
+    bool known_finite_;
     std::uint64_t before_; ///< planes of the file that other pieces of it have
     std::uint64_t announced_;
     std::size_t parts_;

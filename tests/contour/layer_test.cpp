@@ -1,9 +1,12 @@
 #include "lamella/contour/layer.hpp"
 
+#include "fixtures/expect_error.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -78,6 +81,29 @@ TEST(LayerBuilder, IsEmptyAndReadyAgainAfterwards) {
     EXPECT_EQ(builder.finish(0, 0, 0, 0).contours(), 0U);
     add(builder, {{2, 0}, {3, 0}, {2, 1}}, true);
     EXPECT_EQ(builder.finish(0, 0, 0, 0).points[0], (Point2{2, 0}));
+}
+
+TEST(Layer, PassesTheCheckWhereAllLengthsAreFiniteAndWithinReach) {
+    LayerBuilder builder;
+    add(builder, {{0, 0}, {1e100, 0}, {0, -1e100}}, true);
+    add(builder, {{5, 5}, {6, -6}}, false);
+    const Layer layer = builder.finish(7, 1, 0.5, 1.5);
+    EXPECT_NO_THROW(check(layer));
+    EXPECT_NO_THROW(check(Layer{}));
+    for (const double bad : {std::nan(""), -std::nan(""), HUGE_VAL, -HUGE_VAL, 1.1e100, -1.1e100}) {
+        for (std::size_t i = 0; i < 2 * layer.points.size(); ++i) {
+            std::vector<Point2> points(layer.points.begin(), layer.points.end());
+            (i % 2 == 0 ? points[i / 2].x : points[i / 2].y) = bad;
+            Layer changed = layer;
+            changed.points = PointArray(points);
+            test::expect_error(ErrorKind::usage,
+                               {i < 6 ? "layer 7, contour 0: found" : "layer 7, contour 1: found"},
+                               [&] { check(changed); });
+        }
+        Layer changed = layer;
+        changed.z = bad;
+        test::expect_error(ErrorKind::usage, {"layer 7, its heights: found"}, [&] { check(changed); });
+    }
 }
 
 TEST(MergedLayers, OfNoneAreAnEmptyLayer) {

@@ -7,9 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <future>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -126,6 +128,16 @@ TEST(Mesh, MoreMeshesThanIndicesReachAreRefusedBeforeAnyIsCopied) {
                            std::vector<std::array<std::uint32_t, 3>>(std::size_t{1} << 20, {0, 1, 2})};
     const std::vector<Mesh> meshes(std::size_t{1} << 12, Mesh(part));
     test::expect_error(ErrorKind::limit, {"4096 meshes", "4294967295"}, [&] { (void)joined(meshes); });
+}
+
+TEST(Mesh, RefusesCoordinatesThatAreNotFinite) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (const double bad : {std::nan(""), infinity, -infinity, 1e101}) {
+        IndexedMesh mesh = weld(make_box(1, 1, 1));
+        mesh.vertices[5].y = bad;
+        test::expect_error(ErrorKind::input, {"vertex 5 is", "expected finite coordinates"},
+                           [&] { (void)Mesh(mesh); });
+    }
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "mesh/naive.hpp"
 #include "parts/shapes.hpp"
 
@@ -9,6 +10,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -22,6 +24,24 @@ TriangleSoup as_records(const TriangleSoup& soup) {
     }
     const std::byte* first = bytes->data() + 1;
     return {std::move(bytes), first, 50, soup.size()};
+}
+
+TEST(TriangleSoup, RefusesCornersThatAreNotFinite) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    for (const float bad : {std::nanf(""), infinity, -infinity})
+        for (std::size_t number = 0; number < 9; ++number) {
+            std::vector<Triangle3f> triangles(20, {Point3f{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+            Point3f& corner = triangles[7][number / 3];
+            (number % 3 == 0 ? corner.x : number % 3 == 1 ? corner.y : corner.z) = bad;
+            const auto expect_refused = [](auto&& make) {
+                test::expect_error(ErrorKind::input, {"triangle 7", "not finite"}, make);
+            };
+            expect_refused([&] { (void)TriangleSoup(triangles); });
+            expect_refused([&] {
+                (void)TriangleSoup(nullptr, reinterpret_cast<const std::byte*>(triangles.data()),
+                                   sizeof(Triangle3f), triangles.size());
+            });
+        }
 }
 
 TEST(TriangleSoup, OwnsItsTrianglesThroughCopies) {

@@ -140,7 +140,7 @@ TEST(Weld, ReportsProgressAndStopsWhenAsked) {
 TEST(Weld, RefusesMoreTrianglesThanIndicesReach) {
     const auto one = std::make_shared<const Triangle3f>();
     const auto* first = reinterpret_cast<const std::byte*>(one.get());
-    const TriangleSoup soup(one, first, 0, std::size_t{1} << 32);
+    const TriangleSoup soup(TriangleSoup::KnownFinite{}, one, first, 0, std::size_t{1} << 32);
     test::expect_error(ErrorKind::limit, {"cannot weld"}, [&] { (void)weld(soup); });
 }
 

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -426,6 +427,34 @@ TEST(LayerWriter, RefusesLayersOutOfOrderAndOfAnotherNumberThanAnnounced) {
         layers[1].hatches = {};
         EXPECT_TRUE(folder.entries().empty()) << format.name;
     }
+}
+
+TEST(LayerWriter, RefusesWhatIsNotFinite) {
+    const LayerStack sound = square_with_hole();
+    const LayerFileInfo info = info_of(sound);
+    for (const LayerFormat& format : layer_formats())
+        for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
+            const TemporaryFolder folder;
+            const auto refusal_of = [&](const LayerStack& layers) {
+                return error_of(ErrorKind::usage, [&] {
+                    write_layers(folder.file("out"), format, layers, info, options_for_any());
+                });
+            };
+            LayerStack layers = sound;
+            std::vector<Point2> points(layers[1].points.begin(), layers[1].points.end());
+            points.back().y = bad;
+            layers[1].points = PointArray(points);
+            EXPECT_NE(refusal_of(layers).find("layer 1, contour 1: found"), std::string::npos) << format.name;
+            layers = sound;
+            layers[0].hatches = PointArray(std::vector<Point2>{{0, 0}, {bad, 0}});
+            EXPECT_NE(refusal_of(layers).find("layer 0, its hatches: found"), std::string::npos)
+                << format.name;
+            layers = sound;
+            layers[1].top = bad;
+            EXPECT_NE(refusal_of(layers).find("layer 1, its heights: found"), std::string::npos)
+                << format.name;
+            EXPECT_TRUE(folder.entries().empty()) << format.name;
+        }
 }
 
 TEST(LayerWriter, WritesStacksWithoutContoursAndWithoutLayers) {

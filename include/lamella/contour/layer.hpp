@@ -46,7 +46,8 @@ class PointArray {
 /// A layer without contours has offsets == {0}.
 ///
 /// Material lies to the left of the direction of a contour: outer rings run counter-clockwise, holes
-/// clockwise. Coordinates are finite, and zero is +0 (a -0 would compare equal and hash differently).
+/// clockwise. Coordinates are finite (`check` tells), and zero is +0 (a -0 would compare equal and hash
+/// differently).
 ///
 /// The members may be filled directly: an engine that knows its counts beforehand lets many layers share one
 /// block of points.
@@ -70,6 +71,10 @@ struct Layer {
         return points.span().subspan(offsets[i], offsets[i + 1] - offsets[i]);
     }
 };
+
+/// Throws Error{usage} that names the layer and the contour where a length is NaN or infinite, or so large
+/// that sums overflow. Writers of slice files refuse what does not pass. O(points).
+void check(const Layer& layer);
 
 /// Layers in ascending z.
 using LayerStack = std::vector<Layer>;

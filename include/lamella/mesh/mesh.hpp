@@ -15,7 +15,7 @@
 namespace LAMELLA_API lamella {
 
 /// A TriangleSoup or an IndexedMesh: immutable, shared, cheap to copy. It is what all functions take that do
-/// not care which of the two it is.
+/// not care which of the two it is. Its coordinates are finite, and its indices those of vertices.
 ///
 /// Vertices with equal coordinates are the same vertex, in either kind: an indexed mesh may repeat them, as
 /// files do whose faces share none, and is sliced, welded and inspected as if it did not.
@@ -24,8 +24,8 @@ class Mesh {
     /// An empty soup.
     Mesh() = default;
     Mesh(TriangleSoup soup); // NOLINT(google-explicit-constructor): a soup is a mesh
-    /// Throws Error{input} that names the first triangle with a vertex that is not there. Coordinates are not
-    /// looked at: readers give finite ones, and `check` says so of what comes from elsewhere.
+    /// Throws Error{input} that names the first triangle with a vertex that is not there, or the first vertex
+    /// that is not finite or too far away (see `check`).
     Mesh(IndexedMesh mesh); // NOLINT(google-explicit-constructor): so is this; move it in to save a copy
 
     /// What it is; the other one is null.

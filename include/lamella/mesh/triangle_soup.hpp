@@ -34,18 +34,25 @@ using Triangle3 = std::array<Point3, 3>;
 /// copy. The records of a binary STL file are such a view (spacing 50 bytes).
 ///
 /// A soup may carry a placement: an affine map that is applied to each corner, in double, when it is read.
-/// Corners are finite. Equal corners are meant to be the same vertex, with -0 equal to +0.
+/// Corners are finite: constructors throw Error{input} that names the first triangle with one that is not.
+/// Equal corners are meant to be the same vertex, with -0 equal to +0.
 class TriangleSoup {
   public:
     TriangleSoup() = default;
 
-    /// A soup that owns its triangles.
+    /// A soup that owns its triangles. O(n).
     explicit TriangleSoup(std::vector<Triangle3f> triangles);
 
     /// A view of `count` triangles of nine consecutive floats; the i-th starts at `first + i * stride` (no
-    /// alignment needed). `owner` keeps that memory alive as long as any copy of the soup. `box` is that of
-    /// all corners, where it is known already.
+    /// alignment needed). `owner` keeps that memory alive as long as any copy of the soup. O(n).
     TriangleSoup(std::shared_ptr<const void> owner, const std::byte* first, std::size_t stride,
+                 std::size_t count);
+
+    /// The corners have been checked: all of them are finite.
+    struct KnownFinite {};
+
+    /// The same view, without a second look at the corners. `box` is that of all corners, where it is known.
+    TriangleSoup(KnownFinite, std::shared_ptr<const void> owner, const std::byte* first, std::size_t stride,
                  std::size_t count, const std::optional<Box3>& box = std::nullopt)
         : owner_(std::move(owner)), first_(first), stride_(stride), count_(count), stored_box_(box) {}
 

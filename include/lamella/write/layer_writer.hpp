@@ -54,6 +54,8 @@ struct LayerFileInfo {
     PlaneRule rule = PlaneRule::section_above;
     /// Where set: only this piece is written, not to a file. It must outlive the writer.
     const LayerFilePiece* piece = nullptr;
+    /// All layers pass `check`, as those of `slice` do: the writer need not look at every point.
+    bool known_finite = false;
 };
 
 /// html: see lamella/write/layer_page.hpp.

@@ -509,7 +509,8 @@ TEST(CutGraph, RefusesMoreTrianglesThanItCanNumber) {
     // Far more triangles than memory: all of them lie in the same place.
     const auto one = std::make_shared<const Triangle3f>();
     const auto many = [&](std::size_t count) {
-        return TriangleSoup(one, reinterpret_cast<const std::byte*>(one.get()), 0, count);
+        return TriangleSoup(TriangleSoup::KnownFinite{}, one, reinterpret_cast<const std::byte*>(one.get()),
+                            0, count);
     };
     const Plan plan = plan_listed({1});
     for (const std::size_t count : {std::size_t{1} << 31, std::size_t{1} << 40, std::size_t{1} << 62}) {
