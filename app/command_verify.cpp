@@ -5,7 +5,9 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "failure.hpp"
 #include "figures.hpp"
+#include "layering_options.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "scan_options.hpp"
@@ -28,6 +30,7 @@ struct VerifyArguments {
     std::string mesh;
     std::string slice_at;
     double tolerance = 0;
+    std::optional<double> snap;
     bool strict = false;
     bool json = false;
     PlacementOptions placement;
@@ -90,7 +93,7 @@ Json verification_json(const Verification& found) {
 std::string verification_text(const std::string& mesh, const Verification& found, const std::string& hint) {
     std::string text;
     for (const std::string& finding : found.findings)
-        text += fmt::format("  {}\n", finding);
+        text += fmt::format("  {}\n", with_options(finding));
     text += fmt::format("  {}, {}, {}, volume {} mm3\n", counted(found.layers, "layer"),
                         counted(found.contours, "contour"), counted(found.points, "point"),
                         brief(found.volume_mm3));
@@ -185,6 +188,8 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (arguments.mesh.empty() && arguments.placement.given())
         throw Error(ErrorKind::usage,
                     "unit, pose and direction are those of a mesh: name it with --mesh part.stl");
+    if (arguments.mesh.empty() && arguments.snap)
+        throw Error(ErrorKind::usage, "--snap says how a mesh is cut: name it with --mesh part.stl");
     const LayerSteps steps = arguments.making.steps();
     if (arguments.mesh.empty() && steps.any())
         throw Error(ErrorKind::usage, "what was made of the layers is checked against a mesh: name it with "
@@ -229,6 +234,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         VerifyOptions options{.mesh = mesh,
                               .plate = plate,
                               .rule = rule,
+                              .snap_mm = arguments.snap.value_or(0),
                               .steps = steps,
                               .rounding = file.rounding,
                               .tolerance_mm = arguments.tolerance};
@@ -254,6 +260,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         VerifyOptions options{.mesh = mesh,
                               .plate = plate,
                               .rule = rule,
+                              .snap_mm = arguments.snap.value_or(0),
                               .steps = steps,
                               .rounding = file.rounding,
                               .tolerance_mm = arguments.tolerance,
@@ -313,6 +320,7 @@ Command verify_command() {
                      choice("slice-at", "WHERE",
                             "where in their thickness the layers were cut, if not where the file says",
                             slice_at_names(), arguments->slice_at),
+                     snap_option(arguments->snap),
                      row("tolerance", ValueKind::number, "MM",
                          "how far points, ends of lines and cuts may be off, beside what the format rounds; "
                          "for layers that were rounded before [0]",

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -84,7 +85,7 @@ struct Defect {
     DefectWords words;
     std::uint64_t count;
     std::vector<std::string> places; ///< the first of them
-    std::string_view addition = {};  ///< to their meaning
+    std::string addition = {};       ///< to their meaning
 };
 
 template <class Places, class Tell>
@@ -111,6 +112,23 @@ std::string shell_text(const Shell& shell) {
                        point_text(middle(shell.box)));
 }
 
+/// "; 2 of 3 rims are no wider than rounding ...".
+std::string slits_text(const Diagnosis& found) {
+    if (found.slits == 0)
+        return {};
+    // A plane that meets a slit at a small angle finds its sides farther apart.
+    constexpr double least = 1e-6;
+    const int power = static_cast<int>(std::ceil(std::log10(std::max(least, 10 * found.widest_slit_mm))));
+    return fmt::format(
+        "; {} of {} no wider than rounding, as where vertices lie on edges of neighbours (T-junctions): "
+        "lamella slice --close-gaps 1e{} closes their contours",
+        grouped(found.slits),
+        found.boundary_loops == 1
+            ? "1 rim is"
+            : fmt::format("{} rims {}", grouped(found.boundary_loops), found.slits == 1 ? "is" : "are"),
+        power);
+}
+
 std::vector<Defect> defects_of(const Diagnosis& found) {
     const Inspection& counts = found.counts;
     std::vector<Shell> inverted;
@@ -120,10 +138,10 @@ std::vector<Defect> defects_of(const Diagnosis& found) {
         return fmt::format("triangle {}", grouped(i));
     };
     const auto defect = [&](std::uint64_t Inspection::*count, std::vector<std::string> places,
-                            std::string_view addition = "") {
-        return Defect{words_of(count), counts.*count, std::move(places), addition};
+                            std::string addition = "") {
+        return Defect{words_of(count), counts.*count, std::move(places), std::move(addition)};
     };
-    return {defect(&Inspection::boundary_edges, tell_each(found.loops, loop_text)),
+    return {defect(&Inspection::boundary_edges, tell_each(found.loops, loop_text), slits_text(found)),
             defect(&Inspection::orientation_conflicts, tell_each(found.conflicting_edges, edge_text)),
             defect(&Inspection::nonmanifold_edges, tell_each(found.nonmanifold_edges, edge_text)),
             {crowded_vertices, found.nonmanifold_vertices,
@@ -184,6 +202,7 @@ Json places_json(const Diagnosis& found) {
     const auto loop = [](const BoundaryLoop& l) -> Json {
         return {{"edges", l.edges()},
                 {"length_mm", l.length_mm},
+                {"width_mm", l.width_mm},
                 {"closed", l.closed},
                 {"start", point_json(l.points.front())},
                 {"bbox", box_json(l.box)}};
@@ -269,6 +288,7 @@ Json mesh_json(const MeshFile& file, const Diagnosis& found, const Plate& plate)
     const Figures figures = figures_of(file, found);
     Json defects = as_json(defect_figures(found.counts));
     defects["boundary_loops"] = found.boundary_loops;
+    defects["slits"] = found.slits;
     defects["nonmanifold_vertices"] = found.nonmanifold_vertices;
     defects["opposite_pairs"] = found.opposite_pairs;
     Json json = {

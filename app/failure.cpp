@@ -27,6 +27,7 @@ struct FieldOption {
 
 constexpr std::array field_options{
     FieldOption{"`adaptive`", "--adaptive"},
+    FieldOption{"`close_gaps_mm`", "--close-gaps"},
     FieldOption{"`drop_duplicates`", "--drop-duplicates"},
     FieldOption{"`format`", "--format"},
     FieldOption{"`inspect`", "--inspect"},
@@ -34,6 +35,7 @@ constexpr std::array field_options{
     FieldOption{"`max_triangles`", "--max-triangles"},
     FieldOption{"`orient`", "--orient"},
     FieldOption{"`placement`", "--translate"},
+    FieldOption{"`snap_mm`", "--snap"},
     FieldOption{"`strict`", "--strict"},
     FieldOption{"`threads`", "--threads"},
     FieldOption{"`weld_tolerance_mm`", "--weld-tolerance"},
@@ -52,13 +54,6 @@ constexpr std::array field_options{
     FieldOption{"`hatch.turn_degrees`", "--hatch-turn"},
     FieldOption{"`upskin.layers`", "--skin-layers"},
 };
-
-std::string with_options(std::string text) {
-    for (const auto& [field, option] : field_options)
-        for (auto at = text.find(field); at != std::string::npos; at = text.find(field, at))
-            text.replace(at, field.size(), option);
-    return text;
-}
 
 Failure failure(ErrorKind kind, std::string text) {
     switch (kind) {
@@ -81,6 +76,13 @@ Failure failure(ErrorKind kind, std::string text) {
 }
 
 } // namespace
+
+std::string with_options(std::string text) {
+    for (const auto& [field, option] : field_options)
+        for (auto at = text.find(field); at != std::string::npos; at = text.find(field, at))
+            text.replace(at, field.size(), option);
+    return text;
+}
 
 Failure failure_of(const std::exception_ptr& error) {
     try {

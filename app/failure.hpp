@@ -27,6 +27,9 @@ struct Failure {
     std::string text; ///< for a person
 };
 
+/// A text of the library, with options in the place of the fields that it names, such as `max_memory`.
+[[nodiscard]] std::string with_options(std::string text);
+
 /// Of any exception.
 [[nodiscard]] Failure failure_of(const std::exception_ptr& error);
 

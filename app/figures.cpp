@@ -147,6 +147,19 @@ Json parts_json(const FileResult& result) {
 }
 
 /// Objects and lists of plain values take one line each: a layer, a point, a row of a matrix.
+/// Of all files that have any.
+Json near_faces_json(const FileResult& result) {
+    Json files = Json::array();
+    for (std::size_t file = 0; file < result.files.size(); ++file)
+        if (const NearFaceLayers& near = result.near_faces[file]; near.layers > 0)
+            files.push_back({{"path", result.files[file].path},
+                             {"layers", near.layers},
+                             {"first_z", near.first_z},
+                             {"area_mm2", near.area_mm2},
+                             {"farthest_mm", near.farthest_mm}});
+    return files;
+}
+
 void append_json(std::string& text, const Json& value, std::size_t depth) {
     if (std::none_of(value.begin(), value.end(), [](const Json& item) { return item.is_structured(); })) {
         text += compact_json(value);
@@ -370,6 +383,8 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
     }
     if (result.doubts.open_gaps.count > 0)
         stats.update(open_gaps_json(result.doubts.open_gaps));
+    if (Json near = near_faces_json(result); !near.empty())
+        stats["near_faces"] = std::move(near);
     if (job.repair.close_gaps_mm)
         stats["gaps"] = gaps_json(result.gaps);
     stats["layers"] = layers_json(result);

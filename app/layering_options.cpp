@@ -84,7 +84,15 @@ Cut cut_of(const LayeringOptions& options) {
 
 Layering LayeringOptions::layering() const {
     check_ways(*this);
-    return {.cut = cut_of(*this), .at = slice_at_named(slice_at), .only = only};
+    return {.cut = cut_of(*this), .at = slice_at_named(slice_at), .only = only, .snap_mm = snap.value_or(0)};
+}
+
+Option snap_option(std::optional<double>& target) {
+    return length(
+        "snap",
+        "vertices no further from a plane than this count as on it, such as those of faces that are "
+        "level but for rounding",
+        target);
 }
 
 OptionGroup layering_options(LayeringOptions& target) {
@@ -122,7 +130,7 @@ OptionGroup layering_options(LayeringOptions& target) {
                                              excerpt(text)));
                  target.adaptive = parse_range(text);
              }),
-         std::move(cusp)}};
+         std::move(cusp), snap_option(target.snap)}};
 }
 
 } // namespace lamella::app

@@ -23,10 +23,14 @@ struct LayeringOptions {
     std::vector<HeightRange> heights;
     std::optional<std::pair<double, double>> adaptive;
     std::optional<double> cusp;
+    std::optional<double> snap;
 
     /// Reads the list of z. Throws Error{usage} for options that contradict each other, and as read_z_list.
     [[nodiscard]] Layering layering() const;
 };
+
+/// "--snap".
+[[nodiscard]] Option snap_option(std::optional<double>& target);
 
 [[nodiscard]] OptionGroup layering_options(LayeringOptions& target);
 

@@ -47,6 +47,7 @@ def verify(
     mesh: Optional[MeshLike] = None,
     *,
     at: Optional[str] = None,
+    snap: float = 0,
     tolerance: float = 0,
     direction: Sequence[float] = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
@@ -61,6 +62,7 @@ def verify(
     layers: a path or a Stack.
     mesh: what was sliced, as `slice` takes it, and `direction`, `transform`, `unit_mm` as they were given there.
     at: where in their thickness the layers were cut, if not where they say: "bottom", "middle" or "top".
+    snap: as it was given to `slice`.
     tolerance: how far points, ends of lines and cuts may be off, in millimetres, beside what the format rounds: for
         layers that were rounded before, such as those of a CLI file that became JSON.
     threads: 0 takes one for each processor.
@@ -70,10 +72,10 @@ def verify(
     """
     threads, progress = check.thread_count(threads), check.listener(progress)
     place = check.optional(check.choice, "at", at, PLACES)
-    tolerance = check.distance("tolerance", tolerance)
+    snap, tolerance = check.distance("snap", snap), check.distance("tolerance", tolerance)
     stack = as_stack("layers", layers, threads=threads, progress=progress)
     sliced = _mesh_as_sliced(mesh, placing(direction, transform), transform is not None, unit_mm, threads, progress)
-    return Verification(**_lamella.verify(stack, sliced, place or "", tolerance, threads, progress))
+    return Verification(**_lamella.verify(stack, sliced, place or "", snap, tolerance, threads, progress))
 
 
 @dataclass(frozen=True)
@@ -105,6 +107,7 @@ def verify_vectors(
     *,
     strategy: StrategyLike = None,
     at: Optional[str] = None,
+    snap: float = 0,
     tolerance: float = 0,
     direction: Sequence[float] = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
@@ -121,6 +124,7 @@ def verify_vectors(
     mesh: what was sliced, as `slice` takes it, and `direction`, `transform`, `unit_mm` as they were given there.
     strategy: as `scan` takes it; lamella.ScanStrategy() is the one by default, None does not ask for any.
     at: where in their thickness the layers were cut, if not where they say: "bottom", "middle" or "top".
+    snap: as it was given to `slice`.
     tolerance: how far points, ends of lines and cuts may be off, in millimetres, beside what the format rounds: for
         layers that were rounded before, such as those of a CLI file that became JSON.
     threads: 0 takes one for each processor.
@@ -131,10 +135,10 @@ def verify_vectors(
     file = check.path("path", path)
     threads, progress = check.thread_count(threads), check.listener(progress)
     place = check.optional(check.choice, "at", at, PLACES)
-    tolerance = check.distance("tolerance", tolerance)
+    snap, tolerance = check.distance("snap", snap), check.distance("tolerance", tolerance)
     known = None if strategy is None else as_strategy("strategy", strategy)
     sliced = _mesh_as_sliced(mesh, placing(direction, transform), transform is not None, unit_mm, threads, progress)
-    found, warnings = _lamella.verify_vectors(file, sliced, known, place or "", tolerance, threads, progress)
+    found, warnings = _lamella.verify_vectors(file, sliced, known, place or "", snap, tolerance, threads, progress)
     warn(f"{os.fsdecode(file)}: {warning}" for warning in warnings)
     return VectorVerification(**found)
 

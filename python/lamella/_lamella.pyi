@@ -318,6 +318,7 @@ def plan(
     at: str,
     z_range: Optional[Tuple[float, float]],
     layers: Optional[Tuple[int, int]],
+    snap: float,
     threads: int,
     progress: Optional[Progress],
     /,
@@ -354,13 +355,21 @@ def layer_format(name: str, path: bytes, /) -> str: ...
 def mesh_extensions() -> List[str]: ...
 def layer_formats() -> List[Tuple[str, str, str]]: ...
 def verify(
-    stack: Stack, mesh: Optional[Mesh], at: str, tolerance: float, threads: int, progress: Optional[Progress], /
+    stack: Stack,
+    mesh: Optional[Mesh],
+    at: str,
+    snap: float,
+    tolerance: float,
+    threads: int,
+    progress: Optional[Progress],
+    /,
 ) -> Any: ...
 def verify_vectors(
     path: bytes,
     mesh: Optional[Mesh],
     strategy: Optional[ScanStrategy],
     at: str,
+    snap: float,
     tolerance: float,
     threads: int,
     progress: Optional[Progress],
@@ -371,6 +380,7 @@ def compare(
 ) -> Tuple[float, List[Tuple[Optional[int], Optional[int], bool, bool, float, Tuple[float, float]]], bool]: ...
 def slice_stack(mesh: Mesh, plan: Plan, engine: str, threads: int, progress: Optional[Progress], /) -> Stack: ...
 def mesh_doubts(stack: Stack, /) -> List[str]: ...
+def near_faces(mesh: Mesh, plan: Plan, threads: int, progress: Optional[Progress], /) -> str: ...
 def check_strategy(strategy: ScanStrategy, /) -> None: ...
 def exposures(strategy: ScanStrategy, part: bytes, /) -> List[Exposure]: ...
 def support_exposures(strategy: ScanStrategy, part: bytes, /) -> List[Exposure]: ...

@@ -13,7 +13,7 @@ from ._arguments import Progress
 from ._errors import DefectError, UsageError
 from ._lamella import LayerStream, Mesh, Stack
 from ._meshes import MeshLike, as_mesh, inspect, placed, placing
-from ._warning import warn
+from ._warning import warn, with_arguments
 
 DEFAULT_LAYER_HEIGHT = 0.1
 DEFAULT_CUSP = 0.05
@@ -50,6 +50,7 @@ def slice(
     at: str = "middle",
     z_range: Optional[Tuple[float, float]] = None,
     layers: Optional[Tuple[int, int]] = None,
+    snap: float = 0,
     direction: Sequence[float] = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
     unit_mm: Optional[float] = None,
@@ -76,6 +77,8 @@ def slice(
     at: where in its thickness a layer is cut: "bottom", "middle" or "top".
     z_range: only layers cut from the first to the second of these heights, in millimetres.
     layers: only layers from the first of these numbers to the one before the second.
+    snap: vertices no further from a plane than this, in millimetres, count as on it, such as those of faces that are
+        level but for rounding.
     direction: the way up, (x, y, z) of any length; the mesh is turned so that it points along z.
     transform: a (4, 4) matrix that is applied to the mesh before that, in millimetres.
     unit_mm: millimetres per unit of a file that does not say its unit; 1 unless given.
@@ -89,11 +92,12 @@ def slice(
     Other Python threads run meanwhile. Ctrl-C stops within a second.
 
     Raises UsageError, InputError, DefectError, LimitError. Issues a DefectWarning where the file is odd, where
-    contours do not close because the mesh has holes, and where they run the wrong way because it is inside out.
+    contours do not close because the mesh has holes, where they run the wrong way because it is inside out, and where
+    level faces lie within rounding of a plane, so that rounding decides what their layers are.
     """
     mesh, plan = _prepared(
-        part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, direction,
-        transform, unit_mm, engine, strict, threads, progress,
+        part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
+        direction, transform, unit_mm, engine, strict, threads, progress,
     )  # fmt: skip
     stack = _lamella.slice_stack(mesh, plan, engine, threads, progress)
     name = mesh.path or "the mesh"
@@ -118,6 +122,7 @@ def iter_layers(
     at: str = "middle",
     z_range: Optional[Tuple[float, float]] = None,
     layers: Optional[Tuple[int, int]] = None,
+    snap: float = 0,
     direction: Sequence[float] = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
     unit_mm: Optional[float] = None,
@@ -136,8 +141,8 @@ def iter_layers(
         warning.
     """
     mesh, plan = _prepared(
-        part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, direction,
-        transform, unit_mm, engine, strict, threads, progress,
+        part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
+        direction, transform, unit_mm, engine, strict, threads, progress,
     )  # fmt: skip
     return _lamella.stream(mesh, plan, engine, threads, progress)
 
@@ -154,6 +159,7 @@ def _prepared(
     at: str,
     z_range: Optional[Tuple[float, float]],
     layers: Optional[Tuple[int, int]],
+    snap: float,
     direction: Sequence[float],
     transform: Optional[npt.ArrayLike],
     unit_mm: Optional[float],
@@ -182,6 +188,7 @@ def _prepared(
     place = check.choice("at", at, PLACES)
     z_limits = None if z_range is None else check.pair("z_range", z_range, "two numbers (from, to)", check.number)
     numbers = None if layers is None else check.pair("layers", layers, "two whole numbers (first, end)", check.whole)
+    near = check.distance("snap", snap)
     mesh = as_mesh("part", part, unit_mm=unit_mm, strict=strict, threads=threads, progress=progress)
     if strict:
         found = inspect(mesh, threads=threads, progress=progress)
@@ -199,7 +206,14 @@ def _prepared(
         cut = _lamella.HeightRanges(ranges, height)
     else:
         cut = _lamella.UniformLayers(height, first_height)
-    return mesh, _lamella.plan(mesh, cut, place, z_limits, numbers, threads, progress)
+    plan = _lamella.plan(mesh, cut, place, z_limits, numbers, near, threads, progress)
+    doubt = _lamella.near_faces(mesh, plan, threads, progress)
+    if doubt:
+        doubt = f"{mesh.path or 'the mesh'}: {doubt}"
+        if strict:
+            raise DefectError(with_arguments(doubt))
+        warn([doubt])
+    return mesh, plan
 
 
 def _heights(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:

@@ -9,6 +9,16 @@ from typing import Iterable
 from ._errors import DefectWarning
 
 
+#: What Python has in the place of fields that texts of the library name.
+ARGUMENTS = {"`snap_mm` ": "snap=", "`close_gaps_mm` ": "lamella slice --close-gaps "}
+
+
+def with_arguments(text: str) -> str:
+    for field, argument in ARGUMENTS.items():
+        text = text.replace(field, argument)
+    return text
+
+
 def warn(texts: Iterable[str]) -> None:
     """Issues a DefectWarning for each text."""
     package = __name__.rpartition(".")[0]
@@ -18,4 +28,4 @@ def warn(texts: Iterable[str]) -> None:
         frame = frame.f_back
         level += 1
     for text in texts:
-        warnings.warn(text, DefectWarning, stacklevel=level)
+        warnings.warn(with_arguments(text), DefectWarning, stacklevel=level)

@@ -236,13 +236,14 @@ std::vector<std::string> write_mesh(const std::string& path, const std::string& 
     return warnings;
 }
 
-py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, double tolerance,
-                  unsigned threads, const py::object& progress) {
+py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, double snap_mm,
+                  double tolerance, unsigned threads, const py::object& progress) {
     if (holds_scan_vectors(stack))
         throw Error(ErrorKind::usage,
                     stack.path + " holds scan vectors, which lamella.verify_vectors checks");
     const Verification found = result_of(threads, progress, [&](const Execution& execution) {
-        VerifyOptions options{.rule = stack.rule, .rounding = stack.rounding, .tolerance_mm = tolerance};
+        VerifyOptions options{
+            .rule = stack.rule, .snap_mm = snap_mm, .rounding = stack.rounding, .tolerance_mm = tolerance};
         if (mesh) {
             options.mesh = mesh->mesh();
             if (mesh->source().has_negatives())
@@ -275,14 +276,15 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
 /// What is found, and the warnings of the file.
 std::pair<py::dict, py::list> vectors_verified(const std::string& path, const MeshPointer& mesh,
                                                const std::optional<ScanStrategy>& strategy,
-                                               const std::string& at, double tolerance, unsigned threads,
-                                               const py::object& progress) {
+                                               const std::string& at, double snap_mm, double tolerance,
+                                               unsigned threads, const py::object& progress) {
     std::vector<std::string> warnings;
     const VectorVerification found = result_of(threads, progress, [&](const Execution& execution) {
         LayerFile file = read_layers(path, {}, execution);
         if (!holds_scan_vectors(file))
             throw Error(ErrorKind::usage, path + " holds no scan vectors; lamella.verify checks layers");
-        VerifyOptions options{.rule = file.rule, .rounding = file.rounding, .tolerance_mm = tolerance};
+        VerifyOptions options{
+            .rule = file.rule, .snap_mm = snap_mm, .rounding = file.rounding, .tolerance_mm = tolerance};
         if (mesh) {
             options.mesh = mesh->mesh();
             if (mesh->source().has_negatives())

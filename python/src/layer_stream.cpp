@@ -165,7 +165,7 @@ LayerStream::Beside LayerStream::beside(std::uint64_t below, std::uint64_t above
         const Plan wider =
             cuts_.only(std::min(lowest, plan().layers.front().index), last + 1 + above, *mesh_, execution);
         const auto sliced = [&](const auto& wanted) {
-            Plan some{{}, wider.rule};
+            Plan some{{}, wider.rule, wider.snap_mm};
             std::copy_if(wider.layers.begin(), wider.layers.end(), std::back_inserter(some.layers), wanted);
             return some.layers.empty()
                        ? std::vector<LayerPointer>()

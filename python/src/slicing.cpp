@@ -39,10 +39,12 @@ using IndexRange = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
 
 /// What slice_file would cut, by the layering of a job.
 CutPlan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at, const ZRange& z_range,
-                 const IndexRange& layers, unsigned threads, const py::object& progress) {
+                 const IndexRange& layers, double snap_mm, unsigned threads, const py::object& progress) {
     FileJob job;
-    job.layering = {
-        .cut = cut, .at = slice_at_named(at), .only = {.z_range = z_range, .index_range = layers}};
+    job.layering = {.cut = cut,
+                    .at = slice_at_named(at),
+                    .only = {.z_range = z_range, .index_range = layers},
+                    .snap_mm = snap_mm};
     Plan plan = result_of(threads, progress,
                           [&](const Execution& execution) { return plan_of(job, mesh->plate(), execution); });
     return {std::move(plan), std::move(job.layering)};
@@ -85,6 +87,15 @@ std::vector<std::string> doubts_of(const Stack& stack) {
         doubts.add(layer.z, open_gaps(layer), begins_clockwise(layer));
     }
     return doubts.texts();
+}
+
+/// Where rounding decides what the layers are; "" where it does not.
+std::string near_faces_of(const MeshPointer& mesh, const CutPlan& cuts, unsigned threads,
+                          const py::object& progress) {
+    const NearFaceLayers found = result_of(threads, progress, [&](const Execution& execution) {
+        return near_faces(mesh->mesh(), cuts.plan, execution);
+    });
+    return found.text(cuts.plan.layers.size());
 }
 
 /// The ways to cut.
@@ -193,6 +204,7 @@ void bind_slicing(py::module_& module) {
     module.def("plan", &plan_for);
     module.def("slice_stack", &slice_stack);
     module.def("mesh_doubts", &doubts_of);
+    module.def("near_faces", &near_faces_of);
     bind_stream(module);
     module.def("engines", [] {
         std::vector<std::tuple<std::string, std::string, std::string>> found;

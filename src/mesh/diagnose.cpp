@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
+#include "mesh/coordinate_rounding.hpp"
 #include "mesh/edge_uses.hpp"
 #include "mesh/folds.hpp"
 #include "mesh/measures.hpp"
@@ -85,7 +86,27 @@ void for_each_loop(const std::vector<VertexPair>& edges, const Visit& visit) {
             walk_from(edges[i].first);
 }
 
+double width_of(const std::vector<Point3>& points) {
+    const Point3& first = points.front();
+    const auto from_first = [&](const Point3& p) {
+        return Point3{p.x - first.x, p.y - first.y, p.z - first.z};
+    };
+    const Point3 line =
+        from_first(*std::max_element(points.begin(), points.end(), [&](const Point3& a, const Point3& b) {
+            return distance(first, a) < distance(first, b);
+        }));
+    const double length = std::sqrt(line.x * line.x + line.y * line.y + line.z * line.z);
+    double width = 0;
+    for (const Point3& p : points) {
+        const Point3 v = from_first(p);
+        const Point3 n{v.y * line.z - v.z * line.y, v.z * line.x - v.x * line.z, v.x * line.y - v.y * line.x};
+        width = std::max(width, std::sqrt(n.x * n.x + n.y * n.y + n.z * n.z) / length);
+    }
+    return length > 0 ? width : 0;
+}
+
 void find_loops(const IndexedMesh& mesh, const std::vector<VertexPair>& edges, Diagnosis& found) {
+    const double rounding = coordinate_rounding(found.counts.box);
     for_each_loop(edges, [&](std::span<const std::uint32_t> vertices, bool closed) {
         BoundaryLoop loop;
         loop.closed = closed;
@@ -98,6 +119,11 @@ void find_loops(const IndexedMesh& mesh, const std::vector<VertexPair>& edges, D
         }
         if (closed)
             loop.length_mm += distance(loop.points.back(), loop.points.front());
+        loop.width_mm = width_of(loop.points);
+        if (closed && loop.width_mm <= rounding) {
+            ++found.slits;
+            found.widest_slit_mm = std::max(found.widest_slit_mm, loop.width_mm);
+        }
         ++found.boundary_loops;
         found.boundary_length_mm += loop.length_mm;
         found.loops.push_back(std::move(loop));

@@ -19,7 +19,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cassert>
-#include <deque>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -321,6 +321,7 @@ PlaneCounts Feed::counts_of_parts(std::size_t planes) const {
 /// The second pass.
 void Feed::count_streams(const Plan& plan, const Execution& execution) {
     const std::size_t shapes = plate_.shapes.size();
+    begin_near_faces(plan);
     std::deque<PlaneCounter> counters; // that stay where they are
     std::deque<VolumeSum> volumes;
     for (std::size_t shape = 0; shape < shapes; ++shape) {
@@ -340,6 +341,8 @@ void Feed::count_streams(const Plan& plan, const Execution& execution) {
                         const PlaneRange planes = counters[shape].add(placed);
                         if (planes.size() > 0)
                             cut = {std::min(cut.begin, planes.begin), std::max(cut.end, planes.end)};
+                        if (near_[shape].any())
+                            near_[shape].add(placed, 0, placed.size());
                         if (measure_volume_)
                             volumes[shape].add(placed, number);
                     }
@@ -353,6 +356,11 @@ void Feed::count_streams(const Plan& plan, const Execution& execution) {
     for (std::size_t shape = 0; shape < shapes; ++shape) {
         counts_.push_back(counters[shape].total());
         among_->sum(counts_.back().numbers());
+        const std::vector<NearFaces> near = near_[shape].found();
+        const std::vector<std::string> messages = among_->gather(Packer().put_all(std::span(near)).take());
+        for (std::size_t process = 0; process < messages.size(); ++process)
+            if (process != among_->process())
+                near_[shape].add(Unpacker(messages[process]).get_all<NearFaces>());
         if (measure_volume_)
             for (const std::string& message :
                  among_->gather(Packer().put_all(std::span(volumes[shape].pieces())).take()))
@@ -362,6 +370,45 @@ void Feed::count_streams(const Plan& plan, const Execution& execution) {
     volume_mm3_ = 0;
     for (const PlatePart& part : plate_.parts)
         volume_mm3_ += six_volumes[part.shape] / 6;
+}
+
+void Feed::begin_near_faces(const Plan& plan) {
+    near_.clear();
+    std::vector<Box3> boxes(plate_.shapes.size());
+    for (const PlatePart& part : plate_.parts)
+        boxes[part.shape] = part.box;
+    for (const PlateNegative& negative : plate_.negatives)
+        boxes[negative.shape] = negative.box;
+    for (const Box3& box : boxes)
+        near_.emplace_back(plan, box);
+}
+
+bool Feed::may_have_near_faces() const {
+    return std::any_of(near_.begin(), near_.end(), [](const NearFaceFinder& finder) { return finder.any(); });
+}
+
+std::vector<Feed::NearPlane> Feed::near_faces() const {
+    std::vector<std::uint64_t> copies(near_.size());
+    for (const PlatePart& part : plate_.parts)
+        ++copies[part.shape];
+    for (const PlateNegative& negative : plate_.negatives)
+        ++copies[negative.shape];
+    std::map<std::pair<std::uint32_t, std::size_t>, NearPlane> planes;
+    for (std::size_t shape = 0; shape < near_.size(); ++shape)
+        for (const NearFaces& faces : near_[shape].found()) {
+            if (!near_[shape].matters(faces))
+                continue;
+            const std::size_t file = plate_.shapes[shape].input;
+            NearPlane& plane = planes[{faces.plane, file}];
+            plane.plane = faces.plane;
+            plane.file = file;
+            plane.area_mm2 += static_cast<double>(copies[shape]) * near_[shape].area_mm2(faces);
+            plane.farthest_mm = std::max(plane.farthest_mm, faces.farthest_mm);
+        }
+    std::vector<NearPlane> all;
+    for (const auto& [number, plane] : planes)
+        all.push_back(plane);
+    return all;
 }
 
 // ------------------------------------------------------------------------------------------------ bring
@@ -557,7 +604,8 @@ TriangleSoup Feed::exchanged(std::span<const std::vector<Triangle3f>> outgoing) 
     }
     assert(at == total);
     among_->exchange(out, in);
-    return {TriangleSoup::KnownFinite{}, memory, reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), total};
+    return {TriangleSoup::KnownFinite{}, memory, reinterpret_cast<const std::byte*>(memory->data()),
+            sizeof(Triangle3f), total};
 }
 
 void Feed::store(std::size_t shape, const TriangleSoup& triangles, const Execution& execution) {

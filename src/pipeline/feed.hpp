@@ -12,10 +12,12 @@
 
 #include "pipeline/job_memory.hpp"
 #include "pipeline/share_store.hpp"
+#include "slicing/near_faces.hpp"
 #include "slicing/slabs.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <span>
 #include <vector>
@@ -58,6 +60,23 @@ class Feed {
     /// Signed volume of all parts; after `count`, where the job has layer statistics and the triangles stay
     /// in their files.
     [[nodiscard]] double volume_mm3() const noexcept { return volume_mm3_; }
+
+    /// Level faces of the parts of a file that lie within rounding of a plane, all processes together; by
+    /// ascending planes. Where the triangles stay in their files, after `count` of the same plan; else after
+    /// `begin_near_faces`, and once each triangle of all shapes was shown, from any thread.
+    struct NearPlane {
+        std::size_t file = 0;
+        std::uint32_t plane = 0;
+        double area_mm2 = 0;
+        double farthest_mm = 0;
+    };
+    void begin_near_faces(const Plan& plan);
+    void show_near_faces(std::size_t shape, const Mesh& mesh, std::uint64_t begin, std::uint64_t end) {
+        near_[shape].add(mesh, begin, end);
+    }
+    /// Whether there can be any, so that it is worth to show triangles.
+    [[nodiscard]] bool may_have_near_faces() const;
+    [[nodiscard]] std::vector<NearPlane> near_faces() const;
 
     /// After `count` of the same plan. `division`: the planes that each process slices. Divides those of this
     /// process into shares that fit its memory, and has their triangles wait, unless they are read when they
@@ -116,6 +135,7 @@ class Feed {
     std::uint64_t bytes_to_read_ = 0;
     std::uint64_t bytes_read_ = 0;
     std::vector<PlaneCounts> counts_; ///< by shape, of all processes
+    std::deque<NearFaceFinder> near_; ///< by shape
     double volume_mm3_ = 0;
     std::vector<PlaneRange> shares_;
     std::optional<ShareStore> store_; ///< of all shares; or

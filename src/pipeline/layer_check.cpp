@@ -39,7 +39,9 @@ LayerCheck check_layer(const Layer& layer, const Rounding& rounding) {
         if (kinds[i] != RingKind::misoriented && kinds[i] != RingKind::overlapping)
             continue;
         if (!orientation_is_lost(layer.contour(i), rounding))
-            (kinds[i] == RingKind::misoriented ? found.misoriented : found.overlapping)
+            (kinds[i] == RingKind::overlapping ? found.overlapping
+             : ring_area(layer.contour(i)) > 0 ? found.tangled
+                                               : found.misoriented)
                 .add(layer, layer.contour(i).front());
     }
     return result;
@@ -65,6 +67,7 @@ void ContourFindings::add(const ContourFindings& other) {
     open_chains.add(other.open_chains);
     crossings.add(other.crossings);
     misoriented.add(other.misoriented);
+    tangled.add(other.tangled);
     overlapping.add(other.overlapping);
 }
 

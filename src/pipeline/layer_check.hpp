@@ -27,7 +27,8 @@ struct Finding {
 struct ContourFindings {
     Finding open_chains;
     Finding crossings;
-    Finding misoriented;
+    Finding misoriented; ///< clockwise ones
+    Finding tangled;     ///< counter-clockwise ones that are misoriented all the same
     Finding overlapping;
 
     void add(const ContourFindings& other);
@@ -54,6 +55,13 @@ inline constexpr FindingWords open_chains_words{"contour is not closed,", "conto
 inline constexpr FindingWords crossings_words{"crossing of contours,", "crossings of contours,"};
 inline constexpr FindingWords misoriented_words{"ring runs the wrong way round,",
                                                 "rings run the wrong way round,"};
+
+inline constexpr FindingWords tangled_words{"ring bounds no material though its area is positive: it crosses "
+                                            "itself or others, or lies within a ring that runs "
+                                            "the wrong way round;",
+                                            "rings bound no material though their area is positive: they "
+                                            "cross themselves or others, or lie within a ring that "
+                                            "runs the wrong way round;"};
 
 /// Adds a line, such as "2 rings run the wrong way round, the first in layer 12 (z 0.375 mm) at (1, 2)",
 /// where there is anything to say.

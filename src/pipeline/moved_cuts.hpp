@@ -20,7 +20,8 @@ namespace lamella {
 /// What cut(plan) gives for the plane of each layer: first where the layer is, and where the format rounds,
 /// as far below and above as it may have moved the cut.
 template <class Cut>
-auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, PlaneRule rule, const Cut& cut) {
+auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, PlaneRule rule, double snap_mm,
+                   const Cut& cut) {
     using OfPlane = typename decltype(cut(Plan{}))::value_type;
     std::vector<std::vector<OfPlane>> of_layer(layers.size());
     for (const double direction : {0.0, -1.0, 1.0}) {
@@ -32,7 +33,7 @@ auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, Plan
         std::vector<double> ascending = z;
         std::sort(ascending.begin(), ascending.end());
         ascending.erase(std::unique(ascending.begin(), ascending.end()), ascending.end());
-        Plan plan{.layers = {}, .rule = rule};
+        Plan plan{.layers = {}, .rule = rule, .snap_mm = snap_mm};
         for (const double at : ascending)
             plan.layers.push_back({plan.layers.size(), at, at, at});
         const auto of_plane = cut(plan);

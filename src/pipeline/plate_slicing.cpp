@@ -77,7 +77,8 @@ void for_bodies(const Plate& plate, const Visit& visit) {
         visit(negative);
 }
 
-/// By shape, the planes between its lowest and its uppermost point: on all others it has no contours.
+/// By shape, the planes between its lowest and its uppermost point, or within the snap distance of these: on
+/// all others it has no contours.
 std::vector<PlaneRange> planes_of_shapes(const Plate& plate, const Plan& plan) {
     const auto planes_where = [&plan](auto&& holds) {
         return static_cast<std::uint32_t>(
@@ -86,9 +87,12 @@ std::vector<PlaneRange> planes_of_shapes(const Plate& plate, const Plan& plan) {
     std::vector<PlaneRange> planes(plate.shapes.size());
     for_bodies(plate, [&](const auto& body) {
         if (!body.box.empty())
-            planes[body.shape] = {
-                planes_where([&](const PlannedLayer& layer) { return layer.z < body.box.min.z; }),
-                planes_where([&](const PlannedLayer& layer) { return layer.z <= body.box.max.z; })};
+            planes[body.shape] = {planes_where([&](const PlannedLayer& layer) {
+                                      return layer.z + plan.snap_mm < body.box.min.z;
+                                  }),
+                                  planes_where([&](const PlannedLayer& layer) {
+                                      return layer.z - plan.snap_mm <= body.box.max.z;
+                                  })};
     });
     return planes;
 }
@@ -184,9 +188,18 @@ void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRang
     }
 }
 
+/// Of a shape; empty where nobody wants to see it.
+TriangleVisitor visitor_of(std::size_t shape, const ShapeVisitor& visitor) {
+    if (!visitor)
+        return {};
+    return [&visitor, shape](const Mesh& mesh, std::uint64_t begin, std::uint64_t end) {
+        visitor(shape, mesh, begin, end);
+    };
+}
+
 SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan,
                         const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
-                        SinkYield yield) {
+                        SinkYield yield, const ShapeVisitor& visitor) {
     SliceReport report;
     // Each window takes a look at all triangles: they are few, and large. Engines that weld would do so anew.
     constexpr std::uint64_t share = 2;
@@ -204,6 +217,7 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
     const bool sink_counts = yield == SinkYield::much_more;
     const Execution slicing = sink_counts ? without_slicing(execution) : execution;
     std::optional<ProgressMeter> emitted;
+    std::vector<bool> seen(planes.size(), false);
     Executor executor(execution);
     for (const PlaneRange& run : runs) {
         std::vector<ShapeLayers> shapes(planes.size());
@@ -211,7 +225,9 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
             if (const PlaneRange its = common(planes[shape], run); its.size() > 0) {
                 SliceReport ours;
                 shapes[shape] = {its, slice(plate.shapes[shape].mesh, part_of(plan, its),
-                                            progress.next(slicing), &ours, engine)};
+                                            progress.next(slicing), &ours, engine,
+                                            seen[shape] ? TriangleVisitor() : visitor_of(shape, visitor))};
+                seen[shape] = true;
                 report += ours;
             }
         if (sink_counts && !emitted)
@@ -222,6 +238,9 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
     }
     if (emitted)
         emitted->finish();
+    for (std::size_t shape = 0; shape < planes.size() && visitor; ++shape)
+        if (const Mesh& mesh = plate.shapes[shape].mesh; !seen[shape])
+            visitor(shape, mesh, 0, mesh.size());
     return report;
 }
 
@@ -264,14 +283,15 @@ LayerStack slice(const Plate& plate, const Plan& plan, const Execution& executio
 
 SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
                            const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
-                           SinkYield yield) {
+                           SinkYield yield, const ShapeVisitor& visitor) {
     if (plate.parts.size() + plate.negatives.size() > 1 || yield == SinkYield::much_more)
-        return slice_parts(sink, plate, plan, execution, engine, points_in_flight, yield);
+        return slice_parts(sink, plate, plan, execution, engine, points_in_flight, yield, visitor);
     const LayerSink single = [&](Layer&& layer) {
         return sink(std::span<const Layer>(&layer, 1));
     };
     SliceReport report;
-    slice_to(single, plate.shapes.front().mesh, plan, execution, &report, engine, points_in_flight);
+    slice_to(single, plate.shapes.front().mesh, plan, execution, &report, engine, points_in_flight,
+             visitor_of(0, visitor));
     return report;
 }
 

@@ -9,6 +9,7 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -19,6 +20,10 @@ namespace lamella {
 /// As LayerSink, but for what one plane yields: a layer of each part, in the order of Plate::parts, and then
 /// of each of Plate::negatives.
 using PlateSink = std::function<std::function<void()>(std::span<const Layer> parts)>;
+
+/// As TriangleVisitor, for the mesh of one shape of the plate. It sees each triangle of each shape once.
+using ShapeVisitor =
+    std::function<void(std::size_t shape, const Mesh& mesh, std::uint64_t begin, std::uint64_t end)>;
 
 /// What a sink makes of layers: about as much as they are, or so much more that only a few planes may be on
 /// their way through it, whatever `points_in_flight` says.
@@ -36,6 +41,7 @@ enum class SinkYield { like_layers, much_more };
 [[nodiscard]] SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
                                          const Execution& execution, const Engine& engine,
                                          std::uint64_t points_in_flight,
-                                         SinkYield yield = SinkYield::like_layers);
+                                         SinkYield yield = SinkYield::like_layers,
+                                         const ShapeVisitor& visitor = {});
 
 } // namespace lamella

@@ -520,6 +520,14 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
         supports.push_back(part.support);
     LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), supports);
     LayerWay way(job, plate, plan, sliced_here, mine, supports, totals, output);
+    ShapeVisitor visitor;
+    if (feed.meshes() != nullptr) {
+        feed.begin_near_faces(plan);
+        if (feed.may_have_near_faces())
+            visitor = [&feed](std::size_t shape, const Mesh& mesh, std::uint64_t begin, std::uint64_t end) {
+                feed.show_near_faces(shape, mesh, begin, end);
+            };
+    }
     double slice_seconds = 0; // without waiting for others
     std::uint64_t shares_of_all = 0;
     {
@@ -534,7 +542,10 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
                                        ? in_share(shares[s], sliced_here, execution)
                                        : execution,
                                    engine, feed.memory().points_in_flight(result.threads),
-                                   job.scan ? SinkYield::much_more : SinkYield::like_layers);
+                                   job.scan ? SinkYield::much_more : SinkYield::like_layers, visitor);
+            if (visitor && shares.empty()) // this process has no planes, but the result is that of all
+                for (std::size_t shape = 0; shape < plate.shapes.size(); ++shape)
+                    visitor(shape, plate.shapes[shape].mesh, 0, plate.shapes[shape].mesh.size());
             slice_seconds = slicing.seconds();
         });
     }
@@ -569,6 +580,14 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     gather(processes, result.seconds, result.report);
     totals.gather(processes);
     totals.tell(result);
+    result.near_faces.resize(result.files.size());
+    for (const Feed::NearPlane& near : feed.near_faces())
+        if (all.begin <= near.plane && near.plane < all.end)
+            result.near_faces[near.file].add(plan.layers[near.plane].z, near.area_mm2, near.farthest_mm);
+    for (std::size_t file = 0; file < result.files.size() && job.strict; ++file)
+        if (result.near_faces[file].layers > 0)
+            throw Error(ErrorKind::defect, fmt::format("{}: {}", result.files[file].path,
+                                                       result.near_faces[file].text(result.report.layers)));
     const std::uint64_t open_chains = std::max(result.report.open_chains, result.doubts.open_gaps.count);
     if (job.strict && open_chains > 0)
         throw Error(ErrorKind::defect,

@@ -1,6 +1,7 @@
 #include "lamella/pipeline/verify.hpp"
 
 #include "lamella/contour/measure.hpp"
+#include "lamella/pipeline/layer_warnings.hpp"
 
 #include "contour/area_moments.hpp"
 #include "contour/same_height.hpp"
@@ -67,14 +68,15 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     const bool has_mitres = steps.offset_mm != 0 && steps.offset_corners.shape == OffsetCorner::mitre;
     for (const double tried : has_mitres ? limits_of_mitres(limit, options.granted()) : std::vector{limit}) {
         steps.offset_corners.mitre_limit = tried;
-        const auto found = at_moved_cuts(layers, options.granted(), options.rule, [&](const Plan& plan) {
-            if (!steps.any() && !options.subtracts())
-                return section_moments(*options.mesh, plan, origin, execution);
-            std::vector<AreaMoments> made;
-            for (const Layer& layer : layers_of(options, plan, steps, execution))
-                made.push_back(area_moments(layer, origin));
-            return made;
-        });
+        const auto found =
+            at_moved_cuts(layers, options.granted(), options.rule, options.snap_mm, [&](const Plan& plan) {
+                if (!steps.any() && !options.subtracts())
+                    return section_moments(*options.mesh, plan, origin, execution);
+                std::vector<AreaMoments> made;
+                for (const Layer& layer : layers_of(options, plan, steps, execution))
+                    made.push_back(area_moments(layer, origin));
+                return made;
+            });
         for (std::size_t i = 0; i < layers.size(); ++i)
             sections[i].insert(sections[i].end(), found[i].begin(), found[i].end());
     }
@@ -155,6 +157,19 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     }
 }
 
+/// The planes at which layers in any order were cut.
+Plan plan_of(std::span<const Layer> layers, const VerifyOptions& options) {
+    Plan plan{.layers = {}, .rule = options.rule, .snap_mm = options.snap_mm};
+    for (const Layer& layer : layers)
+        plan.layers.push_back({layer.index, layer.z, layer.bottom, layer.top});
+    std::sort(plan.layers.begin(), plan.layers.end(),
+              [](const PlannedLayer& a, const PlannedLayer& b) { return a.z < b.z; });
+    const auto same = std::unique(plan.layers.begin(), plan.layers.end(),
+                                  [](const PlannedLayer& a, const PlannedLayer& b) { return a.z == b.z; });
+    plan.layers.erase(same, plan.layers.end());
+    return plan;
+}
+
 } // namespace
 
 PlaneRule place_cuts(LayerStack& layers, SliceAt at) {
@@ -214,13 +229,14 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     }
     result.open_chains = found.open_chains.total;
     result.crossings = found.crossings.total;
-    result.misoriented = found.misoriented.total;
+    result.misoriented = found.misoriented.total + found.tangled.total;
     result.overlapping = found.overlapping.total;
     tell(found.open_chains, open_chains_words, result.findings);
     if (!result.open_layers.empty())
         result.findings.push_back(gaps_text(result.open_layers));
     tell(found.crossings, crossings_words, result.findings);
     tell(found.misoriented, misoriented_words, result.findings);
+    tell(found.tangled, tangled_words, result.findings);
     tell(found.overlapping,
          {"ring lies within material: bodies that overlap, or holes that run the wrong way round;",
           "rings lie within material: bodies that overlap, or holes that run the wrong way round;"},
@@ -232,6 +248,9 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
                     "hatch lines were not checked: nothing tells what they are to fill"));
     if (options.mesh) {
         compare_areas(layers, checks, options, execution, result);
+        if (const NearFaceLayers near = near_faces(*options.mesh, plan_of(layers, options), execution);
+            near.layers > 0)
+            result.findings.push_back(near.text(layers.size()));
         result.heights =
             covered_heights(layers, *options.mesh, options.granted(), execution, result.findings);
     }

@@ -323,6 +323,7 @@ class VectorCheck {
     /// Contours of one number neither cross nor lie within one another's material.
     [[nodiscard]] ContourFindings of_one_exposure(const Exposure& exposure, const Layer& vectors) const {
         ContourFindings found = check_layer(vectors, options_.granted()).found;
+        found.misoriented.add(found.tangled);
         if (exposure.contour > 0)
             found.misoriented.add(found.overlapping);
         return found;
@@ -534,9 +535,10 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
     result.layers = planes.size();
     std::vector<std::vector<Layer>> sections;
     if (options.mesh)
-        sections = at_moved_cuts(planes, options.granted(), options.rule, [&](const Plan& plan) {
-            return layers_of(options, plan, steps_to_repeat(options.steps), execution);
-        });
+        sections =
+            at_moved_cuts(planes, options.granted(), options.rule, options.snap_mm, [&](const Plan& plan) {
+                return layers_of(options, plan, steps_to_repeat(options.steps), execution);
+            });
 
     double largest = 0;
     for (const Group& group : groups)

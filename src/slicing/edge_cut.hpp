@@ -5,6 +5,8 @@
 
 #include "lamella/core/point.hpp"
 
+#include <cmath>
+
 namespace lamella {
 
 /// An edge prepared for being cut: from its base (the end that belongs to planes through it: the lower end
@@ -18,8 +20,11 @@ namespace lamella {
 /// overflows gives the far end (min(NaN, 1) is 1 as written below). Error: at most 6 units in the last place
 /// of the edge's extent (four for t, half of one each for the extent and the product, one for shortening it),
 /// plus half a unit of the result.
+///
+/// A plane no further than the snap distance from the base goes through the base: t is 0 there, and where the
+/// base lies beyond the plane.
 struct EdgeCut {
-    double z0, inverse_dz, x0, dx, y0, dy;
+    double z0, inverse_dz, x0, dx, y0, dy, snap;
 
     [[nodiscard]] static double shortened(double from, double to) noexcept {
         constexpr double one_less_ulp = 1.0 - 0x1p-53;
@@ -29,13 +34,15 @@ struct EdgeCut {
         return d * (beyond ? one_less_ulp : 1.0);
     }
 
-    EdgeCut(const Point3& base, const Point3& far) noexcept
+    EdgeCut(const Point3& base, const Point3& far, double snap_mm = 0) noexcept
         : z0(base.z), inverse_dz(1.0 / (far.z - base.z)), x0(base.x + 0.0), dx(shortened(base.x, far.x)),
-          y0(base.y + 0.0), dy(shortened(base.y, far.y)) {}
+          y0(base.y + 0.0), dy(shortened(base.y, far.y)), snap(snap_mm) {}
 
     [[nodiscard]] Point2 at(double z) const noexcept {
         const double t = (z - z0) * inverse_dz;
-        const double s = t < 1.0 ? t : 1.0;
+        double s = t < 1.0 ? t : 1.0;
+        if (snap > 0)
+            s = std::abs(z - z0) > snap && s > 0 ? s : 0;
         return {x0 + s * dx, y0 + s * dy};
     }
 };

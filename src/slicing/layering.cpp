@@ -10,21 +10,23 @@ namespace lamella {
 namespace {
 
 /// Whether a plane at z can cut anything of the box, by the rule of the plane.
-bool meets(double z, PlaneRule rule, const Box3& box) {
-    return rule == PlaneRule::section_above ? box.min.z <= z && z < box.max.z
-                                            : box.min.z < z && z <= box.max.z;
+bool meets(double z, PlaneRule rule, double snap_mm, const Box3& box) {
+    return rule == PlaneRule::section_above ? box.min.z <= z + snap_mm && z + snap_mm < box.max.z
+                                            : box.min.z < z - snap_mm && z - snap_mm <= box.max.z;
 }
 
 /// Without the layers that nobody asked for.
-Plan selected(const PlaneSelection& only, Plan plan, const Box3& box) {
+Plan selected(const Layering& layering, Plan plan, const Box3& box) {
+    const PlaneSelection& only = layering.only;
     std::erase_if(plan.layers, [&](const PlannedLayer& layer) {
         const auto& z_range = only.z_range;
         const auto& index_range = only.index_range;
         return (z_range && !(z_range->first <= layer.z && layer.z <= z_range->second)) ||
                (index_range && !(index_range->first <= layer.index && layer.index < index_range->second));
     });
-    if (std::none_of(plan.layers.begin(), plan.layers.end(),
-                     [&](const PlannedLayer& layer) { return meets(layer.z, plan.rule, box); }))
+    if (std::none_of(plan.layers.begin(), plan.layers.end(), [&](const PlannedLayer& layer) {
+            return meets(layer.z, plan.rule, layering.snap_mm, box);
+        }))
         throw Error(
             ErrorKind::usage,
             fmt::format("none of the planes meets the part, which reaches from z = {:.6g} to {:.6g} mm",
@@ -43,15 +45,15 @@ struct Planner {
         return plan_uniform(box.min.z, box.max.z, layers, layering.at, layering.only);
     }
     Plan operator()(const ListedPlanes& planes) const {
-        return selected(layering.only, plan_listed(planes.z, layering.at, planes.single_height), box);
+        return selected(layering, plan_listed(planes.z, layering.at, planes.single_height), box);
     }
     Plan operator()(const HeightRanges& heights) const {
         return selected(
-            layering.only,
-            plan_by_ranges(box.min.z, box.max.z, heights.ranges, heights.layer_height, layering.at), box);
+            layering, plan_by_ranges(box.min.z, box.max.z, heights.ranges, heights.layer_height, layering.at),
+            box);
     }
     Plan operator()(const AdaptiveLayers& layers) const {
-        return selected(layering.only, plan_adaptive(mesh(), layers, layering.at, execution), box);
+        return selected(layering, plan_adaptive(mesh(), layers, layering.at, execution), box);
     }
 };
 
@@ -59,7 +61,10 @@ struct Planner {
 
 Plan plan_of(const Layering& layering, const Box3& box, const std::function<Mesh()>& mesh,
              const Execution& execution) {
-    return std::visit(Planner{layering, box, mesh, execution}, layering.cut);
+    Plan plan = std::visit(Planner{layering, box, mesh, execution}, layering.cut);
+    plan.snap_mm = layering.snap_mm;
+    check(plan);
+    return plan;
 }
 
 } // namespace lamella

@@ -164,6 +164,31 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
     return plan;
 }
 
+void check(const Plan& plan) {
+    const std::vector<PlannedLayer>& layers = plan.layers;
+    if (layers.size() > max_layers)
+        throw Error(ErrorKind::usage,
+                    fmt::format("a plan of {} layers; at most {} are possible", layers.size(), max_layers));
+    if (!(std::isfinite(plan.snap_mm) && plan.snap_mm >= 0))
+        throw Error(ErrorKind::usage,
+                    fmt::format("the snap distance is {} mm; it must be a number that is not "
+                                "below 0",
+                                plan.snap_mm));
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        const PlannedLayer& layer = layers[i];
+        for (const double height : {layer.z, layer.bottom, layer.top})
+            if (!std::isfinite(height))
+                throw Error(ErrorKind::usage,
+                            fmt::format("layer {} of the plan: found a height of {} mm; all must be finite",
+                                        i, height));
+        if (i > 0 && !(layers[i - 1].z < layer.z))
+            throw Error(ErrorKind::usage,
+                        fmt::format("layer {} of the plan is cut at z = {} mm, which is not above the one "
+                                    "before it, {}; the cuts must ascend",
+                                    i, layer.z, layers[i - 1].z));
+    }
+}
+
 void check_list(const std::vector<double>& z) {
     if (z.empty())
         throw Error(ErrorKind::usage, "the list of z holds no number; it must name at least one cut");

@@ -8,34 +8,35 @@
 
 namespace lamella {
 
-Ranks::Ranks(const Plan& plan) : rule_(plan.rule) {
-    assert(plan.layers.size() <= max_layers && is_ascending(plan));
+Ranks::Ranks(const Plan& plan) : rule_(plan.rule), snap_mm_(plan.snap_mm) {
+    check(plan);
     constexpr double infinity = std::numeric_limits<double>::infinity();
     z_.reserve(plan.layers.size());
     bounds_.reserve(plan.layers.size());
     for (const PlannedLayer& layer : plan.layers) {
         z_.push_back(layer.z);
-        bounds_.push_back(rule_ == PlaneRule::section_above ? layer.z : std::nextafter(layer.z, -infinity));
+        bounds_.push_back(rule_ == PlaneRule::section_above ? layer.z + snap_mm_
+                                                            : std::nextafter(layer.z - snap_mm_, -infinity));
     }
     if (z_.empty()) {
         cells_.push_back({infinity, 0, 0});
         return;
     }
-    first_ = z_.front();
-    const double height = z_.back() - first_;
+    first_ = bounds_.front();
+    const double height = bounds_.back() - first_;
     const std::size_t cells = z_.size() > 1 ? 2 * z_.size() : 1;
     cells_per_mm_ = static_cast<double>(cells) / height;
     if (!std::isfinite(cells_per_mm_))
         cells_per_mm_ = 0; // a single plane, or planes closer than doubles can scale: one cell holds them all
 
-    // The cell of a plane is computed with the very expression that looks up a vertex, and that expression is
-    // monotone. So a z in cell c lies above every plane of the cells before c, and below every plane after c.
+    // The cell of a bound is computed with the very expression that looks up a vertex, and that expression is
+    // monotone. So a z in cell c lies above every bound of the cells before c, and below every bound after c.
     last_cell_ = std::trunc(height * cells_per_mm_);
     if (!std::isfinite(last_cell_)) // no height that a double can hold
         last_cell_ = 0;
     cells_.assign(static_cast<std::size_t>(last_cell_) + 1, {infinity, 0, 0});
     for (std::size_t plane = 0; plane < z_.size(); ++plane) {
-        const double place = (z_[plane] - first_) * cells_per_mm_;
+        const double place = (bounds_[plane] - first_) * cells_per_mm_;
         Cell& cell = cells_[cell_at(place)];
         if (cell.planes == 0)
             cell.bound = bounds_[plane];
@@ -46,7 +47,7 @@ Ranks::Ranks(const Plan& plan) : rule_(plan.rule) {
     assert(cells_.back().below + cells_.back().planes == count());
     // A vertex on a plane is above it or below it, as the rule says.
     for ([[maybe_unused]] std::uint32_t plane = 0; plane < count(); ++plane)
-        assert((*this)(z_[plane]) == plane + (rule_ == PlaneRule::section_below ? 1 : 0));
+        assert(rule_ == PlaneRule::section_below ? (*this)(z_[plane]) > plane : (*this)(z_[plane]) <= plane);
 }
 
 } // namespace lamella

@@ -13,15 +13,17 @@
 namespace lamella {
 
 /// Gives each height its rank, the number of planes below it. An edge is cut by exactly the planes
-/// [rank(lower end), rank(upper end)).
+/// [rank(lower end), rank(upper end)). Heights no further from a plane than the snap distance of the plan
+/// count as on it: below it under section_above, above it under section_below.
 ///
 /// The planes are looked up through a grid with two cells per plane, so that a rank costs O(1) for
 /// evenly spaced planes and O(log n) for the most uneven ones.
 class Ranks {
   public:
+    /// Throws what `check` of a plan throws.
     explicit Ranks(const Plan& plan);
 
-    /// section_above: the number of planes with z_i < z. section_below: with z_i <= z.
+    /// section_above: the number of planes with z_i + snap < z. section_below: with z_i - snap <= z.
     [[nodiscard]] std::uint32_t operator()(double z) const noexcept {
         const double place = (z - first_) * cells_per_mm_;
         const Cell& cell = cells_[cell_at(place)];
@@ -40,6 +42,7 @@ class Ranks {
         return z_[plane];
     }
     [[nodiscard]] PlaneRule rule() const noexcept { return rule_; }
+    [[nodiscard]] double snap_mm() const noexcept { return snap_mm_; }
 
   private:
     /// What a lookup needs to know of a cell.
@@ -64,6 +67,7 @@ class Ranks {
     double cells_per_mm_ = 0;
     double last_cell_ = 0;
     PlaneRule rule_;
+    double snap_mm_;
 };
 
 } // namespace lamella

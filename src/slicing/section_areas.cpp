@@ -36,7 +36,8 @@ void add_sections(const Mesh& mesh, const Ranks& ranks, const Point2& origin, st
                     continue;
                 const Point3& low = starts_above ? corner[k1] : corner[k];
                 const Point3& high = starts_above ? corner[k] : corner[k1];
-                const EdgeCut edge = above ? EdgeCut(low, high) : EdgeCut(high, low);
+                const EdgeCut edge =
+                    above ? EdgeCut(low, high, ranks.snap_mm()) : EdgeCut(high, low, ranks.snap_mm());
                 (starts_above ? from : to) = edge.at(ranks.z(plane));
             }
             sections[plane].add_edge(from, to, origin);

@@ -43,7 +43,7 @@ void for_ranks(const Mesh& mesh, const Ranks& ranks, std::uint64_t begin, std::u
 Plan part_of(const Plan& plan, PlaneRange slab) {
     assert(slab.begin <= slab.end && slab.end <= plan.layers.size());
     const auto begin = plan.layers.begin();
-    return {{begin + slab.begin, begin + slab.end}, plan.rule};
+    return {{begin + slab.begin, begin + slab.end}, plan.rule, plan.snap_mm};
 }
 
 void PlaneCounts::add(const PlaneCounts& other) noexcept {

@@ -49,7 +49,8 @@ namespace {
 
 /// Slices with the engine, and fills in what of the report is the same for all engines.
 void slice_and_count(const Engine& engine, const LayerSink& sink, const Mesh& mesh, const Plan& plan,
-                     const Execution& execution, std::uint64_t points_in_flight, SliceReport* report) {
+                     const Execution& execution, std::uint64_t points_in_flight, SliceReport* report,
+                     const TriangleVisitor& visitor) {
     SliceReport ours;
     std::atomic<std::uint64_t> layers{0};
     std::atomic<std::uint64_t> contours{0};
@@ -66,7 +67,9 @@ void slice_and_count(const Engine& engine, const LayerSink& sink, const Mesh& me
     const Stopwatch joining;
     const Mesh joined = mesh.with_joined_vertices(execution);
     const double join_seconds = mesh.indexed() != nullptr ? joining.seconds() : 0;
-    engine.slice({joined, plan, counting, execution, points_in_flight, ours});
+    if (visitor && engine.welds)
+        visitor(joined, 0, joined.size());
+    engine.slice({joined, plan, counting, execution, points_in_flight, ours, visitor ? &visitor : nullptr});
     ours.weld_seconds += join_seconds;
     assert(layers == plan.layers.size());
     ours.layers = layers;
@@ -80,7 +83,7 @@ void slice_and_count(const Engine& engine, const LayerSink& sink, const Mesh& me
 } // namespace
 
 LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution, SliceReport* report,
-                 const Engine& engine) {
+                 const Engine& engine, const TriangleVisitor& visitor) {
     LayerStack stack;
     stack.reserve(plan.layers.size());
     const LayerSink keep = [&](Layer&& layer) -> std::function<void()> {
@@ -88,16 +91,17 @@ LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution,
             stack.push_back(std::move(kept));
         };
     };
-    slice_and_count(engine, keep, mesh, plan, execution, 0, report);
+    slice_and_count(engine, keep, mesh, plan, execution, 0, report, visitor);
     return stack;
 }
 
 void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution,
-              SliceReport* report, const Engine& engine, std::uint64_t points_in_flight) {
+              SliceReport* report, const Engine& engine, std::uint64_t points_in_flight,
+              const TriangleVisitor& visitor) {
     assert(sink);
     if (points_in_flight == 0)
         points_in_flight = usual_points_in_flight(thread_count(execution));
-    slice_and_count(engine, sink, mesh, plan, execution, points_in_flight, report);
+    slice_and_count(engine, sink, mesh, plan, execution, points_in_flight, report, visitor);
 }
 
 } // namespace lamella

@@ -48,16 +48,6 @@ inline void require_part(double z_min, double z_max) {
                                 z_min, z_max));
 }
 
-/// Whether planes are in strictly ascending z, all of them finite, as in every plan.
-[[nodiscard]] inline bool is_ascending(const Plan& plan) noexcept {
-    const auto out_of_order = [](const PlannedLayer& a, const PlannedLayer& b) {
-        return !(a.z < b.z);
-    };
-    const std::vector<PlannedLayer>& layers = plan.layers;
-    return std::adjacent_find(layers.begin(), layers.end(), out_of_order) == layers.end() &&
-           (layers.empty() || (std::isfinite(layers.front().z) && std::isfinite(layers.back().z)));
-}
-
 [[nodiscard]] constexpr PlaneRule rule_for(SliceAt at) noexcept {
     return at == SliceAt::top ? PlaneRule::section_below : PlaneRule::section_above;
 }

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -19,6 +20,13 @@ using test::expect_well_formed;
 using test::NamedPlan;
 using test::Placement;
 using test::Solid;
+
+/// What is found but for level faces near a plane, which are no error.
+std::vector<std::string> errors_of(const Verification& found, const Mesh& mesh, const Plan& plan) {
+    std::vector<std::string> errors = found.findings;
+    std::erase(errors, near_faces(mesh, plan).text(plan.layers.size()));
+    return errors;
+}
 
 class EverySolid : public testing::TestWithParam<Solid> {};
 
@@ -42,7 +50,7 @@ TEST_P(EverySolid, ClosesInEveryPlacementOnEveryPlane) {
             EXPECT_EQ(found.overlapping, 0U);
             EXPECT_EQ(found.crossings, 0U);
             EXPECT_TRUE(found.areas_agree);
-            for (const std::string& line : found.findings)
+            for (const std::string& line : errors_of(found, mesh, plan.plan))
                 ADD_FAILURE() << line;
         }
     }
@@ -142,7 +150,7 @@ void expect_right_layers(const TriangleSoup& mesh, std::size_t planes) {
         const LayerStack layers = slice(mesh, plan.plan);
         ASSERT_NO_FATAL_FAILURE(expect_well_formed(layers, plan.plan));
         const Verification found = verify(layers, {.mesh = mesh, .rule = plan.plan.rule});
-        EXPECT_EQ(found.findings, std::vector<std::string>{});
+        EXPECT_EQ(errors_of(found, mesh, plan.plan), std::vector<std::string>{});
         EXPECT_TRUE(found.ok());
         if (plan.name == "uniform_middle") {
             double volume_of_layers = 0;

@@ -53,6 +53,22 @@ class Repair(ProgramTest):
         # A shorter reach closes nothing.
         self.assertEqual(self.stats("open.stl", "--layer-height", "1", "--close-gaps", "29")["open_chains"], 10)
 
+    def test_a_vertex_on_an_edge_of_a_neighbour_is_named_with_its_cure(self):
+        box = box_triangles(10, 10, 10)
+        a, b, c = box[0]
+        on = tuple((p + q) / 2 for p, q in zip(a, b))
+        self.write("split.stl", binary_stl([(a, on, c), (on, b, c), *box[1:]]))
+        told = self.succeed("slice", "split.stl", "--direction", "1,2,3", "--layer-height", "1", "-o", "split.json").err
+        self.assertRegex(told, r"contours do not close, though no gap is longer than [0-9.e-]+ mm: .*T-junctions.*; "
+                               r"--close-gaps 1e-6 closes them")
+        info = self.succeed("info", "split.stl").text
+        self.assertRegex(info, r"3 boundary edges: .*; 1 of 1 rim is no wider than rounding, .*T-junctions.*: "
+                               r"lamella slice --close-gaps 1e-6 closes their contours")
+        self.assertEqual(self.succeed("info", "split.stl", "--json").json()["defects"]["slits"], 1)
+        self.succeed("slice", "split.stl", "--direction", "1,2,3", "--layer-height", "1", "--close-gaps", "1e-6",
+                     "-o", "split.json")
+        self.succeed("verify", "split.json")
+
     def test_a_tolerance_closes_cracks(self):
         torn = [tuple((x + 0.001 * (i % 3), y, z) for x, y, z in t) for i, t in enumerate(box_triangles(20, 30, 10))]
         self.write("torn.stl", binary_stl(torn))

@@ -20,6 +20,14 @@ LAYER_KEYS = ["index", "z", "thickness", "contours", "holes", "points", "area_mm
               "open_chains", "hash"]
 
 
+def tilted_steps():
+    """Two boxes on one another, 10 x 10 x 2.5 and 5 x 8 x 2.5 mm, rotated by 30 degrees about x."""
+    upper = [tuple((x + 2, y + 1, z + 2.5) for x, y, z in t) for t in box_triangles(5, 8, 2.5)]
+    cos, sin = math.cos(math.pi / 6), math.sin(math.pi / 6)
+    return [tuple((x, cos * y - sin * z, sin * y + cos * z) for x, y, z in t)
+            for t in box_triangles(10, 10, 2.5) + upper]
+
+
 class Slice(ProgramTest):
     def stats(self, *arguments, **keywords):
         return self.succeed("slice", *arguments, "--stats", "-", **keywords).json()
@@ -162,6 +170,43 @@ class Slice(ProgramTest):
         first = {at: self.stats("box.stl", "--slice-at", at, "--layer-height=1")["layers"][0]["z"]
                  for at in ["bottom", "middle", "top"]}
         self.assertEqual(first, {"bottom": 0, "middle": 0.5, "top": 1})
+
+    def test_level_faces_that_rounding_has_bent_are_warned_of_and_cut_as_faces_where_it_snaps(self):
+        self.write("tilted.stl", binary_stl(tilted_steps()))
+        options = ["tilted.stl", "--rotate-x", "-30", "--layer-height", "0.5", "--slice-at", "bottom"]
+        result = self.succeed("slice", *options, "-o", "tilted.json")
+        warning = (r"tilted\.stl: [0-9.]+ mm2 of level faces lie within rounding of a plane in (\d+) of 10 layers, first "
+                   r"at z = [0-9.e-]+ mm: .*; --snap (1e-\d) counts them as on the plane\n$")
+        self.assertRegex(result.err, "^lamella: warning: " + warning)
+        layers, snap = re.search(warning, result.err).groups()
+        stats = self.stats(*options)
+        self.assertLess(stats["layers"][0]["area_mm2"], 99)
+        [near] = stats["near_faces"]
+        self.assertEqual((near["path"], near["layers"]), ("tilted.stl", int(layers)))
+        self.assertGreaterEqual(near["area_mm2"], 100 - 1e-3)
+        self.assertLess(near["farthest_mm"], float(snap))
+        self.fail_with(4, "tilted.stl: .* of level faces lie within rounding .*--snap", "slice", *options, "-o", "t.cli",
+                       "--strict")
+        self.assertRegex(self.succeed("verify", "tilted.json", "--mesh", "tilted.stl", "--rotate-x", "-30").text,
+                         "mm2 of level faces lie within rounding .*--snap")
+        # The two faces of the lower box, and that of the upper one.
+        for way in [[], ["--engine", "eecc"], ["--copies", "2"], ["--strict"]]:
+            snapped = self.succeed("slice", *options, *way, "--snap", snap, "-o", "snapped.json", "--stats", "stats.json")
+            self.assertEqual(snapped.err, "")
+            stats = json.loads(self.bytes_of("stats.json"))
+            self.assertNotIn("near_faces", stats)
+            times = 2 if "--copies" in way else 1
+            for layer, area in [(0, 100), (4, 100), (5, 40), (9, 40)]:
+                self.assertAlmostEqual(stats["layers"][layer]["area_mm2"], times * area, places=3)
+        self.succeed("slice", *options, "--snap", snap, "-o", "snapped.json")
+        self.succeed("verify", "snapped.json", "--mesh", "tilted.stl", "--rotate-x", "-30", "--snap", snap)
+        # Shards give the same bytes, and so does a mesh that does not fit.
+        whole = self.bytes_of("snapped.json")
+        for number in range(1, 4):
+            self.succeed("slice", *options, "--snap", snap, "--shard", f"{number}/3", "-o", f"{number}.json")
+        self.succeed("merge", "merged.json", "1.json", "2.json", "3.json")
+        self.assertEqual(self.bytes_of("merged.json"), whole)
+        self.fail_with(2, "--snap says how a mesh is cut", "verify", "snapped.json", "--snap", snap)
 
     def test_the_first_layer_may_have_its_own_height(self):
         layers = self.stats(self.box(), "--layer-height", "1", "--first-layer-height", "2")["layers"]

@@ -66,6 +66,28 @@ TEST(Diagnose, ABoxWithoutALidHasOneLoop) {
 }
 
 // More pairs of shells than are looked at together.
+TEST(Diagnose, AVertexOnAnEdgeOfANeighbourMakesASlit) {
+    IndexedMesh mesh = weld(make_box(10, 10, 10));
+    // The first triangle is split at a point of one of its edges, whose other side stays whole.
+    const std::array<std::uint32_t, 3> t = mesh.triangles.front();
+    const auto [a, b, c] = corners(mesh, 0);
+    mesh.vertices.push_back({a.x + (b.x - a.x) / 3, a.y + (b.y - a.y) / 3, a.z + (b.z - a.z) / 3});
+    mesh.triangles.front() = {t[0], 8, t[2]};
+    mesh.triangles.push_back({8, t[1], t[2]});
+    const Diagnosis found = diagnose(mesh);
+    EXPECT_EQ(found.counts.boundary_edges, 3U);
+    EXPECT_EQ(found.boundary_loops, 1U);
+    EXPECT_EQ(found.slits, 1U);
+    EXPECT_LT(found.widest_slit_mm, 1e-14);
+    // A hole is none, however narrow, where it is wider than rounding.
+    mesh.vertices.back().x += 0.001;
+    mesh.vertices.back().y += 0.001;
+    mesh.vertices.back().z += 0.001;
+    EXPECT_EQ(diagnose(mesh).boundary_loops, 1U);
+    EXPECT_EQ(diagnose(mesh).slits, 0U);
+    EXPECT_GT(diagnose(mesh).loops.front().width_mm, 1e-4);
+}
+
 TEST(Diagnose, ManyBoxesInOneAnotherHaveTheirDepths) {
     constexpr int n = 1500;
     std::vector<Triangle3f> triangles;

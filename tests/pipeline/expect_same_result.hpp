@@ -77,6 +77,13 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
         EXPECT_EQ((one.doubts.*kind).first_z, (other.doubts.*kind).first_z);
     }
     EXPECT_EQ(one.doubts.layers, other.doubts.layers);
+    ASSERT_EQ(one.near_faces.size(), other.near_faces.size());
+    for (std::size_t i = 0; i < one.near_faces.size(); ++i) {
+        EXPECT_EQ(one.near_faces[i].layers, other.near_faces[i].layers);
+        EXPECT_EQ(one.near_faces[i].first_z, other.near_faces[i].first_z);
+        EXPECT_EQ(one.near_faces[i].area_mm2, other.near_faces[i].area_mm2);
+        EXPECT_EQ(one.near_faces[i].farthest_mm, other.near_faces[i].farthest_mm);
+    }
     EXPECT_EQ(one.thin.rings, other.thin.rings);
     EXPECT_EQ(one.thin.layers, other.thin.layers);
     EXPECT_EQ(one.thin.first_z, other.thin.first_z);

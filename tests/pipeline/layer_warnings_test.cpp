@@ -33,6 +33,36 @@ TEST(MeshDoubts, AreToldWithCountsAndTheLowestPlace) {
              "around holes: those around them stay open, or triangles face inwards"}));
 }
 
+TEST(MeshDoubts, NameWhatClosesGapsThatRoundingLeaves) {
+    const auto text_of = [](double longest) {
+        MeshDoubts doubts;
+        doubts.add(0.5, {.count = 1, .longest_mm = longest, .total_mm = longest, .from = {}, .to = {}},
+                   false);
+        return doubts.texts().front();
+    };
+    const std::string slit =
+        "1 open chain in 1 of 1 layer, first at z = 0.5 mm: contours do not close, though no "
+        "gap is longer than ";
+    const std::string cause =
+        " mm: vertices lie on edges of neighbours (T-junctions), or vertices are not joined; "
+        "`close_gaps_mm` ";
+    EXPECT_EQ(text_of(0), slit + "0" + cause + "1e-6 closes them");
+    EXPECT_EQ(text_of(3.1e-16), slit + "3.1e-16" + cause + "1e-6 closes them");
+    EXPECT_EQ(text_of(2.5e-5), slit + "2.5e-05" + cause + "1e-4 closes them");
+    EXPECT_EQ(text_of(2).find("close_gaps_mm"), std::string::npos);
+}
+
+TEST(NearFaceLayers, AreToldWithTheirAreaAndADistanceThatIsEnough) {
+    NearFaceLayers near;
+    EXPECT_EQ(near.text(9), "");
+    near.add(0.5, 60, 3e-7);
+    near.add(2.5, 40, 2e-5);
+    EXPECT_EQ(near.text(9),
+              "100 mm2 of level faces lie within rounding of a plane in 2 of 9 layers, first at z = 0.5 "
+              "mm: rounding decides whether these layers are cut above or below them; `snap_mm` 1e-4 "
+              "counts them as on the plane");
+}
+
 TEST(ScanLosses, CountALayerOnceWhicheverOfItsPartsAreInsideOut) {
     ScanLosses losses;
     Layer square = test::layer_of({test::rectangle(0, 0, 9, 9)});

@@ -5,6 +5,7 @@
 #include "lamella/write/mesh_writer.hpp"
 
 #include "expect_same_result.hpp"
+#include "fixtures/expect_error.hpp"
 #include "fixtures/rounds.hpp"
 #include "parts/shapes.hpp"
 #include "temporary_folder.hpp"
@@ -109,6 +110,71 @@ TEST_F(Processes, TakePlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
             EXPECT_EQ(content("out.cli"), expected);
         }
     }
+}
+
+/// Two boxes on one another, 10 x 10 x 2.5 and 5 x 8 x 2.5 mm, rotated by 30 degrees to single precision.
+TriangleSoup tilted_steps() {
+    std::vector<Triangle3f> triangles;
+    const auto add = [&](const TriangleSoup& box) {
+        const TriangleSoup tilted = box.transformed(rotation('x', 30));
+        for (std::size_t i = 0; i < tilted.size(); ++i) {
+            const Triangle3 t = tilted.placed(i);
+            Triangle3f& to = triangles.emplace_back();
+            for (std::size_t k = 0; k < 3; ++k)
+                to.at(k) = {static_cast<float>(t.at(k).x), static_cast<float>(t.at(k).y),
+                            static_cast<float>(t.at(k).z)};
+        }
+    };
+    add(make_box(10, 10, 2.5));
+    add(make_box(5, 8, 2.5).transformed(translation(2, 1, 2.5)));
+    return TriangleSoup(triangles);
+}
+
+TEST_F(Processes, SnapAndWarnOfLevelFacesNearPlanesAlike) {
+    write_stl(path("tilted.stl"), tilted_steps());
+    const PlateInput input{.path = path("tilted.stl"), .placement = rotation('x', -30)};
+    FileJob job = job_of({input}, 0.5);
+    job.layering.at = SliceAt::bottom;
+    job.output = path("out.cli");
+    const FileResult bent = slice_file(job);
+    ASSERT_EQ(bent.near_faces.size(), 1U);
+    const NearFaceLayers& near = bent.near_faces.front();
+    EXPECT_EQ(near.first_z, bent.layers.front().z);
+    EXPECT_GE(near.area_mm2, 100);
+    EXPECT_LT(near.farthest_mm, 1e-5);
+    const std::string text = near.text(bent.report.layers);
+    EXPECT_NE(text.find("`snap_mm` 1e-"), std::string::npos) << text;
+    EXPECT_LT(bent.layers.front().measure.area_mm2, 99);
+    std::vector<FileResult> expected{bent};
+    job.layering.snap_mm = 1e-5;
+    expected.push_back(slice_file(job));
+    const FileResult& snapped = expected.back();
+    EXPECT_EQ(snapped.near_faces.front().layers, 0U);
+    EXPECT_NEAR(snapped.layers.front().measure.area_mm2, 100, 1e-3);
+    EXPECT_NEAR(snapped.layers[5].measure.area_mm2, 40, 1e-3);
+    const std::string bytes = content("out.cli");
+    for (const std::size_t processes : {2, 5})
+        for (const FileResult& one : expected) {
+            SCOPED_TRACE(testing::Message() << "by " << processes);
+            job.layering.snap_mm = &one == &snapped ? 1e-5 : 0;
+            for (const FileResult& many : test::slice_by(processes, job))
+                test::expect_same(one, many);
+        }
+    EXPECT_EQ(content("out.cli"), bytes);
+    // Of each shard its own layers; strict refuses them.
+    std::uint64_t layers = 0;
+    job.layering.snap_mm = 0;
+    for (std::uint32_t number = 1; number <= 3; ++number) {
+        job.shard = Shard{.number = number, .count = 3};
+        layers += slice_file(job).near_faces.front().layers;
+    }
+    EXPECT_EQ(layers, near.layers);
+    job.shard.reset();
+    job.strict = true;
+    test::expect_error(ErrorKind::defect, {"tilted.stl: ", "mm2 of level faces"},
+                       [&] { static_cast<void>(slice_file(job)); });
+    job.layering.snap_mm = 1e-5;
+    EXPECT_NO_THROW(static_cast<void>(slice_file(job)));
 }
 
 TEST_F(Processes, FailOnAllWithTheSameWords) {

@@ -97,6 +97,20 @@ TEST(Verify, NamesTheFirstPlaceOfEachKindOfFinding) {
             "first in layer 5 (z 5.5 mm) at (2, 1)"}));
 }
 
+TEST(Verify, TellsAPositiveRingThatCrossesItselfFromOneThatRunsTheWrongWayRound) {
+    // The sides cross next to the left end, where the ring runs clockwise around a small triangle.
+    const LayerStack layers{at(0, layer_of({{{0, 5}, {1, 5.5}, {10, 0}, {10, 10}, {1, 4.5}}}))};
+    const Verification found = verify(layers);
+    EXPECT_GT(found.volume_mm3, 0);
+    EXPECT_EQ(found.misoriented, 1U);
+    ASSERT_EQ(found.findings.size(), 2U);
+    EXPECT_EQ(found.findings[0].find("1 crossing of contours"), 0U) << found.findings[0];
+    EXPECT_EQ(
+        found.findings[1].find("1 ring bounds no material though its area is positive: it crosses itself"),
+        0U)
+        << found.findings[1];
+}
+
 TEST(Verify, IsTheSameForAnyNumberOfThreads) {
     LayerStack layers;
     test::Random random(1);

@@ -21,6 +21,7 @@ def statistics(program, *arguments):
         (["--layer-height", "0.2", "--first-layer-height", "0.3"], {"layer_height": 0.2, "first_layer_height": 0.3}),
         (["--slice-at", "top"], {"at": "top"}),
         (["--slice-at", "bottom"], {"at": "bottom"}),
+        (["--snap", "0.02"], {"snap": 0.02}),
         (["--z-range", "10:12"], {"z_range": (10, 12)}),
         (["--layers", "3:9"], {"layers": (3, 9)}),
         (["--heights", "0:5=0.2,5:10=0.05"], {"heights": [(0, 5, 0.2), (5, 10, 0.05)]}),
@@ -155,6 +156,26 @@ def test_open_chains_are_kept_and_warned_of():
     assert not stack[0].closed.any()
     with pytest.raises(lamella.DefectError, match="the mesh has defects: 4 boundary edges"):
         lamella.slice(open_box(), 1, strict=True)
+
+
+def test_level_faces_within_rounding_of_a_plane_are_warned_of_and_cut_where_it_snaps():
+    vertices, faces = box_arrays()
+    bent = np.array(vertices, dtype=float)
+    bent[:, 2] += 1e-7 * (1 + np.arange(len(bent)) % 2)
+    options = {"z": [0, 1, 2], "at": "bottom"}
+    with pytest.warns(lamella.DefectWarning, match="of level faces lie within rounding .*; snap=1e-6 counts them"):
+        lamella.slice((bent, faces), **options)
+    with pytest.raises(lamella.DefectError, match="level faces lie within rounding .*; snap=1e-6"):
+        lamella.slice((bent, faces), **options, strict=True)
+    expected = lamella.slice((vertices, faces), **options)
+    snapped = lamella.slice((bent, faces), **options, snap=1e-6)
+    assert [layer.area for layer in snapped] == pytest.approx([layer.area for layer in expected])
+    assert [layer.area for layer in lamella.iter_layers((bent, faces), **options, snap=1e-6)] == pytest.approx(
+        [layer.area for layer in expected]
+    )
+    assert lamella.verify(snapped, (bent, faces), snap=1e-6).ok
+    with pytest.raises(lamella.UsageError, match="snap"):
+        lamella.slice((vertices, faces), **options, snap=-1)
 
 
 def test_streamed_layers_are_the_same(rook):

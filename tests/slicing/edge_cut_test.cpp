@@ -80,6 +80,22 @@ TEST(EdgeCut, IsTheBaseBitForBitOnAPlaneThroughTheBase) {
     }
 }
 
+TEST(EdgeCut, IsTheBaseOnAPlaneWithinTheSnapDistanceAndTheSameAsWithoutOneElsewhere) {
+    test::Random random(15);
+    for (int i = 0; i < test::rounds_within_reason(20000); ++i) {
+        auto [a, b] = any_edge(random, -20, 20);
+        a.z = random.real(-8, 8); // so that heights between differ by more than rounding
+        b.z = a.z + (random.integer(0, 1) == 0 ? 1 : -1) * random.real(0.1, 4);
+        const double snap = std::abs(b.z - a.z) * random.real(0, 0.5);
+        for (const double share : {-0.999, -0.5, 0.0, 0.5, 0.999}) {
+            expect_same_bits(EdgeCut(a, b, snap).at(a.z + share * snap), {a.x, a.y});
+            expect_same_bits(EdgeCut(b, a, snap).at(b.z + share * snap), {b.x, b.y});
+        }
+        const double z = a.z + (b.z - a.z) * random.real(0.51, 1);
+        expect_same_bits(EdgeCut(a, b, snap).at(z), EdgeCut(a, b).at(z));
+    }
+}
+
 void expect_all_inside(test::Random& random, const Point3& a, const Point3& b) {
     for (const double z : heights_on(random, a.z, b.z)) {
         expect_inside(EdgeCut(a, b).at(z), a, b);

@@ -1,3 +1,4 @@
+#include "fixtures/expect_error.hpp"
 #include "fixtures/random.hpp"
 #include "slicing/ranks.hpp"
 
@@ -72,6 +73,55 @@ TEST(Ranks, CountEvenlySpacedPlanes) {
     for (double& probe : probes)
         probe = random.real(-8, 24);
     expect_counts(z, probes);
+}
+
+TEST(Ranks, CountHeightsWithinTheSnapDistanceOfAPlaneAsOnIt) {
+    test::Random random(4);
+    for (int trial = 0; trial < 200; ++trial) {
+        std::vector<double> z(static_cast<std::size_t>(random.integer(1, 40)));
+        for (double& plane : z)
+            plane = random.real(-8, 8);
+        for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below}) {
+            Plan plan = plan_of(z, rule);
+            plan.snap_mm = random.real(0, 1); // often more than what lies between planes
+            const Ranks ranks(plan);
+            EXPECT_EQ(ranks.snap_mm(), plan.snap_mm);
+            std::vector<double> probes{-9, 9};
+            for (const PlannedLayer& layer : plan.layers)
+                probes.insert(probes.end(),
+                              {layer.z, layer.z + 0.999 * plan.snap_mm, layer.z - 0.999 * plan.snap_mm,
+                               layer.z + 1.001 * plan.snap_mm, layer.z - 1.001 * plan.snap_mm});
+            for (const double probe : probes) {
+                const auto below =
+                    std::count_if(plan.layers.begin(), plan.layers.end(), [&](const PlannedLayer& layer) {
+                        return rule == PlaneRule::section_above ? layer.z + plan.snap_mm < probe
+                                                                : layer.z - plan.snap_mm <= probe;
+                    });
+                ASSERT_EQ(ranks(probe), static_cast<std::uint32_t>(below)) << "z = " << probe;
+            }
+        }
+    }
+}
+
+TEST(Ranks, RefuseWhatIsNoPlan) {
+    const Plan ascending = plan_of({1, 2, 3}, PlaneRule::section_above);
+    const auto expect_refused = [&](const char* words, auto&& change) {
+        Plan plan = ascending;
+        change(plan);
+        test::expect_error(ErrorKind::usage, {words}, [&] { check(plan); });
+        test::expect_error(ErrorKind::usage, {words}, [&] { (void)Ranks(plan); });
+    };
+    EXPECT_NO_THROW(check(ascending));
+    EXPECT_NO_THROW(check(Plan{}));
+    expect_refused("layer 2 of the plan is cut at z = 2 mm, which is not above the one before it, 2",
+                   [](Plan& plan) { plan.layers[2].z = 2; });
+    expect_refused("layer 1 of the plan", [](Plan& plan) { std::swap(plan.layers[0], plan.layers[1]); });
+    expect_refused("layer 1 of the plan: found a height of nan mm",
+                   [](Plan& plan) { plan.layers[1].z = std::nan(""); });
+    expect_refused("layer 2 of the plan: found a height of inf mm",
+                   [](Plan& plan) { plan.layers[2].top = infinity; });
+    expect_refused("the snap distance is -1 mm", [](Plan& plan) { plan.snap_mm = -1; });
+    expect_refused("the snap distance is nan mm", [](Plan& plan) { plan.snap_mm = std::nan(""); });
 }
 
 TEST(Ranks, CountRandomPlanes) {

@@ -137,6 +137,20 @@ TEST(Slabs, SharesCountTogetherAsTheWhole) {
     EXPECT_TRUE(same(of_indexed, of_soup));
 }
 
+TEST(Slabs, GiveTheLayersOfTheWholePlanWhateverTheSnapDistance) {
+    const TriangleSoup soup(litter(300));
+    for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below})
+        for (const double snap : {0.0, 1e-6, 0.06, 0.125, 0.4}) {
+            Plan plan = crossing_plan(rule);
+            plan.snap_mm = snap;
+            const LayerStack whole = slice(soup, plan);
+            for (const PlaneRange slab : some_slabs) {
+                const LayerStack part = slice(soup, part_of(plan, slab));
+                expect_same(part, LayerStack(whole.begin() + slab.begin, whole.begin() + slab.end));
+            }
+        }
+}
+
 TEST(Slabs, FindWhomATriangleTouches) {
     const std::vector<PlaneRange> overlapping{{0, 5}, {2, 9}, {2, 9}, {8, 12}, {30, 40}, {40, 40}};
     const Triangles triangles = litter(3000);

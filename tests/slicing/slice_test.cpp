@@ -1,10 +1,13 @@
+#include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/mesh/mesh.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "even_planes.hpp"
 #include "expect_layers.hpp"
 #include "fixtures/expect_error.hpp"
+#include "fixtures/random.hpp"
 #include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
 #include "parts/shapes.hpp"
@@ -14,6 +17,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <functional>
@@ -35,6 +39,91 @@ using test::expect_same;
 /// Enough contours and planes that several slabs are worth while. z from -10 to 10.
 TriangleSoup body() {
     return test::soup(test::rugged_drum(2000, 60));
+}
+
+/// Some boxes side by side with level faces at whole heights.
+IndexedMesh steps() {
+    test::Random random(31);
+    std::vector<Mesh> boxes;
+    for (int i = 0; i < 12; ++i) {
+        const double bottom = static_cast<double>(random.integer(0, 3));
+        boxes.push_back(make_box(2, 2, static_cast<double>(random.integer(1, 4)))
+                            .transformed(translation(3.0 * i, 0, bottom))
+                            .transformed(rotation('z', 10.0 * i)));
+    }
+    return weld(joined(boxes));
+}
+
+IndexedMesh shaken(IndexedMesh mesh, double by) {
+    test::Random random(32);
+    for (Point3& p : mesh.vertices)
+        p.z += random.real(-by, by);
+    return mesh;
+}
+
+TEST(Slice, CutsFacesThatAreLevelButForRoundingAsFacesOnThePlaneWhereItSnaps) {
+    const IndexedMesh level = steps();
+    const IndexedMesh bent = shaken(level, 1e-6);
+    for (const SliceAt at : {SliceAt::bottom, SliceAt::top}) {
+        Plan plan = plan_listed({0, 0.5, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.5, 5, 5.5, 6, 6.5, 7}, at);
+        const LayerStack expected = slice(level, plan);
+        std::size_t differing = 0;
+        const LayerStack without = slice(bent, plan);
+        for (std::size_t i = 0; i < without.size(); ++i)
+            differing += std::abs(measure(without[i]).area_mm2 - measure(expected[i]).area_mm2) > 1 ? 1 : 0;
+        EXPECT_GT(differing, 3U);
+        plan.snap_mm = 1e-5;
+        for (const Engine& engine : engines()) {
+            const LayerStack layers = slice(bent, plan, {}, nullptr, engine);
+            const std::vector<double> areas = section_areas(bent, plan);
+            ASSERT_EQ(layers.size(), expected.size());
+            for (std::size_t i = 0; i < layers.size(); ++i) {
+                SCOPED_TRACE(testing::Message() << engine.name << ", layer " << i);
+                EXPECT_EQ(layers[i].open_chains(), 0U);
+                EXPECT_EQ(layers[i].offsets.size(), expected[i].offsets.size());
+                EXPECT_NEAR(measure(layers[i]).area_mm2, measure(expected[i]).area_mm2, 1e-4);
+                EXPECT_NEAR(areas[i], measure(expected[i]).area_mm2, 1e-4);
+            }
+        }
+    }
+}
+
+TEST(Slice, IsTheSectionOfTheMeshAtAPlaneThatNoVertexIsNearWhateverTheSnapDistance) {
+    const IndexedMesh mesh = steps();
+    Plan plan = plan_listed({0.25, 1.25, 2.25, 3.25});
+    const LayerStack expected = slice(mesh, plan);
+    plan.snap_mm = 0.2;
+    expect_same(slice(mesh, plan), expected);
+}
+
+TEST(Slice, ClosesAllContoursOfClosedMeshesWhateverTheSnapDistance) {
+    const IndexedMesh drum = test::indexed(test::rugged_drum(200, 7));
+    const Box3 box = bounding_box(drum);
+    for (const SliceAt at : {SliceAt::bottom, SliceAt::top})
+        for (const double snap : {1e-9, 1e-3, 0.05, 0.2, 3.0}) {
+            Plan plan = even_planes(-10, 10, 100, at); // 0.2 apart
+            plan.snap_mm = snap;
+            const LayerStack layers = slice(drum, plan, {.threads = 3});
+            expect_same(slice(test::soup(test::rugged_drum(200, 7)), plan, {.threads = 1}), layers);
+            for (const Layer& layer : layers) {
+                test::expect_sound(layer);
+                EXPECT_EQ(layer.open_chains(), 0U);
+                for (const Point2& p : layer.points)
+                    EXPECT_TRUE(box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y);
+            }
+            for (const Engine& engine : engines())
+                if (engine.name != "conventional") // which goes by points
+                    expect_same(slice(drum, plan, {}, nullptr, engine), layers);
+        }
+}
+
+TEST(Slice, RefusesAPlanThatDoesNotAscend) {
+    Plan plan = even_planes(10);
+    std::swap(plan.layers[3], plan.layers[4]);
+    for (const Engine& engine : engines())
+        expect_error(ErrorKind::usage, {"layer 4 of the plan", "must ascend"},
+                     [&] { (void)slice(make_box(1, 1, 1), plan, {}, nullptr, engine); });
+    expect_error(ErrorKind::usage, {"must ascend"}, [&] { (void)section_areas(make_box(1, 1, 1), plan); });
 }
 
 TEST(Slice, ReportsWhatItDid) {

@@ -24,6 +24,9 @@ struct BoundaryLoop {
     std::vector<Point3> points; ///< of a closed loop the first one is not repeated at the end
     bool closed = true;         ///< false where a flipped triangle breaks the rim
     double length_mm = 0;
+    /// The largest distance of a point from the line through the first one and the farthest from that:
+    /// nothing but rounding where a vertex lies on an edge of a neighbour (a T-junction).
+    double width_mm = 0;
     Box3 box;
 
     [[nodiscard]] std::size_t edges() const noexcept { return closed ? points.size() : points.size() - 1; }
@@ -62,6 +65,10 @@ struct Diagnosis {
     Inspection counts;
 
     std::uint64_t boundary_loops = 0;
+    /// Those of them that are closed and no wider than the rounding of coordinates: edges that lie on one
+    /// another without sharing their vertices. And the widest.
+    std::uint64_t slits = 0;
+    double widest_slit_mm = 0;
     double boundary_length_mm = 0;
     /// Vertices at which parts of the surface touch: the triangles there are not all connected over edges
     /// that end there.

@@ -4,6 +4,9 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/open_gaps.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/mesh/mesh.hpp"
+#include "lamella/slicing/plan.hpp"
 
 #include <cstdint>
 #include <span>
@@ -20,6 +23,21 @@ struct AffectedLayers {
     /// The next one above.
     void add(double z) noexcept;
 };
+
+/// Layers near whose planes level faces lie: on them but for rounding, which decides on which side they are
+/// cut.
+struct NearFaceLayers : AffectedLayers {
+    double area_mm2 = 0;
+    double farthest_mm = 0; ///< the largest distance of such a face from its plane
+
+    /// The next one above.
+    void add(double z, double area_mm2, double farthest_mm) noexcept;
+    /// One line; "" where there are none. `layers`: all there are.
+    [[nodiscard]] std::string text(std::uint64_t layers) const;
+};
+
+/// Of a mesh, cut by a plan. O(triangles + planes).
+[[nodiscard]] NearFaceLayers near_faces(const Mesh& mesh, const Plan& plan, const Execution& execution = {});
 
 /// What the layers of a mesh tell about it.
 struct MeshDoubts {

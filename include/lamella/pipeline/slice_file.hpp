@@ -77,8 +77,9 @@ struct FileJob {
     std::string engine; ///< by name; "" is the default engine
     /// Weld the mesh and count its defects first.
     bool inspect = false;
-    /// Inspect, and make an Error{defect} of any defect, of rings that are too thin for scan vectors, and of
-    /// steps that leave no contour in any layer, before anything is written.
+    /// Inspect, and make an Error{defect} of any defect, of level faces within rounding of a plane, of rings
+    /// that are too thin for scan vectors, and of steps that leave no contour in any layer, before anything
+    /// is written.
     bool strict = false;
     /// Measure and hash every layer.
     bool layer_statistics = false;
@@ -150,8 +151,10 @@ struct FileResult {
     std::optional<LayerChanges> changes; ///< by FileJob::steps, where there are any
     /// With FileJob::scan; the other figures are those of the layers that vectors are made of.
     std::vector<ExposureResult> exposures;
-    ThinRings thin;                   ///< with FileJob::scan
-    MeshDoubts doubts;                ///< what the layers tell
+    ThinRings thin;    ///< with FileJob::scan
+    MeshDoubts doubts; ///< what the layers tell
+    std::vector<NearFaceLayers>
+        near_faces;                   ///< of each of `files`, where rounding decides what its layers are
     std::uint64_t planned_layers = 0; ///< by all shards
     PlaneRange shard;                 ///< which of them by this one: all, where there are no shards
     double bottom = 0;                ///< of the first layer

@@ -30,6 +30,7 @@ struct VerifyOptions {
     std::optional<Plate> plate = {};
     /// The rule by which the layers were cut; it matters for planes through flat faces only.
     PlaneRule rule = PlaneRule::section_above;
+    double snap_mm = 0;    ///< by which the layers were cut; see Plan
     LayerSteps steps = {}; ///< that were taken with the layers of the mesh, one part; without any, areas are
                            ///< computed without linking. What `simplify_mm` may move is granted.
     /// How the format rounds coordinates and heights. The area tolerance grows with it and the layer's

@@ -34,6 +34,7 @@ struct Layering {
     Cut cut = {};
     SliceAt at = SliceAt::middle;
     PlaneSelection only = {};
+    double snap_mm = 0; ///< see Plan
 };
 
 /// The planes that cut what lies in `box`. `mesh` makes it: it is called only where the layers are adaptive.

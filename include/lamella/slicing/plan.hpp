@@ -25,11 +25,19 @@ struct PlannedLayer {
     double top = 0;
 };
 
-/// The planes of one job, in strictly ascending z.
+/// The planes of one job, in strictly ascending z, all heights finite: `check` holds for whatever takes one.
 struct Plan {
     std::vector<PlannedLayer> layers;
     PlaneRule rule = PlaneRule::section_above;
+    /// Vertices no further from a plane than this, in mm, count as on that plane; see docs/conventions.md,
+    /// "Faces near a plane".
+    double snap_mm = 0;
 };
+
+/// Throws Error{usage} that names the first layer whose heights are not finite or whose z is not above the
+/// one before, for a snap distance that is below 0 or not finite, and for more than 2^31 - 2 layers.
+/// O(layers).
+void check(const Plan& plan);
 
 /// The planes [begin, end) of a plan, by their positions in it.
 struct PlaneRange {

@@ -71,6 +71,10 @@ struct SliceReport {
 /// as writing. Either may throw: slicing stops and the exception reaches the caller.
 using LayerSink = std::function<std::function<void()>(Layer&&)>;
 
+/// Sees each triangle of a mesh once, while slicing passes over them: the triangles [begin, end), called from
+/// several threads at once. A look at triangles that are in the cache costs less than a pass of its own.
+using TriangleVisitor = std::function<void(const Mesh& mesh, std::uint64_t begin, std::uint64_t end)>;
+
 /// What an engine is given.
 struct SliceJob {
     const Mesh& mesh;
@@ -80,6 +84,8 @@ struct SliceJob {
     /// How many points may be under way between the engine and the sink's last word on them; 0: any number.
     std::uint64_t points_in_flight;
     SliceReport& report;
+    /// Null where nobody wants to see triangles. Engines that weld have no part in it.
+    const TriangleVisitor* visitor = nullptr;
 };
 
 /// One algorithm from mesh and plan to layers.
@@ -105,15 +111,17 @@ struct Engine {
 /// Default engine: O(triangles + points + c log c) for c contours in a layer, on all threads; the same bytes
 /// for any number of threads and any order of the triangles. Throws Error{limit} beyond 2^32 / 3 triangles,
 /// Error{cancelled}, and what the progress function throws.
+/// `visitor`, where there is one, sees the mesh with joined vertices.
 [[nodiscard]] LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution = {},
-                               SliceReport* report = nullptr, const Engine& engine = engines().front());
+                               SliceReport* report = nullptr, const Engine& engine = engines().front(),
+                               const TriangleVisitor& visitor = {});
 
 /// Slices into a sink: the same layers, each handed over when it is done, with a bounded number of points in
 /// flight (some 56 MB per thread, 112 MB at least, or two layers per thread where those are more). Layers
 /// that the sink has let go of take no memory. `points_in_flight` overrides this bound; 0 keeps it.
 void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution = {},
               SliceReport* report = nullptr, const Engine& engine = engines().front(),
-              std::uint64_t points_in_flight = 0);
+              std::uint64_t points_in_flight = 0, const TriangleVisitor& visitor = {});
 
 /// The area of the section at each plane of the plan, in mm^2, straight from the triangles: no linking, no
 /// contours. For closed meshes it equals the area of the layers, whichever engine made them: the check that

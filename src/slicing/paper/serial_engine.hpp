@@ -69,8 +69,8 @@ class SerialEngine {
     [[nodiscard]] double z(std::uint32_t plane) const noexcept { return ranks_.z(plane); }
 
     [[nodiscard]] EdgeCut cut(const Edge& edge) const noexcept {
-        return ranks_.rule() == PlaneRule::section_above ? EdgeCut(*edge.low, *edge.high)
-                                                         : EdgeCut(*edge.high, *edge.low);
+        return ranks_.rule() == PlaneRule::section_above ? EdgeCut(*edge.low, *edge.high, ranks_.snap_mm())
+                                                         : EdgeCut(*edge.high, *edge.low, ranks_.snap_mm());
     }
 
     /// Throws Error{cancelled} when a stop was requested. Cheap; to be called within every list search.

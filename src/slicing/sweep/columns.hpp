@@ -74,8 +74,8 @@ class ColumnStore {
 
 /// Prepares the edges of a run for being cut, in memory at `to` that has room for their columns.
 template <class Ends>
-EdgeColumns lay_out_edges(const CutGraph<Ends>& graph, PlaneRule rule, std::span<const std::uint32_t> nodes,
-                          const PointKernels& kernels, double* to) {
+EdgeColumns lay_out_edges(const CutGraph<Ends>& graph, const Ranks& ranks,
+                          std::span<const std::uint32_t> nodes, const PointKernels& kernels, double* to) {
     assert(!nodes.empty());
     const std::size_t stride = EdgeColumns::padded(nodes.size());
     double* const z0 = to;
@@ -84,7 +84,7 @@ EdgeColumns lay_out_edges(const CutGraph<Ends>& graph, PlaneRule rule, std::span
     double* const far_x = x0 + stride;
     double* const y0 = far_x + stride;
     double* const far_y = y0 + stride;
-    const bool low_is_base = rule == PlaneRule::section_above;
+    const bool low_is_base = ranks.rule() == PlaneRule::section_above;
     constexpr std::size_t ahead = 12;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
         if (i + ahead < nodes.size())
@@ -99,7 +99,7 @@ EdgeColumns lay_out_edges(const CutGraph<Ends>& graph, PlaneRule rule, std::span
         y0[i] = base.y;
         far_y[i] = far.y;
     }
-    const EdgeColumns edges{to, nodes.size()};
+    const EdgeColumns edges{to, nodes.size(), ranks.snap_mm()};
     kernels.prepare(edges);
     return edges;
 }

@@ -333,8 +333,8 @@ class Builder {
 
   public:
     Builder(const Corners& corners, std::uint64_t triangles, const Point3* vertices, Executor& executor,
-            ProgressMeter& progress)
-        : corners_(corners), triangles_(triangles), executor_(executor), progress_(progress),
+            ProgressMeter& progress, const RangeVisitor& visit)
+        : corners_(corners), triangles_(triangles), executor_(executor), progress_(progress), visit_(visit),
           workers_(executor.workers()), partitions_(triangles * 3 / 2) {
         graph_.vertices = vertices;
     }
@@ -388,12 +388,24 @@ class Builder {
             if (!collector)
                 collector = std::make_unique<Collector<Corners>>(corners_, graph_, partitions_, pool, block,
                                                                  std::size_t{1} << table_bits);
-            collector->add(begin, end);
+            if (visit_)
+                add_visited(*collector, begin, end);
+            else
+                collector->add(begin, end);
             progress_.add(end - begin);
         });
         for (const Worker& worker : worker_)
             if (worker.collector)
                 worker.collector->finish();
+    }
+
+    /// In stretches that are still in the cache when they are added.
+    void add_visited(Collector<Corners>& collector, std::uint64_t begin, std::uint64_t end) const {
+        constexpr std::uint64_t stretch = 1024;
+        for (; begin < end; begin += std::min(stretch, end - begin)) {
+            visit_(begin, begin + std::min(stretch, end - begin));
+            collector.add(begin, begin + std::min(stretch, end - begin));
+        }
     }
 
     void join() {
@@ -460,6 +472,7 @@ class Builder {
     std::uint64_t triangles_;
     Executor& executor_;
     ProgressMeter& progress_;
+    const RangeVisitor& visit_;
     unsigned workers_;
     std::vector<Worker> worker_;
     NodePartitions partitions_;
@@ -470,19 +483,19 @@ class Builder {
 } // namespace
 
 CutGraph<FloatEnds> build_cut_graph(const TriangleSoup& unplaced, const Ranks& ranks, Executor& executor,
-                                    ProgressMeter& progress) {
+                                    ProgressMeter& progress, const RangeVisitor& visit) {
     const FloatCorners corners(unplaced, ranks);
-    return Builder<FloatCorners>(corners, unplaced.size(), nullptr, executor, progress).build();
+    return Builder<FloatCorners>(corners, unplaced.size(), nullptr, executor, progress, visit).build();
 }
 
 CutGraph<DoubleEnds> build_placed_cut_graph(const TriangleSoup& soup, const Ranks& ranks, Executor& executor,
-                                            ProgressMeter& progress) {
+                                            ProgressMeter& progress, const RangeVisitor& visit) {
     const PlacedCorners corners(soup, ranks);
-    return Builder<PlacedCorners>(corners, soup.size(), nullptr, executor, progress).build();
+    return Builder<PlacedCorners>(corners, soup.size(), nullptr, executor, progress, visit).build();
 }
 
 CutGraph<IndexEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks, Executor& executor,
-                                    ProgressMeter& progress) {
+                                    ProgressMeter& progress, const RangeVisitor& visit) {
     PageArray<std::uint32_t> vertex_ranks(mesh.vertices.size());
     executor.for_chunks(mesh.vertices.size(), 1U << 14,
                         [&](std::uint64_t begin, std::uint64_t end, unsigned) {
@@ -490,7 +503,8 @@ CutGraph<IndexEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks,
                                 vertex_ranks[v] = ranks(mesh.vertices[v].z);
                         });
     const IndexedCorners corners(mesh, vertex_ranks);
-    return Builder<IndexedCorners>(corners, mesh.triangles.size(), mesh.vertices.data(), executor, progress)
+    return Builder<IndexedCorners>(corners, mesh.triangles.size(), mesh.vertices.data(), executor, progress,
+                                   visit)
         .build();
 }
 

@@ -17,6 +17,7 @@
 #include "slicing/ranks.hpp"
 
 #include <cstdint>
+#include <functional>
 
 namespace lamella {
 
@@ -102,14 +103,21 @@ struct CutGraph {
 /// edge, so that contours bound one wedge of material each and never cross there, whatever the order of the
 /// triangles.
 ///
+/// `visit`, where there is one, sees the triangles [begin, end) right before they are added, each once and
+/// from any thread.
+///
 /// Expected O(triangles), parallel; a hostile file costs O(n log n). Throws Error{limit} when the nodes
 /// cannot be numbered in 32 bits (beyond 2^32 / 3 triangles), Error{cancelled}.
+using RangeVisitor = std::function<void(std::uint64_t begin, std::uint64_t end)>;
 [[nodiscard]] CutGraph<FloatEnds> build_cut_graph(const TriangleSoup& unplaced, const Ranks& ranks,
-                                                  Executor& executor, ProgressMeter& progress);
+                                                  Executor& executor, ProgressMeter& progress,
+                                                  const RangeVisitor& visit = {});
 /// For a soup with a placement.
 [[nodiscard]] CutGraph<DoubleEnds> build_placed_cut_graph(const TriangleSoup& soup, const Ranks& ranks,
-                                                          Executor& executor, ProgressMeter& progress);
+                                                          Executor& executor, ProgressMeter& progress,
+                                                          const RangeVisitor& visit = {});
 [[nodiscard]] CutGraph<IndexEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks,
-                                                  Executor& executor, ProgressMeter& progress);
+                                                  Executor& executor, ProgressMeter& progress,
+                                                  const RangeVisitor& visit = {});
 
 } // namespace lamella

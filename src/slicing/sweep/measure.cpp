@@ -144,7 +144,8 @@ void measure_rings(const Outline& outline, PlaneRange planes, const Ranks& ranks
     assert(outline.edges.size > 0);
     Measurement measurement(outline, planes, ranks, executor, rings, scratch);
     constexpr std::uint32_t worth_a_tolerance = 4; // planes
-    if (!outline.closed || planes.size() < worth_a_tolerance) {
+    const bool snaps = ranks.snap_mm() > 0;        // then points leave their lines where a plane is near
+    if (!outline.closed || planes.size() < worth_a_tolerance || snaps) {
         for (std::uint32_t plane = planes.begin; plane < planes.end; ++plane)
             measurement.measure_plane(plane, 0);
         return;

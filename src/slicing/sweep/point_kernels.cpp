@@ -55,8 +55,8 @@ template <int width>
     }
 }
 
-/// The cuts of `width` edges, from edge i on.
-template <int width>
+/// The cuts of `width` edges, from edge i on. `snaps`: edges.snap is above 0.
+template <int width, bool snaps>
 [[gnu::always_inline]] inline void cut_some(const EdgeColumns& edges, std::size_t i, double z,
                                             typename Vector<width>::Doubles& x,
                                             typename Vector<width>::Doubles& y) {
@@ -64,8 +64,13 @@ template <int width>
     const double* column = edges.data + i;
     const std::size_t stride = edges.stride();
     const V one = V{} + 1.0;
-    const V t = (z - at<width>(column).v) * at<width>(column + stride).v;
-    const V s = t < one ? t : one;
+    const V h = z - at<width>(column).v;
+    const V t = h * at<width>(column + stride).v;
+    V s = t < one ? t : one;
+    if constexpr (snaps) {
+        s = s > V{} ? s : V{};
+        s = (h < V{} ? -h : h) > V{} + edges.snap ? s : V{};
+    }
     x = at<width>(column + 2 * stride).v + s * at<width>(column + 3 * stride).v;
     y = at<width>(column + 4 * stride).v + s * at<width>(column + 5 * stride).v;
 }
@@ -78,7 +83,7 @@ shift_in(const typename Vector<width>::Doubles& before, const typename Vector<wi
     shifted = __builtin_shufflevector(before, v, (width - 1 + static_cast<int>(k))...);
 }
 
-template <int width>
+template <int width, bool snaps>
 [[gnu::always_inline]] inline CutSurvey survey(const EdgeColumns& edges, double z, double* x, double* y) {
     assert(edges.size > 0 && is_aligned(edges.data) && is_aligned(x) && is_aligned(y));
     using V = typename Vector<width>::Doubles;
@@ -97,7 +102,7 @@ template <int width>
         V py;
         V qx;
         V qy;
-        cut_some<width>(edges, i, z, px, py);
+        cut_some<width, snaps>(edges, i, z, px, py);
         store<width>(px, x + i);
         store<width>(py, y + i);
         shift_in<width>(x_before, px, qx, lanes);
@@ -116,7 +121,7 @@ template <int width>
     if (i < n) {
         V px;
         V py;
-        cut_some<width>(edges, i, z, px, py); // the lanes beyond n compute on padding
+        cut_some<width, snaps>(edges, i, z, px, py); // the lanes beyond n compute on padding
         store<width>(px, x + i);
         store<width>(py, y + i);
         for (; i < n; ++i) {
@@ -164,15 +169,18 @@ template <int width>
 #endif
 }
 
+template <bool snaps>
 [[gnu::always_inline]] inline Point2 cut_one(const EdgeColumns& edges, std::size_t i, double z) {
     const double* column = edges.data + i;
     const std::size_t stride = edges.stride();
     const double t = (z - column[0]) * column[stride];
-    const double s = t < 1.0 ? t : 1.0;
+    double s = t < 1.0 ? t : 1.0;
+    if constexpr (snaps)
+        s = std::abs(z - column[0]) > edges.snap && s > 0 ? s : 0;
     return {column[2 * stride] + s * column[3 * stride], column[4 * stride] + s * column[5 * stride]};
 }
 
-template <int width, bool past_cache>
+template <int width, bool past_cache, bool snaps>
 [[gnu::always_inline]] inline void cut(const EdgeColumns& edges, std::size_t begin, std::size_t end, double z,
                                        Point2* to) {
     using V = typename Vector<width>::Doubles;
@@ -182,13 +190,13 @@ template <int width, bool past_cache>
     std::size_t i = begin;
     if constexpr (past_cache)
         for (; i < end && reinterpret_cast<std::uintptr_t>(to) % line != 0; ++i, ++to)
-            *to = cut_one(edges, i, z);
+            *to = cut_one<snaps>(edges, i, z);
     for (; i + width <= end; i += width, to += width) {
         V px;
         V py;
         V first;
         V second;
-        cut_some<width>(edges, i, z, px, py);
+        cut_some<width, snaps>(edges, i, z, px, py);
         interleave<width>(px, py, first, second, lanes);
         if constexpr (past_cache) {
             stream<width>(first, &to->x);
@@ -199,7 +207,7 @@ template <int width, bool past_cache>
         }
     }
     for (; i < end; ++i, ++to)
-        *to = cut_one(edges, i, z);
+        *to = cut_one<snaps>(edges, i, z);
     if constexpr (past_cache)
         end_stream();
 }
@@ -251,15 +259,22 @@ template <int width>
     struct name {                                                                                            \
         target static void prepare(EdgeColumns edges) { lamella::prepare<width>(edges); }                    \
         target static CutSurvey survey(EdgeColumns edges, double z, double* x, double* y) {                  \
-            return lamella::survey<width>(edges, z, x, y);                                                   \
+            return edges.snap > 0 ? lamella::survey<width, true>(edges, z, x, y)                             \
+                                  : lamella::survey<width, false>(edges, z, x, y);                           \
         }                                                                                                    \
         target static void cut(EdgeColumns edges, std::size_t begin, std::size_t end, double z,              \
                                Point2* to) {                                                                 \
-            lamella::cut<width, false>(edges, begin, end, z, to);                                            \
+            if (edges.snap > 0)                                                                              \
+                lamella::cut<width, false, true>(edges, begin, end, z, to);                                  \
+            else                                                                                             \
+                lamella::cut<width, false, false>(edges, begin, end, z, to);                                 \
         }                                                                                                    \
         target static void cut_past_cache(EdgeColumns edges, std::size_t begin, std::size_t end, double z,   \
                                           Point2* to) {                                                      \
-            lamella::cut<width, true>(edges, begin, end, z, to);                                             \
+            if (edges.snap > 0)                                                                              \
+                lamella::cut<width, true, true>(edges, begin, end, z, to);                                   \
+            else                                                                                             \
+                lamella::cut<width, true, false>(edges, begin, end, z, to);                                  \
         }                                                                                                    \
         target static double largest(const double* values, std::size_t n) {                                  \
             return lamella::largest<width>(values, n);                                                       \

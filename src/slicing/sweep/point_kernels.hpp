@@ -17,6 +17,7 @@ namespace lamella {
 struct EdgeColumns {
     double* data;
     std::size_t size;
+    double snap = 0; ///< see EdgeCut
 
     static constexpr std::size_t columns = 6;
     static constexpr std::size_t lanes = 8; ///< doubles in 64 bytes

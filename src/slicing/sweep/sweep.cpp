@@ -121,7 +121,7 @@ class alignas(128) Sweep {
 
     /// The edges of a run, in their place in the store if they have one.
     EdgeColumns lay_out(const Run& run, Scratch& scratch) const {
-        return lay_out_edges(graph_, ranks_.rule(), runs_.nodes(run), scratch.kernels,
+        return lay_out_edges(graph_, ranks_, runs_.nodes(run), scratch.kernels,
                              run.columns == ColumnStore::not_kept ? scratch.columns_for(run.size)
                                                                   : columns_.at(run.columns));
     }
@@ -131,7 +131,7 @@ class alignas(128) Sweep {
         return [this](const Run& run, Scratch& scratch) -> EdgeColumns {
             if (run.columns == ColumnStore::not_kept)
                 return lay_out(run, scratch);
-            return {columns_.at(run.columns), run.size};
+            return {columns_.at(run.columns), run.size, ranks_.snap_mm()};
         };
     }
 
@@ -199,12 +199,17 @@ void slice_by_sweep(const SliceJob& job) {
         job.report.link_seconds = linking.seconds();
         sweep_graph(job, graph, ranks, executor);
     };
+    RangeVisitor visit;
+    if (job.visitor != nullptr)
+        visit = [&job](std::uint64_t begin, std::uint64_t end) {
+            (*job.visitor)(job.mesh, begin, end);
+        };
     if (job.mesh.indexed() != nullptr)
-        sweep(build_cut_graph(*job.mesh.indexed(), ranks, executor, progress));
+        sweep(build_cut_graph(*job.mesh.indexed(), ranks, executor, progress, visit));
     else if (job.mesh.soup()->has_placement())
-        sweep(build_placed_cut_graph(*job.mesh.soup(), ranks, executor, progress));
+        sweep(build_placed_cut_graph(*job.mesh.soup(), ranks, executor, progress, visit));
     else
-        sweep(build_cut_graph(*job.mesh.soup(), ranks, executor, progress));
+        sweep(build_cut_graph(*job.mesh.soup(), ranks, executor, progress, visit));
 }
 
 } // namespace lamella

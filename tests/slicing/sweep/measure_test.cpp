@@ -25,7 +25,7 @@ void for_outlines(const TriangleSoup& soup, const Ranks& ranks, const Look& look
     Scratch scratch;
     for (std::uint32_t plane = 0; plane < ranks.count(); ++plane)
         walk.walk(plane, test::nodes_beginning_on(graph, plane), {}, [&](const NodeSequence& found) {
-            const EdgeColumns edges = lay_out_edges(graph, ranks.rule(), found.nodes, scratch.kernels,
+            const EdgeColumns edges = lay_out_edges(graph, ranks, found.nodes, scratch.kernels,
                                                     scratch.columns_for(found.nodes.size()));
             look(Outline{edges, found.closed}, PlaneRange{plane, found.valid_until}, scratch);
         });

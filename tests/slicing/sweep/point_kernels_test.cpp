@@ -41,7 +41,7 @@ class Edges {
         }
     }
 
-    [[nodiscard]] EdgeColumns columns() const { return {memory_.data(), cuts_.size()}; }
+    [[nodiscard]] EdgeColumns columns() const { return {memory_.data(), cuts_.size(), cuts_.front().snap}; }
     [[nodiscard]] std::size_t size() const { return cuts_.size(); }
     [[nodiscard]] Point2 at(std::size_t i, double z) const { return cuts_[i].at(z); }
 
@@ -53,6 +53,7 @@ class Edges {
 /// Edges from z = 0 or so to z = 10 or so, some of them the other way, some vertical, a few almost level.
 Edges random_edges(std::size_t n, test::Random& random) {
     std::vector<EdgeCut> cuts;
+    const double snap = random.integer(0, 1) == 0 ? 0 : 1.5; // as near as planes come to some of the bases
     for (std::size_t i = 0; i < n; ++i) {
         Point3 a{random.real(-100, 100), random.real(-100, 100), random.real(-1, 1)};
         Point3 b{random.real(-100, 100), random.real(-100, 100), random.real(9, 11)};
@@ -63,7 +64,7 @@ Edges random_edges(std::size_t n, test::Random& random) {
             b.y = a.y;
         if (kind == 2)
             b.z = a.z + 5e-324;
-        cuts.push_back(random.integer(0, 1) == 0 || kind == 2 ? EdgeCut(a, b) : EdgeCut(b, a));
+        cuts.push_back(random.integer(0, 1) == 0 || kind == 2 ? EdgeCut(a, b, snap) : EdgeCut(b, a, snap));
     }
     return Edges(cuts);
 }

