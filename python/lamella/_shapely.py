@@ -11,8 +11,16 @@ if TYPE_CHECKING:
 def multi_polygon(layer: Layer) -> Any:
     try:
         from shapely.geometry import MultiPolygon, Polygon  # type: ignore[import]
+        from shapely.ops import unary_union  # type: ignore[import]
+        from shapely.validation import make_valid  # type: ignore[import]
     except ImportError as error:
         raise ImportError("to_shapely needs shapely: on Debian, apt install python3-shapely") from error
-    return MultiPolygon([
-        Polygon(layer[outer], [layer[hole] for hole in holes]) for outer, holes in layer.polygons()
+    united = layer._filled("positive")  # material counts once where bodies overlap
+    material = MultiPolygon([
+        Polygon(united[outer], [united[hole] for hole in holes]) for outer, holes in united.polygons()
     ])  # fmt: skip
+    if material.is_valid:
+        return material
+    # Bodies share edges, or rings touch themselves: they are right, but shapely takes them otherwise.
+    joined = unary_union([make_valid(polygon) for polygon in material.geoms])
+    return MultiPolygon([part for part in getattr(joined, "geoms", [joined]) if isinstance(part, Polygon)])

@@ -25,6 +25,24 @@ def test_areas_and_lengths_are_those_of_the_layers(bodies, body):
         assert sum(1 + len(polygon.interiors) for polygon in material.geoms) == layer.rings
 
 
+def test_material_of_bodies_that_overlap_counts_once():
+    square = np.array([(0, 0), (4, 0), (4, 4), (0, 4)])
+    layer = lamella.Layer([square, square + (2, 2), square + (8, 0), (square / 2 + (9, 1)), (square / 2 + (20, 0))[::-1]], z=1)
+    material = layer.to_shapely()
+    assert material.is_valid
+    assert np.isclose(material.area, 16 + 12 + 16)
+
+
+def test_polygons_are_valid_wherever_rings_overlap_or_touch():
+    numbers = np.random.default_rng(7)
+    for _ in range(300):
+        rings = list(random_rings(numbers))
+        material = lamella.Layer(rings, z=1).to_shapely()
+        expected = unary_union([Polygon(ring) for ring in rings])
+        assert material.is_valid
+        assert np.isclose(material.area, expected.area, rtol=0, atol=1e-6)
+
+
 def test_layers_without_material_are_empty():
     assert lamella.Layer([], z=0).to_shapely().is_empty
     with pytest.warns(lamella.DefectWarning):
