@@ -12,7 +12,7 @@ import numbers
 import operator
 import os
 import reprlib
-from typing import Any, Callable, NoReturn, Optional, Sequence, Tuple, TypeVar, Union
+from typing import Any, Callable, Literal, NoReturn, Optional, Sequence, Tuple, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -21,23 +21,35 @@ from ._errors import UsageError
 
 PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 Progress = Callable[[str, int, int], object]
+CutAt = Literal["bottom", "middle", "top"]
+FillRule = Literal["nonzero", "evenodd", "positive"]
+Corners = Literal["mitre", "bevel", "round"]
+Orientation = Literal["landscape", "portrait"]
+Mirror = Literal["none", "x", "y", "xy"]
 T = TypeVar("T")
 
 MOST_THREADS = 4096
+MOST_QUOTED = 200  # characters of a value; the library quotes as many bytes
+
+
+def excerpt(value: object) -> str:
+    """A value as errors quote it."""
+    text = str(value)
+    return text if len(text) <= MOST_QUOTED else f"{text[:MOST_QUOTED]}..."
 
 
 def described(value: object) -> str:
     """What was found, in a few words."""
     if isinstance(value, np.ndarray):
-        return f"{value.shape} of {value.dtype}"
+        return f"{value.shape} of {excerpt(value.dtype)}"
     if isinstance(value, (str, bytes)):
         return reprlib.repr(value)
     if value is None or isinstance(value, numbers.Number):
         try:
-            return str(value)
+            return excerpt(value)
         except ValueError:  # Python writes down no whole number of so many digits
             return "a number of thousands of digits"
-    return f"an object of type {type(value).__name__}"
+    return f"an object of type {excerpt(type(value).__name__)}"
 
 
 def refuse_type(name: str, expected: str, value: object) -> NoReturn:
@@ -111,7 +123,7 @@ def choice(name: str, value: Any, choices: Sequence[str]) -> str:
     if not isinstance(value, str):
         refuse_type(name, _listed(choices, "or"), value)
     if value not in choices:
-        raise UsageError(f'{name}: "{value}" is none of {_listed(choices, "and")}')
+        raise UsageError(f'{name}: "{excerpt(value)}" is none of {_listed(choices, "and")}')
     return value
 
 
@@ -134,7 +146,7 @@ def path(name: str, value: Any) -> bytes:
     if not found:
         raise UsageError(f"{name}: expected the path of a file, found an empty one")
     if b"\0" in found:
-        raise UsageError(f"{name}: {plain!r} is not possible; the path of a file holds no null character")
+        raise UsageError(f"{name}: {excerpt(repr(plain))} is not possible; the path of a file holds no null character")
     return found
 
 
@@ -142,7 +154,7 @@ def _encoded(name: str, value: str) -> bytes:
     try:
         return os.fsencode(value)
     except UnicodeError:
-        raise UsageError(f"{name}: {value!r} is not possible; expected characters that UTF-8 has") from None
+        raise UsageError(f"{name}: {excerpt(repr(value))} is not possible; expected characters that UTF-8 has") from None
 
 
 def several(

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import PathLike, Progress
+from ._arguments import CutAt, PathLike, Progress
 from ._errors import UsageError
 from ._files import as_stack
 from ._lamella import Layer, Mesh, Stack
@@ -46,7 +46,7 @@ def verify(
     layers: Union[PathLike, Stack],
     mesh: Optional[MeshLike] = None,
     *,
-    at: Optional[str] = None,
+    at: Optional[CutAt] = None,
     snap: float = 0,
     tolerance: float = 0,
     direction: Sequence[float] = (0, 0, 1),
@@ -106,7 +106,7 @@ def verify_vectors(
     mesh: Optional[MeshLike] = None,
     *,
     strategy: StrategyLike = None,
-    at: Optional[str] = None,
+    at: Optional[CutAt] = None,
     snap: float = 0,
     tolerance: float = 0,
     direction: Sequence[float] = (0, 0, 1),

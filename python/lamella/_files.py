@@ -7,14 +7,14 @@ import itertools
 import numbers
 import operator
 import os
-from typing import Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
+from typing import Any, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import PathLike, Progress
+from ._arguments import Mirror, Orientation, PathLike, Progress
 from ._errors import CancelledError, DefectError, InputError, UsageError
 from ._lamella import Exposure, Layer, LayerStream, Mesh, Stack
 from ._scanning import ScanLayer, ScanStream
@@ -31,6 +31,8 @@ ASKED_OF_FORMATS = {
     "fade_layers": "exposure",
 }
 PAGES = "html"
+# Formats that keep the heights of layers as they are, or have none: to these a layer without thickness is no loss.
+WITHOUT_THICKNESS = ("json", "npz", "dxf", "geojson", "svg-layers", "png", "png-zip")
 MOST_PIXELS = 65535
 MOST_ANTIALIAS = 64
 
@@ -74,9 +76,49 @@ def _told(path: PathLike, warnings: Sequence[str], strict: bool) -> None:
     warn(texts)
 
 
+@overload
 def read(
     path: PathLike,
     *,
+    kind: Literal["mesh"],
+    unit_mm: Optional[float] = None,
+    strict: bool = False,
+    include: Union[str, Iterable[str]] = (),
+    max_triangles: int = 0,
+    max_memory: int = 0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Mesh: ...
+@overload
+def read(
+    path: PathLike,
+    *,
+    kind: Literal["layers"],
+    unit_mm: Optional[float] = None,
+    strict: bool = False,
+    include: Union[str, Iterable[str]] = (),
+    max_triangles: int = 0,
+    max_memory: int = 0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Stack: ...
+@overload
+def read(
+    path: PathLike,
+    *,
+    kind: None = None,
+    unit_mm: Optional[float] = None,
+    strict: bool = False,
+    include: Union[str, Iterable[str]] = (),
+    max_triangles: int = 0,
+    max_memory: int = 0,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Union[Mesh, Stack]: ...
+def read(
+    path: PathLike,
+    *,
+    kind: Optional[Literal["mesh", "layers"]] = None,
     unit_mm: Optional[float] = None,
     strict: bool = False,
     include: Union[str, Iterable[str]] = (),
@@ -89,6 +131,7 @@ def read(
 
     path: str or os.PathLike. Meshes: see `mesh_formats`. Layers: Common Layer Interface, layered SVG, SLC,
         3MF with slices, JSON, NumPy arrays, ILT, Open Vector Format, 3MF with toolpaths. Each may be packed with gzip.
+    kind: what the file must hold, "mesh" or "layers"; another file is an InputError.
     unit_mm: millimetres per unit of a mesh file that does not say its unit; 1 unless given. Slice files say theirs.
     strict: makes a DefectError of what is otherwise a DefectWarning.
     include: what 3MF and AMF files mark as "support", "negative", "modifier", "support-blocker", "support-enforcer",
@@ -101,17 +144,22 @@ def read(
     threads: 0 takes one for each processor.
     progress: called as progress(stage, done, total) now and then, from the thread that called this.
 
-    Gives a Mesh or a Stack. A binary STL file that would take more than a quarter of `max_memory` is not copied but
+    Returns a Mesh or a Stack. A binary STL file that would take more than a quarter of `max_memory` is not copied but
     mapped: while its Mesh lives, the file may be replaced or deleted, but must not be written to or cut shorter.
 
     Raises InputError that names the file, the place in it, what was found, and what was
     expected, and UsageError where `unit_mm` is given for a slice file.
     """
+    wanted = check.optional(check.choice, "kind", kind, ("mesh", "layers"))
     read, warnings = _lamella.read_any(
         *check.reading(path, unit_mm, strict, include, max_triangles, max_memory, threads, progress)
     )
     if isinstance(read, Stack) and unit_mm is not None:
         raise UsageError(f"unit_mm goes with meshes, and {os.fsdecode(path)} holds layers, which say their unit")
+    found = "layers" if isinstance(read, Stack) else "mesh"
+    if wanted not in (None, found):
+        held = "layers" if found == "layers" else "a mesh"
+        raise InputError(f'{os.fsdecode(path)}: holds {held}, and kind="{wanted}" was given')
     # Reading a mesh has looked at `strict` itself.
     _told(path, warnings, strict and isinstance(read, Stack))
     return read
@@ -137,8 +185,8 @@ def write(
     pixel_mm: Union[None, float, Tuple[float, float]] = None,
     pixels: Optional[Tuple[int, int]] = None,
     display_mm: Union[None, float, Tuple[float, float]] = None,
-    orientation: Optional[str] = None,
-    mirror: Optional[str] = None,
+    orientation: Optional[Orientation] = None,
+    mirror: Optional[Mirror] = None,
     antialias: Optional[int] = None,
     gamma: Optional[float] = None,
     exposure_s: Optional[float] = None,
@@ -201,6 +249,8 @@ def write(
         return
     parts, planes, total, bottom, rule = _planes(what)
     name = _format_for(target, format, given)
+    if name not in WITHOUT_THICKNESS and not (isinstance(what, Stack) and what.path):
+        planes = _with_thickness(name, planes)
     writer = _lamella.open_writer(target, name, parts, total, bottom, rule, {**given, "strict": strict})
     done = 0
     try:
@@ -215,6 +265,16 @@ def write(
     finally:
         writer.close()  # now, not once an exception is forgotten that holds it
     warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
+
+
+def _with_thickness(name: str, planes: Iterable[List[Layer]]) -> Iterator[List[Layer]]:
+    for plane in planes:
+        if not plane[0].bottom < plane[0].top:
+            raise UsageError(
+                f"what: the layer at z = {plane[0].z:g} mm has no thickness, and {name} needs one; give lamella.Layer its "
+                "bottom= and top="
+            )
+        yield plane
 
 
 def _lengths(name: str, value: Any) -> Tuple[float, float]:
@@ -368,8 +428,8 @@ def convert(
     pixel_mm: Union[None, float, Tuple[float, float]] = None,
     pixels: Optional[Tuple[int, int]] = None,
     display_mm: Union[None, float, Tuple[float, float]] = None,
-    orientation: Optional[str] = None,
-    mirror: Optional[str] = None,
+    orientation: Optional[Orientation] = None,
+    mirror: Optional[Mirror] = None,
     antialias: Optional[int] = None,
     gamma: Optional[float] = None,
     exposure_s: Optional[float] = None,

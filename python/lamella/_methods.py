@@ -79,7 +79,7 @@ class Layer(_lamella.Layer):
         above = height if top is None else check.number("top", top)
         if not below <= height <= above:
             raise UsageError(
-                f"z: {z} is not possible; a layer is cut between its bottom, {below}, and its top, {above}"
+                f"z: {check.excerpt(z)} is not possible; a layer is cut between its bottom, {below}, and its top, {above}"
             )
         number = check.whole("index", index)
         _make_layer(self, _contours("rings", rings), height, below, above, number, _contours("chains", chains))
@@ -90,22 +90,22 @@ class Layer(_lamella.Layer):
         return self._polygons()
 
     def to_shapely(self) -> Any:
-        """The material as a shapely.geometry.MultiPolygon in millimetres, holes where they belong. Open chains are
-        left out. Needs shapely."""
+        """The material as a valid shapely.geometry.MultiPolygon in millimetres, holes where they belong; where bodies
+        overlap, it counts once. Open chains are left out. Needs shapely."""
         return multi_polygon(self)
 
-    def filled(self, rule: str = "nonzero") -> _lamella.Layer:
+    def filled(self, rule: check.FillRule = "nonzero") -> _lamella.Layer:
         """The layer with bodies that overlap united: material is where contours wind around `rule` times: "nonzero",
         "evenodd" or "positive". Contours that do not overlap keep their points."""
         if check.text("rule", rule) not in ("nonzero", "evenodd", "positive"):
-            raise UsageError(f'rule: "{rule}" is no fill rule; there are nonzero, evenodd and positive')
+            raise UsageError(f'rule: "{check.excerpt(rule)}" is no fill rule; there are nonzero, evenodd and positive')
         return _made_of(self._filled(rule), self)
 
-    def offset(self, distance: float, corners: str = "mitre") -> _lamella.Layer:
+    def offset(self, distance: float, corners: check.Corners = "mitre") -> _lamella.Layer:
         """The layer with its material grown by `distance` millimetres, or shrunk by a negative one. `corners` says what
         joins sides that part at a corner when they are moved: "mitre", "bevel" or "round"."""
         if check.text("corners", corners) not in ("mitre", "bevel", "round"):
-            raise UsageError(f'corners: "{corners}" are no corners; there are mitre, bevel and round')
+            raise UsageError(f'corners: "{check.excerpt(corners)}" are no corners; there are mitre, bevel and round')
         return _made_of(self._offset(check.number("distance", distance), corners), self)
 
     def union(self, other: _lamella.Layer) -> _lamella.Layer:

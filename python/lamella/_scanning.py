@@ -264,13 +264,14 @@ def _from_tables(name: str, tables: Mapping[str, Any]) -> ScanStrategy:
     sets = {rule.parameters.name: ParameterSet(rule.parameters) for rule in rules}
     parameters = tables.get("parameters", {})
     for label, table in _items(f"{name}: parameters", parameters):
+        place = f"{name}: parameters.{check.excerpt(label)}"
         chosen = sets.setdefault(check.text(f"{name}: parameters", label), _named(label))
-        _assign(f"{name}: parameters.{label}", chosen, table)
+        _assign(place, chosen, table)
     _assign(name, strategy, {key: value for key, value in tables.items() if key != "parameters"}, sets)
     used = [rule.parameters.name for rule in rules]
     for label in parameters:
         if label not in used:
-            raise UsageError(f"{name}: the parameters {label} are used nowhere; there are {', '.join(used)}")
+            raise UsageError(f"{name}: the parameters {check.excerpt(label)} are used nowhere; there are {', '.join(used)}")
     for rule in rules:
         rule.parameters = sets[rule.parameters.name]
     return strategy
@@ -296,13 +297,13 @@ def _assign(name: str, rule: Any, table: Any, sets: Optional[Dict[str, Parameter
         if key not in known:
             near = difflib.get_close_matches(str(key), known, 1)
             hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
-            raise UsageError(f"{name}: there is no {key}; {hint}")
+            raise UsageError(f"{name}: there is no {check.excerpt(key)}; {hint}")
         place = f"{before}{key}"
         if key == "parameters" and sets is not None:
             if not check.text(place, value):
                 raise UsageError(f"{place}: expected the name of parameters, found an empty text")
             if value not in sets:
-                raise UsageError(f"{place}: there are no parameters {value}; there are {', '.join(sets)}")
+                raise UsageError(f"{place}: there are no parameters {check.excerpt(value)}; there are {check.excerpt(', '.join(sets))}")
             rule.parameters = sets[value]
         elif isinstance(getattr(rule, key), (ContourRule, HatchRule, SkinRule, SupportRule)):
             _assign(place, getattr(rule, key), value, sets)

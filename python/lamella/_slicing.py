@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import Progress
+from ._arguments import CutAt, Progress
 from ._errors import DefectError, UsageError
 from ._lamella import LayerStream, Mesh, Stack
 from ._meshes import MeshLike, as_mesh, inspect, placed, placing
@@ -47,7 +47,7 @@ def slice(
     adaptive: Optional[Tuple[float, float]] = None,
     cusp: Optional[float] = None,
     first_layer_height: Optional[float] = None,
-    at: str = "middle",
+    at: CutAt = "middle",
     z_range: Optional[Tuple[float, float]] = None,
     layers: Optional[Tuple[int, int]] = None,
     snap: float = 0,
@@ -119,7 +119,7 @@ def iter_layers(
     adaptive: Optional[Tuple[float, float]] = None,
     cusp: Optional[float] = None,
     first_layer_height: Optional[float] = None,
-    at: str = "middle",
+    at: CutAt = "middle",
     z_range: Optional[Tuple[float, float]] = None,
     layers: Optional[Tuple[int, int]] = None,
     snap: float = 0,
@@ -172,7 +172,7 @@ def _prepared(
     _check_conflicts(layer_height, z, offsets, heights, adaptive, cusp, first_layer_height)
     names = [known.name for known in engines()]
     if check.text("engine", engine) not in names:
-        raise UsageError(f"engine: there is no engine named '{engine}'; the engines are: {', '.join(names)}")
+        raise UsageError(f"engine: there is no engine named '{check.excerpt(engine)}'; the engines are: {', '.join(names)}")
     threads, progress = check.thread_count(threads), check.listener(progress)
     where = placing(direction, transform)
     strict = check.flag("strict", strict)

@@ -251,6 +251,34 @@ def test_texts_name_the_keyword_what_was_given_and_what_is_expected(folder, call
     assert isinstance(caught.value, lamella.Error) == (kind is ValueError), "wrong values are a UsageError"
 
 
+LONG = "long" * 10**5
+QUOTED = {
+    "at": lambda: lamella.slice("part.stl", at=LONG),
+    "engine": lambda: lamella.slice("part.stl", engine=LONG),
+    "layer_height": lambda: lamella.slice("part.stl", Decimal("-" + "1" * 10**5)),
+    "layers": lambda: lamella.slice("part.stl", layers=(0, -(10**4000))),
+    "path": lambda: lamella.read(LONG + "\0"),
+    "kind": lambda: lamella.read("part.stl", kind=LONG),
+    "label": lambda: lamella.Stack([], label=LONG + "\ud800"),
+    "rings": lambda: lamella.Layer([type(LONG, (), {})()], 1),
+    "rule": lambda: stack()[0].filled(LONG),
+    "corners": lambda: stack()[0].offset(1, LONG),
+    "z": lambda: lamella.Layer([], Decimal("-" + "1" * 300), bottom=2),
+    "table": lambda: lamella.scan(stack(), {LONG: {}}),
+    "pattern": lambda: lamella.scan(stack(), {"hatch": {"pattern": LONG}}),
+    "parameters": lambda: lamella.scan(stack(), {"hatch": {"parameters": LONG}}),
+    "parameters that are not used": lambda: lamella.scan(stack(), {"parameters": {LONG: {}}}),
+    "key of parameters": lambda: lamella.scan(stack(), {"parameters": {LONG: {LONG: 1}}}),
+}
+
+
+@pytest.mark.parametrize("call", QUOTED.values(), ids=QUOTED)
+def test_errors_quote_the_begin_of_long_values(folder, call):
+    with pytest.raises((TypeError, ValueError)) as caught:
+        call()
+    assert len(str(caught.value)) < 900 and "\n" not in str(caught.value)
+
+
 READERS = {
     "read": lamella.read,
     "slice": lamella.slice,

@@ -1,6 +1,7 @@
 """What the tests of the Python package share: the package as it was built, the program, and small bodies."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -53,6 +54,12 @@ def bodies(program, tmp_path_factory):
 @pytest.fixture(scope="session")
 def rook(bodies):
     return bodies("rook")
+
+
+def samples(page):
+    """The samples of a page of the documentation, in order."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    return re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 
 
 def box_arrays(x=20.0, y=30.0, z=10.0, at=(0.0, 0.0, 0.0), inward=False):

@@ -208,6 +208,32 @@ def test_slices_of_stacks_have_the_bounds_of_what_there_is(bodies, tmp_path):
     assert lamella.Stack([]).bounds.tolist() == [[0, 0, 0], [0, 0, 0]]
 
 
+def test_layers_without_thickness_are_refused_where_files_need_one(tmp_path):
+    square = [(0, 0), (9, 0), (9, 9), (0, 9)]
+    flat = lamella.Stack([lamella.Layer([square], z=z) for z in (1, 2)])
+    for name in ("a.cli", "a.svg", "a.slc", "a.3mf", "a.sl1"):
+        with pytest.raises(lamella.UsageError, match="the layer at z = 1 mm has no thickness.* bottom= and top="):
+            lamella.write(tmp_path / name, flat)
+    with pytest.raises(lamella.UsageError, match="no thickness.* bottom= and top="):
+        lamella.write(tmp_path / "a.ovf", lamella.scan(flat))
+    assert list(tmp_path.iterdir()) == []
+    for name in ("a.json", "a.npz"):
+        lamella.write(tmp_path / name, flat)
+        assert lamella.read(tmp_path / name, kind="layers") == flat
+    lamella.write(tmp_path / "a.geojson", flat)
+
+
+def test_the_kind_of_a_file_can_be_asked_for(tmp_path, rook):
+    stack = lamella.slice(rook, 5)
+    lamella.write(tmp_path / "a.cli", stack)
+    assert isinstance(lamella.read(rook, kind="mesh"), lamella.Mesh)
+    assert len(lamella.read(tmp_path / "a.cli", kind="layers")) == len(stack)
+    with pytest.raises(lamella.InputError, match='a.cli: holds layers, and kind="mesh" was given'):
+        lamella.read(tmp_path / "a.cli", kind="mesh")
+    with pytest.raises(lamella.InputError, match='stl: holds a mesh, and kind="layers" was given'):
+        lamella.read(rook, kind="layers")
+
+
 def test_scan_layers_of_any_kind_are_written(jobs):
     scanned = list(lamella.scan(lamella.read(jobs / "part.cli")))
 

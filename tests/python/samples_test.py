@@ -7,14 +7,9 @@ import runpy
 import shutil
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, samples
 
 import lamella
-
-
-def samples(page):
-    text = (ROOT / page).read_text(encoding="utf-8")
-    return re.findall(r"^```python\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from conftest import PACKAGE
+from conftest import PACKAGE, samples
 
 HERE = Path(__file__).parent
 
@@ -54,6 +54,13 @@ for streamed in lamella.iter_layers("part.stl"):
     height: float = streamed.z
 """
 
+def test_the_samples_of_the_page_are_typed(tmp_path):
+    program = tmp_path / "samples.py"
+    program.write_text("\n".join(samples("docs/python.md")))
+    code, text = mypy(tmp_path, str(program))
+    assert code == 0, text
+
+
 BAD = {
     "lamella.slice(5)": "arg-type",
     "lamella.slice('part.stl', layer_hight=1)": "call-arg",
@@ -61,6 +68,9 @@ BAD = {
     "lamella.slice('part.stl', progress=lambda: None)": "arg-type",
     "text: str = lamella.slice('part.stl')[0].area": "assignment",
     "key: Hashable = lamella.slice('part.stl')": "assignment",
+    "lamella.slice('part.stl', at='centre')": "arg-type",
+    "lamella.slice('part.stl')[0].offset(1, 'sharp')": "arg-type",
+    "stack: lamella.Stack = lamella.read('part.stl', kind='mesh')": "assignment",
 }
 
 
