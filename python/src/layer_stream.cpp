@@ -83,7 +83,7 @@ LayerStream::LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, uns
         std::exception_ptr failure;
         try {
             const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
-                return [this, kept = std::move(layer)]() mutable {
+                return [this, kept = with_own_points(std::move(layer))]() mutable {
                     queue_.put(std::move(kept));
                 };
             };
@@ -167,14 +167,27 @@ LayerStream::Beside LayerStream::beside(std::uint64_t below, std::uint64_t above
         const auto sliced = [&](const auto& wanted) {
             Plan some{{}, wider.rule, wider.snap_mm};
             std::copy_if(wider.layers.begin(), wider.layers.end(), std::back_inserter(some.layers), wanted);
-            return some.layers.empty()
-                       ? std::vector<LayerPointer>()
-                       : shared(slice(mesh_->mesh(), some, execution, nullptr, engine_), some.rule);
+            return some.layers.empty() ? std::vector<LayerPointer>()
+                                       : lamella::python::sliced(mesh_->mesh(), some, execution, engine_);
         };
         return Beside{
             sliced([&](const PlannedLayer& layer) { return lowest <= layer.index && layer.index < first; }),
             sliced([&](const PlannedLayer& layer) { return layer.index > last; })};
     });
+}
+
+std::vector<LayerPointer> sliced(const Mesh& mesh, const Plan& plan, const Execution& execution,
+                                 const Engine& engine) {
+    std::vector<LayerPointer> layers;
+    layers.reserve(plan.layers.size());
+    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+        return [&, kept = std::make_shared<SharedLayer>(with_own_points(std::move(layer)),
+                                                        plan.rule)]() mutable {
+            layers.push_back(std::move(kept));
+        };
+    };
+    slice_to(sink, mesh, plan, execution, nullptr, engine);
+    return layers;
 }
 
 } // namespace lamella::python

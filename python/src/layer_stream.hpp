@@ -104,4 +104,8 @@ class LayerStream {
     std::thread worker_;
 };
 
+/// The layers of the plan, each with points of its own.
+[[nodiscard]] std::vector<LayerPointer> sliced(const Mesh& mesh, const Plan& plan, const Execution& execution,
+                                               const Engine& engine);
+
 } // namespace lamella::python

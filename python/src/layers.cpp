@@ -11,6 +11,7 @@
 #include "arrays.hpp"
 #include "pickled.hpp"
 #include "placing.hpp"
+#include "run.hpp"
 #include "shared_layer.hpp"
 #include "unlocked.hpp"
 
@@ -95,12 +96,13 @@ py::array_t<double> contour_of(const py::object& self, const py::object& index) 
 }
 
 /// Pairs of a ring and its holes, by number.
-std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> polygons_of(const SharedLayer& layer) {
-    const Unlocked released;
-    std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> found;
-    for (Polygon& polygon : polygons(layer.nesting()))
-        found.emplace_back(polygon.outer, std::move(polygon.holes));
-    return found;
+std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> polygons_of(const LayerPointer& layer) {
+    return result_of_points(layer->get().points.size(), [layer](const Execution& /*execution*/) {
+        std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> found;
+        for (Polygon& polygon : polygons(layer->nesting()))
+            found.emplace_back(polygon.outer, std::move(polygon.holes));
+        return found;
+    });
 }
 
 /// Everything but the arrays; what layers are made from and pickled as.
@@ -208,17 +210,20 @@ std::string layer_text(const SharedLayer& layer) {
 }
 
 /// The layer after steps, each of which leaves it alone unless it is asked for.
-LayerPointer after(const SharedLayer& layer, const LayerSteps& steps) {
-    const Unlocked released;
-    LayerChanges changes;
-    return std::make_shared<SharedLayer>(take_steps(steps, layer.get(), changes), layer.rule());
+LayerPointer after(const LayerPointer& layer, const LayerSteps& steps) {
+    return result_of_points(layer->get().points.size(), [layer, steps](const Execution& /*execution*/) {
+        LayerChanges changes;
+        return std::make_shared<SharedLayer>(take_steps(steps, layer->get(), changes), layer->rule());
+    });
 }
 
 /// What the operation makes of a layer and another one.
 template <BooleanOperation operation>
-LayerPointer combined(const SharedLayer& layer, const SharedLayer& other) {
-    const Unlocked released;
-    return std::make_shared<SharedLayer>(combine(layer.get(), other.get(), operation), layer.rule());
+LayerPointer combined(const LayerPointer& layer, const LayerPointer& other) {
+    const std::size_t points = layer->get().points.size() + other->get().points.size();
+    return result_of_points(points, [layer, other](const Execution& /*execution*/) {
+        return std::make_shared<SharedLayer>(combine(layer->get(), other->get(), operation), layer->rule());
+    });
 }
 
 py::tuple layer_state(const py::object& self) {
@@ -449,12 +454,10 @@ void bind_layer(py::module_& module) {
         .def_property_readonly(
             "parent",
             [](const py::object& self) {
-                const auto& layer = self.cast<const SharedLayer&>();
-                const std::vector<std::int64_t>* parents = nullptr;
-                {
-                    const Unlocked released;
-                    parents = &layer.parents();
-                }
+                const auto layer = self.cast<LayerPointer>();
+                const std::vector<std::int64_t>* const parents =
+                    result_of_points(layer->get().points.size(),
+                                     [layer](const Execution& /*execution*/) { return &layer->parents(); });
                 return view(parents->data(), {static_cast<py::ssize_t>(parents->size())}, self);
             },
             "The number of the innermost ring around contour i, -1 for an outermost one and for an open "
@@ -486,10 +489,10 @@ void bind_layer(py::module_& module) {
             "Fill lines that a slice file held beside the contours, from point to point: (n, 2, 2) float64,\n"
             "millimetres, read-only. Slicing makes none.")
         .def("_polygons", &polygons_of)
-        .def("_filled", [](const SharedLayer& self,
+        .def("_filled", [](const LayerPointer& self,
                            const std::string& rule) { return after(self, {.fill = fill_rule(rule)}); })
         .def("_offset",
-             [](const SharedLayer& self, double distance, const std::string& corners) {
+             [](const LayerPointer& self, double distance, const std::string& corners) {
                  return after(self,
                               {.offset_mm = distance, .offset_corners = {.shape = offset_corner(corners)}});
              })
@@ -497,7 +500,7 @@ void bind_layer(py::module_& module) {
         .def("_intersection", &combined<BooleanOperation::intersect>)
         .def("_difference", &combined<BooleanOperation::subtract>)
         .def("_symmetric_difference", &combined<BooleanOperation::exclude>)
-        .def("_simplified", [](const SharedLayer& self,
+        .def("_simplified", [](const LayerPointer& self,
                                double tolerance) { return after(self, {.simplify_mm = tolerance}); })
         .def("__len__", [](const SharedLayer& self) { return self.get().contours(); })
         .def("__getitem__", &contour_of)

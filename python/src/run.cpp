@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <exception>
+#include <memory>
 #include <thread>
 
 namespace py = pybind11;
@@ -93,6 +94,35 @@ void run(unsigned threads, const py::object& listener, const std::function<void(
     worker.join();
     if (failure)
         std::rethrow_exception(failure);
+}
+
+void run_alone(const std::function<void(const Execution&)>& work) {
+    struct Job {
+        std::function<void(const Execution&)> work;
+        Bell bell;
+        CancelFlag cancel;
+        std::exception_ptr failure;
+    };
+    const auto job = std::make_shared<Job>();
+    job->work = work;
+    std::thread([job] {
+        try {
+            job->work(Execution{.threads = 1, .cancel = &job->cancel});
+        } catch (...) {
+            job->failure = std::current_exception();
+        }
+        job->bell.ring();
+    }).detach();
+    try {
+        while (!job->bell.wait())
+            check_signals();
+        check_signals();
+    } catch (...) {
+        job->cancel.request();
+        throw;
+    }
+    if (job->failure)
+        std::rethrow_exception(job->failure);
 }
 
 } // namespace lamella::python

@@ -4,11 +4,15 @@
 
 #include "lamella/core/execution.hpp"
 
+#include "unlocked.hpp"
+
 #include <pybind11/pybind11.h>
 
 #include <chrono>
 #include <condition_variable>
+#include <cstddef>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <utility>
@@ -50,6 +54,24 @@ template <class Work>
     std::optional<decltype(work(Execution{}))> result;
     run(threads, listener, [&](const Execution& execution) { result.emplace(work(execution)); });
     return std::move(*result);
+}
+
+/// Runs work that keeps alive whatever it uses. The same, but for one thing: what a signal handler raises is
+/// thrown at once, and work that does not hear the request to stop goes on by itself until its end.
+void run_alone(const std::function<void(const Execution&)>& work);
+
+/// What work on layers with this many points in all gives. It keeps alive whatever it uses. Few points take
+/// less time than a thread does: the calling thread works on them itself.
+template <class Work>
+[[nodiscard]] auto result_of_points(std::size_t points, const Work& work) {
+    constexpr std::size_t few = 1000;
+    if (points <= few) {
+        const Unlocked released;
+        return work(Execution{.threads = 1});
+    }
+    const auto result = std::make_shared<std::optional<decltype(work(Execution{}))>>();
+    run_alone([result, work](const Execution& execution) { result->emplace(work(execution)); });
+    return std::move(**result);
 }
 
 } // namespace lamella::python

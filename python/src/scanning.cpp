@@ -9,6 +9,7 @@
 
 #include "layers.hpp"
 #include "pickled.hpp"
+#include "run.hpp"
 #include "shared_layer.hpp"
 #include "unlocked.hpp"
 
@@ -123,22 +124,30 @@ Rounding rounding_of(const Stack* stack) {
 /// Layers of vectors, and the number of rings that are too thin for any.
 using Scanned = std::pair<std::vector<LayerPointer>, std::uint64_t>;
 
-Scanned scanned(const SharedLayer& layer, const std::vector<LayerPointer>& below,
+Scanned scanned(const LayerPointer& layer, const std::vector<LayerPointer>& below,
                 const std::vector<LayerPointer>& above, const ScanStrategy& strategy, const Stack* stack) {
-    const Unlocked released;
-    const Rounding rounding = rounding_of(stack);
-    std::uint64_t thin_rings = 0;
-    std::vector<Layer> vectors = scan(ScanLayer(layer.get(), rounding), layers_of(below, rounding),
-                                      layers_of(above, rounding), strategy, nullptr, &thin_rings);
-    return {shared(std::move(vectors), layer.rule()), thin_rings};
+    std::size_t points = layer->get().points.size();
+    for (const auto* beside : {&below, &above})
+        for (const LayerPointer& other : *beside)
+            points += other->get().points.size();
+    const auto work = [layer, below, above, strategy,
+                       rounding = rounding_of(stack)](const Execution& /*execution*/) {
+        std::uint64_t thin_rings = 0;
+        std::vector<Layer> vectors = scan(ScanLayer(layer->get(), rounding), layers_of(below, rounding),
+                                          layers_of(above, rounding), strategy, nullptr, &thin_rings);
+        return Scanned{shared(std::move(vectors), layer->rule()), thin_rings};
+    };
+    return result_of_points(points, work);
 }
 
-Scanned scanned_support(const SharedLayer& layer, const ScanStrategy& strategy, const Stack* stack) {
-    const Unlocked released;
-    std::uint64_t thin_rings = 0;
-    std::vector<Layer> vectors =
-        scan_support(ScanLayer(layer.get(), rounding_of(stack)), strategy, nullptr, &thin_rings);
-    return {shared(std::move(vectors), layer.rule()), thin_rings};
+Scanned scanned_support(const LayerPointer& layer, const ScanStrategy& strategy, const Stack* stack) {
+    const auto work = [layer, strategy, rounding = rounding_of(stack)](const Execution& /*execution*/) {
+        std::uint64_t thin_rings = 0;
+        std::vector<Layer> vectors =
+            scan_support(ScanLayer(layer->get(), rounding), strategy, nullptr, &thin_rings);
+        return Scanned{shared(std::move(vectors), layer->rule()), thin_rings};
+    };
+    return result_of_points(layer->get().points.size(), work);
 }
 
 std::vector<ScanFigures> measured(const std::vector<LayerPointer>& vectors,

@@ -52,6 +52,11 @@ std::vector<LayerPointer> shared(LayerStack layers, std::optional<PlaneRule> rul
     return pointers;
 }
 
+Layer with_own_points(Layer layer) {
+    layer.points = PointArray(std::vector(layer.points.begin(), layer.points.end()));
+    return layer;
+}
+
 PlaneRule rule_named(const std::string& name) {
     const std::optional<PlaneRule> rule = plane_rule(name);
     if (!rule)

@@ -81,6 +81,9 @@ struct Stack {
 [[nodiscard]] Box3 shown_box(const Stack& stack);
 
 [[nodiscard]] std::vector<LayerPointer> shared(LayerStack layers, std::optional<PlaneRule> rule);
+/// The layer with points of its own. Slicing puts those of many layers into one block, which each of them
+/// would keep in memory.
+[[nodiscard]] Layer with_own_points(Layer layer);
 /// Throws Error{usage} for no rule's name.
 [[nodiscard]] PlaneRule rule_named(const std::string& name);
 /// The layers themselves: their points stay where they are.

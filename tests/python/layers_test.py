@@ -3,6 +3,7 @@
 import copy
 import copyreg
 import gc
+import mmap
 import multiprocessing
 import pickle
 
@@ -36,6 +37,34 @@ def test_contours_are_pieces_of_the_points(layer):
     for index in (3, -4):
         with pytest.raises(IndexError):
             layer[index]
+
+
+@pytest.mark.parametrize("give", [lambda mesh: lamella.slice(mesh, 0.01), lambda mesh: list(lamella.iter_layers(mesh, 0.01))])
+def test_what_is_kept_of_a_layer_keeps_no_other_layer_in_memory(give):
+    # A cylinder: 1,000 layers, 16 MB.
+    turns = np.linspace(0, 2 * np.pi, 1000, endpoint=False)
+    rim = np.column_stack([np.cos(turns), np.sin(turns)])
+    vertices = np.concatenate([np.column_stack([rim, np.full(1000, z)]) for z in (0, 10)])
+    this = np.arange(1000)
+    following = np.roll(this, -1)
+    cap = np.array([(0, i, i + 1) for i in range(1, 999)])
+    faces = np.concatenate([
+        np.column_stack([this, following, following + 1000]), np.column_stack([this, following + 1000, this + 1000]), cap[:, ::-1], cap + 1000,
+    ])  # fmt: skip
+    mesh = lamella.Mesh(vertices, faces)
+
+    def kept(rounds):
+        return [give(mesh)[500][0] for _ in range(rounds)]
+
+    def resident():
+        with open("/proc/self/statm") as figures:
+            return int(figures.read().split()[1]) * mmap.PAGESIZE
+
+    first = kept(4)  # what is free afterwards is used again
+    before = resident()
+    more = kept(16)
+    assert resident() - before < 64e6  # of 256 MB
+    assert all((contour == first[0]).all() for contour in more)
 
 
 def test_arrays_are_not_copies_and_cannot_be_written(layer):

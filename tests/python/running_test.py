@@ -174,6 +174,50 @@ except KeyboardInterrupt:
     assert interrupted(code, bodies("sheet", "--holes", 225)) == "interrupted\n"
 
 
+@pytest.mark.parametrize("work", ["layer.filled()", "layer.offset(-0.01)", "layer.union(layer)", "layer.to_shapely()",
+                                  "next(lamella.scan([layer]))", "next(lamella.scan([layer], support=True))"])
+def test_ctrl_c_stops_work_on_one_layer(work):
+    # 400 million crossings, had it been left alone.
+    if "shapely" in work:
+        pytest.importorskip("shapely")
+    code = f"""
+import numpy as np, lamella
+steps = np.arange(10000)[:, None, None] / 100
+bar = np.array([(0, 0), (100, 0), (100, 0.005), (0, 0.005)])
+across = steps * (0, 1) + bar
+upwards = steps * (1, 0) + bar[::-1, ::-1]
+layer = lamella.Layer([*across, *upwards], z=0.5, bottom=0, top=1)
+try:
+    print("ready", flush=True)
+    {work}
+    print("finished")
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    assert interrupted(code) == "interrupted\n"
+
+
+def test_results_on_a_thread_of_their_own_are_those_of_the_calling_thread():
+    # Layers of few points are worked on by the thread that asks.
+    ring = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
+    for rings in (3, 2000):
+        layer = lamella.Layer([ring + (0.75 * i, 0) for i in range(rings)], z=1)
+        assert len(layer.polygons()) == rings and len(layer.parent) == rings
+        united = layer.union(layer)
+        assert united == layer.filled() == layer.filled("positive") and len(united) == 1
+        assert np.isclose(united.area, 0.75 * (rings - 1) + 1)
+        assert np.isclose(layer.offset(1).area, (0.75 * (rings - 1) + 3) * 3)
+
+
+def test_errors_of_work_on_a_thread_of_its_own_arrive():
+    strategy = lamella.ScanStrategy()
+    strategy.hatch.distance = 1e-9
+    turns = np.linspace(0, 2 * np.pi, 5000, endpoint=False)
+    layer = lamella.Layer([10 * np.column_stack([np.cos(turns), np.sin(turns)])], z=1, bottom=0, top=2)
+    with pytest.raises(lamella.LimitError):
+        next(lamella.scan([layer], strategy))
+
+
 def test_ctrl_c_stops_a_stream(rook):
     code = """
 import os, sys, lamella
