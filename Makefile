@@ -78,11 +78,15 @@ test-arm64: packages-all
 	cmake --build build-arm64
 	$(CTEST) --test-dir build-arm64
 
-# What was compiled for the static library serves the shared one, which differs by how it is installed and linked.
+# What was compiled for the static library serves the shared one, which differs by how it is installed and linked. Compilers
+# differ in what visibility holds for.
 test-shared: packages-all
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D BUILD_SHARED_LIBS=ON
 	cmake --build build --target lamella_programs lamella_app_files
 	$(CTEST) --test-dir build --tests-regex '^house.install$$'
+	cmake --preset shared-clang
+	cmake --build build-shared-clang --target lamella_app lamella_app_files
+	$(CTEST) --test-dir build-shared-clang --tests-regex '^house.install$$'
 
 fresh:  ## `make demo` and `make test` on a Debian 12 with git, make and nothing else, made for it (root only)
 	@tools/fresh.sh

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Checks the floors of the house (docs/architecture.md) against every #include of the sources, and that types of
-all rooms have names of their own.
+"""Checks the floors of the house (docs/architecture.md) against every #include of the sources, that types of
+all rooms have names of their own, and that public headers export what they declare.
 
 usage: tools/check_floors.py [ROOT]
 
@@ -91,6 +91,7 @@ class House:
                 if path.suffix in (".hpp", ".cpp", ".h", ".inc"):
                     self.check_file(path)
         self.check_type_names()
+        self.check_exports()
         return self.findings
 
     def check_type_names(self):
@@ -103,6 +104,15 @@ class House:
                     first = known.setdefault(match[1], name)
                     if first != name:
                         self.findings.append(f"{name}: {match[1]} is the name of a type in {first}, too")
+
+    def check_exports(self):
+        """A shared library exports what is between two macros, for compilers of all kinds (lamella/core/api.hpp)."""
+        for path in sorted((self.root / "include").rglob("*.hpp")):
+            text = path.read_text(encoding="utf-8")
+            ends = ["LAMELLA_API_BEGIN\nnamespace lamella {", "} // namespace lamella\nLAMELLA_API_END\n"]
+            if "\nnamespace " in text and any(text.count(end) != 1 for end in ends):
+                name = path.relative_to(self.root).as_posix()
+                self.findings.append(f"{name}: the namespace must stand between LAMELLA_API_BEGIN and LAMELLA_API_END")
 
     def check_table(self):
         floor = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}

@@ -67,6 +67,14 @@ class CheckFloors(unittest.TestCase):
                                         "src/slicing/cut_graph.hpp": "class Grid;\nclass Other {\n    struct Grid {\n    };\n};\n"}),
                          [])
 
+    def test_finds_public_declarations_that_are_not_exported(self):
+        inner = "namespace lamella {\nvoid f();\n} // namespace lamella\n"
+        header = "include/lamella/mesh/soup.hpp"
+        include = '#include "lamella/core/point.hpp"\n\n'
+        self.assertEqual(self.findings({header: f"{include}LAMELLA_API_BEGIN\n{inner}LAMELLA_API_END\n"}), [])
+        for text in [inner, f"LAMELLA_API_BEGIN\n{inner}", f"{inner}LAMELLA_API_END\n"]:
+            self.assert_found({header: include + text}, header, "between LAMELLA_API_BEGIN and LAMELLA_API_END")
+
     def test_finds_a_room_that_includes_a_floor_above(self):
         self.assert_found({"src/mesh/a.cpp": '\n#include "slicing/cut_graph.hpp"\n'}, "src/mesh/a.cpp:2:",
                           "slicing is not below it")

@@ -59,8 +59,8 @@ def read_header(path):
             introduction.append(line[2:].strip())
         elif line or introduction:
             break
-    begin = "namespace LAMELLA_API lamella {"
-    found = list(declarations(lines[lines.index(begin) + 1:], path)) if begin in lines else []
+    begin = "LAMELLA_API_BEGIN"  # the namespace follows
+    found = list(declarations(lines[lines.index(begin) + 2:], path)) if begin in lines else []
     return Header(path, "\n".join(introduction), found)
 
 

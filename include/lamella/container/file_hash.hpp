@@ -7,7 +7,8 @@
 #include <cstdint>
 #include <string>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// A 64-bit hash of all bytes of a file (XXH3), in little memory; the same on every machine. It guards
 /// against accidents, not against forgery. Throws Error{input} when the file cannot be read,
@@ -15,3 +16,4 @@ namespace LAMELLA_API lamella {
 [[nodiscard]] std::uint64_t file_hash(const std::string& path, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -8,7 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// A chain was continued from its last point `from` to the first point `to` of a chain, or of itself.
 struct GapJoin {
@@ -45,3 +46,4 @@ struct ClosedGaps {
 [[nodiscard]] ClosedGaps close_gaps(const Layer& layer, double within_mm);
 
 } // namespace lamella
+LAMELLA_API_END

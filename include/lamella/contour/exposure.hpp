@@ -10,7 +10,8 @@
 #include <string>
 #include <string_view>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Of what vectors are, in a layer of a part.
 enum class ScanRegion : std::uint8_t {
@@ -88,3 +89,4 @@ struct ScanFigures {
                                           std::optional<Point2>& beam);
 
 } // namespace lamella
+LAMELLA_API_END

@@ -10,7 +10,8 @@
 #include <span>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// A fixed array of points whose memory is shared: copies of it, and other arrays cut from the same block,
 /// keep the block alive.
@@ -110,3 +111,4 @@ class LayerBuilder {
 [[nodiscard]] Layer merged(std::span<const Layer> layers);
 
 } // namespace lamella
+LAMELLA_API_END

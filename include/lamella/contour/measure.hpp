@@ -7,7 +7,8 @@
 #include <cstddef>
 #include <span>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Signed area in mm^2: positive for a counter-clockwise ring. Computed about the ring's first point, so that
 /// a ring far from the origin loses no digits. O(n).
@@ -36,3 +37,4 @@ struct LayerMeasure {
 [[nodiscard]] LayerMeasure measure(const Layer& layer) noexcept;
 
 } // namespace lamella
+LAMELLA_API_END

@@ -8,7 +8,8 @@
 #include <cstdint>
 #include <span>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// The normal form of a layer: every ring starts at its lexicographically smallest point (where that point
 /// occurs more than once, at the occurrence that makes the whole sequence smallest); closed rings come first
@@ -39,3 +40,4 @@ namespace LAMELLA_API lamella {
 [[nodiscard]] std::uint64_t content_hash(const Layer& layer) noexcept;
 
 } // namespace lamella
+LAMELLA_API_END

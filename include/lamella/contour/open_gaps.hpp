@@ -6,7 +6,8 @@
 
 #include <cstdint>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// The gaps of a layer: from the last point of every chain to the first point of the chain that is taken to
 /// go on there.
@@ -31,3 +32,4 @@ struct OpenGaps {
 [[nodiscard]] OpenGaps open_gaps(const Layer& layer);
 
 } // namespace lamella
+LAMELLA_API_END

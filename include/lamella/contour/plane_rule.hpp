@@ -7,7 +7,8 @@
 #include <optional>
 #include <string_view>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Which side a vertex that lies exactly on a plane belongs to; see docs/conventions.md, "The rule of the
 /// plane". Nothing ever lies on a plane:
@@ -30,3 +31,4 @@ enum class PlaneRule { section_above, section_below };
 }
 
 } // namespace lamella
+LAMELLA_API_END

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <span>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// How a format rounds coordinates and heights. By default it does not.
 struct Rounding {
@@ -52,3 +53,4 @@ struct Rounding {
 inline constexpr Rounding text_rounding{.step_mm = 0.001};
 
 } // namespace lamella
+LAMELLA_API_END

@@ -7,10 +7,12 @@
 #include <cstdint>
 #include <span>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// A 64-bit hash of a stack whose layers have these content hashes, in ascending z: XXH3 (64 bits, seed 0)
 /// over them, all little-endian. Like them it says nothing of heights. O(n).
 [[nodiscard]] std::uint64_t stack_hash(std::span<const std::uint64_t> layer_hashes) noexcept;
 
 } // namespace lamella
+LAMELLA_API_END

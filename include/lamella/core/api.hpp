@@ -1,9 +1,14 @@
 #pragma once
 
-// What a shared library shows: the names of the public headers, and nothing else.
+// What a shared library exports: all that public headers declare between these two, and nothing else.
+//
+// A pragma marks each declaration. An attribute of the namespace would not do: clang looks for it where a
+// function is defined.
 
 #if defined(__GNUC__)
-#define LAMELLA_API [[gnu::visibility("default")]]
+#define LAMELLA_API_BEGIN _Pragma("GCC visibility push(default)")
+#define LAMELLA_API_END _Pragma("GCC visibility pop")
 #else
-#define LAMELLA_API
+#define LAMELLA_API_BEGIN
+#define LAMELLA_API_END
 #endif

@@ -7,7 +7,8 @@
 #include <stdexcept>
 #include <string>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// What went wrong, in the classes that a caller treats differently. The program's exit codes follow it.
 enum class ErrorKind {
@@ -34,3 +35,4 @@ class Error : public std::runtime_error {
 };
 
 } // namespace lamella
+LAMELLA_API_END

@@ -8,7 +8,8 @@
 #include <cstdint>
 #include <functional>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// The stages of the way from a file to slice files, in the order in which they run.
 enum class Stage { read, weld, link, slice, polygon, write };
@@ -61,3 +62,4 @@ struct Execution {
 };
 
 } // namespace lamella
+LAMELLA_API_END

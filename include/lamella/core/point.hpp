@@ -7,7 +7,8 @@
 #include <compare>
 #include <limits>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// A point of a layer, seen looking down the build direction (x right, y up).
 /// The default order is the lexicographic one (x, then y); it defines the normal form of contours.
@@ -54,3 +55,4 @@ struct Box3 {
 };
 
 } // namespace lamella
+LAMELLA_API_END

@@ -7,7 +7,8 @@
 
 #include <cstdint>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 struct CosSin {
     double cos = 1;
@@ -23,3 +24,4 @@ struct CosSin {
 [[nodiscard]] CosSin cos_sin_degrees(double degrees) noexcept;
 
 } // namespace lamella
+LAMELLA_API_END

@@ -9,9 +9,11 @@
 #define LAMELLA_VERSION_PATCH 0
 #define LAMELLA_VERSION "0.1.0"
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Of the library, as in "0.1.0". With a shared library it may be another one than LAMELLA_VERSION.
 [[nodiscard]] const char* version() noexcept;
 
 } // namespace lamella
+LAMELLA_API_END

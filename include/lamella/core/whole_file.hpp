@@ -7,7 +7,8 @@
 #include <string>
 #include <string_view>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Writes a file that appears whole or not at all. One of that name that is there already is replaced and
 /// keeps its permissions; through a symbolic link, the file that the link points to is. "-" is standard
@@ -28,3 +29,4 @@ void check_writable(const std::string& path);
 void remove_unfinished() noexcept;
 
 } // namespace lamella
+LAMELLA_API_END

@@ -16,7 +16,8 @@
 #include <string_view>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// The rim of a hole: boundary edges joined end to end, in the direction in which the missing triangles would
 /// run through them. It passes no vertex twice: where holes touch, each has a loop of its own.
@@ -101,3 +102,4 @@ struct DiagnosisOptions {
                                  const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -11,7 +11,8 @@
 #include <cstdint>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Vertices (#V by 3, double) and triangles (#T by 3, indices into the vertices, counter-clockwise seen from
 /// outside). Vertices may be repeated: those with equal coordinates are meant to be the same (see Mesh).
@@ -60,3 +61,4 @@ void drop_unused_vertices(IndexedMesh& mesh, const Execution& execution = {});
 [[nodiscard]] IndexedMesh transformed(IndexedMesh mesh, const Transform& map);
 
 } // namespace lamella
+LAMELLA_API_END

@@ -11,7 +11,8 @@
 #include <cstdint>
 #include <string_view>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 struct Inspection {
     Box3 box;              ///< of all vertices
@@ -104,3 +105,4 @@ inline bool Inspection::sound() const noexcept {
 [[nodiscard]] Inspection inspect(const IndexedMesh& mesh, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -12,7 +12,8 @@
 #include <memory>
 #include <span>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// A TriangleSoup or an IndexedMesh: immutable, shared, cheap to copy. It is what all functions take that do
 /// not care which of the two it is. Its coordinates are finite, and its indices those of vertices.
@@ -77,3 +78,4 @@ class Mesh {
 [[nodiscard]] Mesh joined(std::span<const Mesh> meshes, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

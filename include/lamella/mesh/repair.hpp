@@ -12,7 +12,8 @@
 #include <cstdint>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// How many places a report lists; its counts are complete.
 inline constexpr std::size_t repair_places = 16;
@@ -87,3 +88,4 @@ struct OrientedMesh {
 [[nodiscard]] OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

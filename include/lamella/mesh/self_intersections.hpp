@@ -13,7 +13,8 @@
 #include <span>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// How two triangles meet beyond the vertices and the edge that they share.
 enum class MeetingKind {
@@ -86,3 +87,4 @@ struct MeetingOptions {
                                                         const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

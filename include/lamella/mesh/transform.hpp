@@ -7,7 +7,8 @@
 #include <array>
 #include <cstddef>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// p' = linear * p + offset, in double. The default is the identity. `linear` is row-major: linear[r][c].
 struct Transform {
@@ -50,3 +51,4 @@ struct Transform {
 [[nodiscard]] Transform upright(const Point3& direction);
 
 } // namespace lamella
+LAMELLA_API_END

@@ -15,7 +15,8 @@
 #include <utility>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// A corner as the file stores it.
 struct Point3f {
@@ -125,3 +126,4 @@ class TriangleSoup {
 [[nodiscard]] double volume(const TriangleSoup& soup, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

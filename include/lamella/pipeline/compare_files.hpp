@@ -12,7 +12,8 @@
 #include <string>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// What two layers that belong together have besides their contours.
 struct PlaneDetails {
@@ -64,3 +65,4 @@ struct FileComparison {
                                            const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

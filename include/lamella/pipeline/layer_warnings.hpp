@@ -13,7 +13,8 @@
 #include <string>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Layers of one kind, and where the lowest of them was cut.
 struct AffectedLayers {
@@ -68,3 +69,4 @@ struct ScanLosses {
 };
 
 } // namespace lamella
+LAMELLA_API_END

@@ -12,7 +12,8 @@
 #include <string_view>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 struct MergeResult {
     std::string format; ///< of the files that were read
@@ -40,3 +41,4 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
                               const LayerReadOptions& reading = {}, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -17,7 +17,8 @@
 #include <string>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// A mesh file to be put on the plate.
 struct PlateInput {
@@ -108,3 +109,4 @@ void slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan, const
 void check_build_volume(const Plate& plate, const Point3& size);
 
 } // namespace lamella
+LAMELLA_API_END

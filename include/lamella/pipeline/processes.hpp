@@ -11,7 +11,8 @@
 #include <string_view>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// How processes, counted from 0, talk to each other: an interface, so that the library needs no message
 /// passing of its own. All but send and receive are called by all processes, in the same order; messages may
@@ -59,3 +60,4 @@ struct ProcessFigures {
 };
 
 } // namespace lamella
+LAMELLA_API_END

@@ -11,7 +11,8 @@
 #include <cstdint>
 #include <optional>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 struct RepairPolicies {
     std::optional<double> weld_tolerance_mm; ///< weld_within
@@ -37,3 +38,4 @@ struct MeshRepairs {
                             const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

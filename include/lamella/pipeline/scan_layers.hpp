@@ -16,7 +16,8 @@
 #include <string>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// What one of the `exposures` of a strategy takes, or one of its `support_exposures`.
 struct ExposureResult {
@@ -63,3 +64,4 @@ struct ScanResult {
                                      const LayerWriteOptions& options = {}, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

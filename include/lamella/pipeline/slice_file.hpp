@@ -26,7 +26,8 @@
 #include <string>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// One of several runs that share the layers of a job, on as many machines perhaps: a run of consecutive
 /// layers, of about as much work as the others (which is not the same as height). Each computes the same
@@ -217,3 +218,4 @@ struct FileResult {
 [[nodiscard]] FileResult slice_file(const FileJob& job, Plate plate, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

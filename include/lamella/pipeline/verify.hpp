@@ -19,7 +19,8 @@
 #include <string>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// What layers, or scan vectors, are held against.
 struct VerifyOptions {
@@ -178,3 +179,4 @@ struct VectorVerification {
                                                 const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

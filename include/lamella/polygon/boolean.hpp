@@ -6,7 +6,8 @@
 
 #include <cstdint>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Where the result has material.
 enum class BooleanOperation : std::uint8_t {
@@ -37,3 +38,4 @@ enum class BooleanOperation : std::uint8_t {
 [[nodiscard]] Layer combine(const Layer& first, const Layer& second, BooleanOperation operation);
 
 } // namespace lamella
+LAMELLA_API_END

@@ -12,7 +12,8 @@
 #include <span>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 struct LayerDifference {
     /// The same contours, bit for bit: all that follows is 0 but for the measures.
@@ -73,3 +74,4 @@ struct StackComparison {
                                       const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -7,7 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Segment `segment_a` of contour `contour_a` (from its point of that number to the next) crosses segment
 /// `segment_b` of `contour_b` at about `at`.
@@ -38,3 +39,4 @@ struct Crossings {
 [[nodiscard]] bool has_crossings(const Layer& layer);
 
 } // namespace lamella
+LAMELLA_API_END

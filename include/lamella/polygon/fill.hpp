@@ -8,7 +8,8 @@
 #include <span>
 #include <string_view>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Where material is, by the winding number w: how many times the layer's rings run counter-clockwise around
 /// a place.
@@ -57,3 +58,4 @@ struct Filled {
 [[nodiscard]] bool winds_once(std::span<const Layer> parts);
 
 } // namespace lamella
+LAMELLA_API_END

@@ -13,7 +13,8 @@
 #include <span>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// The steps in the order in which they are taken. By default none is.
 struct LayerSteps {
@@ -71,3 +72,4 @@ void check_steps(const LayerSteps& steps);
                                     const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

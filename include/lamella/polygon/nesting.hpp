@@ -8,7 +8,8 @@
 #include <cstdint>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// What a ring is, by its direction and by the winding number w just outside of it: the number of times that
 /// the layer's rings run counter-clockwise around a place. Material is where w is 1 or more.
@@ -73,3 +74,4 @@ struct Polygon {
 [[nodiscard]] std::vector<Polygon> polygons(const Nesting& nesting);
 
 } // namespace lamella
+LAMELLA_API_END

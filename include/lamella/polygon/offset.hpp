@@ -9,7 +9,8 @@
 #include <string_view>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// What joins sides that part at a corner when they are moved.
 enum class OffsetCorner : std::uint8_t {
@@ -61,3 +62,4 @@ struct OffsetCorners {
                                          std::uint64_t* vanished = nullptr);
 
 } // namespace lamella
+LAMELLA_API_END

@@ -4,7 +4,8 @@
 
 #include "lamella/contour/layer.hpp"
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// The layer without the rings whose area is below `mm2`, bodies and holes alike: what lies within a dropped
 /// ring is smaller and goes with it. Open chains stay. O(n). Throws Error{usage} for an area that is negative
@@ -17,3 +18,4 @@ namespace LAMELLA_API lamella {
 [[nodiscard]] Layer largest_body(const Layer& layer);
 
 } // namespace lamella
+LAMELLA_API_END

@@ -4,7 +4,8 @@
 
 #include "lamella/contour/layer.hpp"
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// The layer with some of its points left out, so that no point of a contour, old or new, is farther than
 /// `tolerance` mm from the other one (Hausdorff distance). Points that remain keep their coordinates and
@@ -26,3 +27,4 @@ namespace LAMELLA_API lamella {
 [[nodiscard]] Layer simplify_each(const Layer& layer, double tolerance);
 
 } // namespace lamella
+LAMELLA_API_END

@@ -9,7 +9,8 @@
 #include <span>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// The pixels of a picture and where a layer lies among them. Pixel (c, r) is the square [c, c + 1] x [r, r +
 /// 1] of picture coordinates (u, v): columns to the right, rows downwards. The point (x, y) lies at
@@ -84,3 +85,4 @@ struct GreyPicture {
                                 const RasterOptions& options = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -11,7 +11,8 @@
 #include <string>
 #include <variant>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Reads a mesh file or a slice file, whichever it is by its content: what `read_mesh` or `read_layers` gives
 /// and throws. A package such as 3MF may hold both; then it is read for its layers, as its meshes are mostly
@@ -26,3 +27,4 @@ read_any(const std::string& path, const MeshReadOptions& options = {}, const Exe
                                                          const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -15,7 +15,8 @@
 #include <string>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 struct LayerReadOptions {
     /// More bytes than this, of what is unpacked and of the layers, are Error{limit}; 0: three
@@ -66,3 +67,4 @@ struct LayerFile {
                                     const LayerReadOptions& options = {}, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

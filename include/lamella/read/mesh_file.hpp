@@ -15,7 +15,8 @@
 #include <string_view>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// The extensions of mesh files, in lower case: "stl", "3mf"...
 [[nodiscard]] std::vector<std::string_view> mesh_extensions();
@@ -114,3 +115,4 @@ struct MeshFile {
                                  const MeshReadOptions& options = {}, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -13,7 +13,8 @@
 #include <optional>
 #include <string>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 struct ByteSource;
 
@@ -72,3 +73,4 @@ class MeshInput {
 };
 
 } // namespace lamella
+LAMELLA_API_END

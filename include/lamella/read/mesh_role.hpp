@@ -9,7 +9,8 @@
 #include <span>
 #include <string_view>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 enum class MeshRole : std::uint8_t {
     part,     ///< material
@@ -59,3 +60,4 @@ class MeshRoles {
 [[nodiscard]] MeshRoles roles_named(std::string_view words);
 
 } // namespace lamella
+LAMELLA_API_END

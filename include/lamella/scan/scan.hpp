@@ -12,7 +12,8 @@
 #include <span>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// A layer as `scan` takes it: without points of rings on the straight way between others, at which a beam
 /// need not stop. That is to 2^-36 of its extent, or to what the rounding of a file that it comes from
@@ -80,3 +81,4 @@ class ScanMemory {
                                               std::uint64_t* thin_rings = nullptr);
 
 } // namespace lamella
+LAMELLA_API_END

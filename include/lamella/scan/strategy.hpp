@@ -9,7 +9,8 @@
 #include <string_view>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// How lines that fill an area follow one another.
 enum class HatchPattern : std::uint8_t {
@@ -120,3 +121,4 @@ void check_strategy(const ScanStrategy& strategy);
 [[nodiscard]] std::vector<Exposure> support_exposures(const ScanStrategy& strategy, const std::string& part);
 
 } // namespace lamella
+LAMELLA_API_END

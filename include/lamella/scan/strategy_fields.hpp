@@ -13,7 +13,8 @@
 #include <variant>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// One value of a struct of a strategy.
 template <class Rule>
@@ -54,3 +55,4 @@ struct NamedValues {
 [[nodiscard]] NamedValues<ContourOrder> named_values(ContourOrder) noexcept;
 
 } // namespace lamella
+LAMELLA_API_END

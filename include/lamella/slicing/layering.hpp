@@ -12,7 +12,8 @@
 #include <variant>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Cuts at exactly these z; see plan_listed.
 struct ListedPlanes {
@@ -43,3 +44,4 @@ struct Layering {
                            const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -11,7 +11,8 @@
 #include <utility>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// Where within its thickness a layer is cut.
 enum class SliceAt { bottom, middle, top };
@@ -87,3 +88,4 @@ struct PlaneSelection {
 void check_list(const std::vector<double>& z);
 
 } // namespace lamella
+LAMELLA_API_END

@@ -13,7 +13,8 @@
 #include <span>
 #include <string_view>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// What the engines of the EECC paper (King, Rennie, Bennett 2021) count while they sort intersections into
 /// contours; its Tables 2, 3 and 4 and its section 4.1 are made of these. An intersection is one triangle on
@@ -130,3 +131,4 @@ void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const E
                                                 const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -8,7 +8,8 @@
 
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// From `from` to `to`, in mm above the bottom of the part, layers are so high.
 struct HeightRange {
@@ -51,3 +52,4 @@ struct AdaptiveLayers {
                                  SliceAt slice_at = SliceAt::middle, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

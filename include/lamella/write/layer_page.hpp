@@ -16,7 +16,8 @@
 #include <string_view>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// How something told on a page is meant; the page shows it by a sign and a colour.
 enum class Tone { plain, good, warning, bad };
@@ -86,3 +87,4 @@ void write_mesh_page(const std::string& path, const IndexedMesh& mesh, const Dia
                      const PageNotes& notes, const PageOptions& options, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

@@ -20,7 +20,8 @@
 #include <string_view>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// One of the parts whose layers a file holds, or one exposure of a part.
 struct PartInfo {
@@ -193,3 +194,4 @@ std::vector<std::string> write_layers(const std::string& path, const LayerFormat
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});
 
 } // namespace lamella
+LAMELLA_API_END

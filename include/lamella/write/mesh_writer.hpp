@@ -11,7 +11,8 @@
 #include <string>
 #include <vector>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 class AtomicFile;
 
@@ -55,3 +56,4 @@ void write_ply(const std::string& path, const IndexedMesh& mesh);
 void write_obj(const std::string& path, const IndexedMesh& mesh, const std::string& name);
 
 } // namespace lamella
+LAMELLA_API_END

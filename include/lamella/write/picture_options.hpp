@@ -7,7 +7,8 @@
 #include <cstdint>
 #include <optional>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// A pair of values, along x and along y of the layers.
 template <typename T>
@@ -52,3 +53,4 @@ struct ExposureOptions {
 [[nodiscard]] std::int64_t source_date();
 
 } // namespace lamella
+LAMELLA_API_END
