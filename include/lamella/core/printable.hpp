@@ -8,7 +8,8 @@
 #include <string>
 #include <string_view>
 
-namespace LAMELLA_API lamella {
+LAMELLA_API_BEGIN
+namespace lamella {
 
 /// The text as one line of valid UTF-8: control characters, malformed bytes, and U+FFFE and U+FFFF become
 /// \xNN. What is longer than `max_bytes` is cut at a character and ends in "...".
@@ -23,3 +24,4 @@ inline constexpr std::size_t most_quoted = 200;
 }
 
 } // namespace lamella
+LAMELLA_API_END
