@@ -66,23 +66,34 @@ bool is_likely(std::span<const std::byte> record) {
     });
 }
 
-/// Whether the last records make sense as they lie from the end of the file back, and none as they lie from
-/// its begin on: then bytes were lost or added between.
+/// Whether the first records make sense and most of the others do not: then bytes were lost or added between.
+/// Or the last ones do so only as they lie from the end of the file back.
 bool is_shifted(std::span<const std::byte> bytes) {
-    constexpr std::size_t enough = 5; // where bytes are added or lost every now and then
-    const std::size_t records = (bytes.size() - stl_head_bytes) / stl_record_bytes;
-    const std::size_t odd = (bytes.size() - stl_head_bytes) % stl_record_bytes;
-    const std::size_t count = std::min(records, enough);
-    if (odd == 0 || count == 0)
+    constexpr std::size_t few = 5; // where bytes are lost or added every now and then
+    constexpr std::size_t enough = 1000;
+    const std::size_t stored = (bytes.size() - stl_head_bytes) / stl_record_bytes;
+    const std::uint32_t declared = stl_declared_count(bytes);
+    const std::size_t records = declared == 0 ? stored : std::min<std::size_t>(stored, declared);
+    const auto likely = [&](std::size_t count, const auto& offset_of) {
+        std::size_t found = 0;
+        for (std::size_t i = 0; i < count; ++i)
+            found += is_likely(bytes.subspan(offset_of(i), stl_record_bytes)) ? 1 : 0;
+        return found;
+    };
+    const auto record = [&](std::size_t i) {
+        return stl_head_bytes + i * stl_record_bytes;
+    };
+    const std::size_t ends = std::min(records, few);
+    const std::size_t sample = std::min(records, enough);
+    if (ends == 0 || likely(ends, record) < ends)
         return false;
-    std::size_t from_begin = 0;
-    std::size_t from_end = 0;
-    for (std::size_t i = 1; i <= count; ++i) {
-        const std::size_t back = bytes.size() - i * stl_record_bytes;
-        from_end += is_likely(bytes.subspan(back, stl_record_bytes)) ? 1 : 0;
-        from_begin += is_likely(bytes.subspan(back - odd, stl_record_bytes)) ? 1 : 0;
-    }
-    return 2 * from_begin < count && 10 * from_end >= 9 * count;
+    if (2 * likely(sample, [&](std::size_t i) { return record(i * records / sample); }) < sample)
+        return true;
+    const auto from_end = [&](std::size_t i) {
+        return bytes.size() - (i + 1) * stl_record_bytes;
+    };
+    return likely(ends, from_end) == ends &&
+           2 * likely(ends, [&](std::size_t i) { return record(records - 1 - i); }) < ends;
 }
 
 /// What a transfer as text has done to a binary file whose size does not fit its count; "" where it has not.
