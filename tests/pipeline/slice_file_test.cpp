@@ -8,6 +8,7 @@
 #include "fixtures/expect_error.hpp"
 #include "fixtures/rounds.hpp"
 #include "parts/shapes.hpp"
+#include "read/packages.hpp"
 #include "temporary_folder.hpp"
 #include "thread_processes.hpp"
 
@@ -15,6 +16,8 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <fstream>
+#include <ios>
 #include <map>
 #include <set>
 #include <string>
@@ -72,6 +75,36 @@ TEST_F(Processes, WriteTheBytesOfOneProcessWithAnyNumberOfThem) {
             EXPECT_EQ(content("one"), expected);
         }
     }
+}
+
+TEST_F(Processes, SubtractNegativeVolumesAlike) {
+    using package_test::box_mesh;
+    using package_test::components;
+    using package_test::object;
+    const std::string moved = "transform=\"1 0 0 0 1 0 0 0 1 2 2 4\"";
+    const std::string bytes = package_test::package(
+        package_test::model(object(1, box_mesh(10, 10, 10)) +
+                                object(2, box_mesh(4, 4, 20), "type=\"other\"") +
+                                object(3, components({{1, ""}, {2, moved}})),
+                            "<item objectid=\"3\"/>"),
+        {{"Metadata/model_settings.config",
+          "<config><object id=\"3\"><part id=\"2\" subtype=\"negative_part\"/></object></config>"}});
+    std::ofstream(path("part.3mf"), std::ios::binary) << bytes;
+    FileJob job = job_of({{.path = path("part.3mf"), .copies = 3}}, 0.5);
+    job.output = path("one.cli");
+    const FileResult one = slice_file(job);
+    ASSERT_EQ(one.layers.size(), 20U);
+    EXPECT_NEAR(one.layers[0].measure.area_mm2, 300, 1e-9);
+    EXPECT_NEAR(one.layers[19].measure.area_mm2, 3 * (100 - 16), 1e-9);
+    const std::string expected = content("one.cli");
+    for (const std::size_t processes : {2U, 3U, 50U}) {
+        for (const FileResult& many : test::slice_by(processes, job))
+            test::expect_same(one, many);
+        EXPECT_EQ(content("one.cli"), expected);
+    }
+    job.max_memory = 100'000'000;
+    static_cast<void>(slice_file(job));
+    EXPECT_EQ(content("one.cli"), expected);
 }
 
 TEST_F(Processes, TakePlatesBrokenMeshesAndWhateverNeedsTheWholeMesh) {
