@@ -90,6 +90,8 @@ std::string difference_text(const Differing& one, const CompareArguments& argume
                                     brief(details.hatch_where.y)));
     if (!details.exposed_alike)
         texts.emplace_back("contours shared out otherwise among the exposures");
+    if (!details.followed_alike)
+        texts.emplace_back("contours followed in another order, or from other points");
     if (!details.heights_agree)
         texts.push_back(fmt::format("bottom or top {} mm apart", brief(details.height_distance_mm)));
     return fmt::format("z = {} mm: {}", height(plane.z), fmt::join(texts, ", "));
@@ -105,6 +107,8 @@ std::string exposures_text(const FileComparison& found, const CompareArguments& 
         for (const std::string& label : *only[i])
             text += fmt::format("    {}: only in {}\n", one_line(label),
                                 one_line(input_name(arguments.inputs[i])));
+    if (!found.exposures_in_order)
+        text += "    exposures come in another order\n";
     return text.empty() ? "" : "  parts are exposed otherwise:\n" + text;
 }
 
@@ -127,7 +131,8 @@ Json plane_json(const Differing& one) {
             {"hatch_distance_mm",
              both && std::isfinite(details.hatch_distance_mm) ? Json(details.hatch_distance_mm) : Json()},
             {"height_distance_mm", both ? Json(details.height_distance_mm) : Json()},
-            {"exposed_alike", both ? Json(details.exposed_alike) : Json()}};
+            {"exposed_alike", both ? Json(details.exposed_alike) : Json()},
+            {"followed_alike", both ? Json(details.followed_alike) : Json()}};
 }
 
 Json parameters_json(const std::vector<ParameterDifference>& parameters) {
@@ -232,7 +237,8 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
                     {"differences", std::move(layers)},
                     {"parameters", parameters_json(files.parameters)},
                     {"only_first", files.only_first},
-                    {"only_second", files.only_second}};
+                    {"only_second", files.only_second},
+                    {"exposures_in_order", files.exposures_in_order}};
         if (arguments.area_difference) {
             report["area_difference_mm2"] = sum_of(areas);
             report["area_differences"] = Json::array();

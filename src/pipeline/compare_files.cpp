@@ -132,6 +132,13 @@ void take_pairs(std::vector<const LayerPart*>& first, std::vector<const LayerPar
 
 using PartPair = std::pair<const LayerPart*, const LayerPart*>;
 
+/// Whether the partners of the parts of one file come in the order of these.
+bool in_order(std::vector<PartPair> pairs) {
+    std::sort(pairs.begin(), pairs.end()); // parts of a file are in one array
+    return std::is_sorted(pairs.begin(), pairs.end(),
+                          [](const PartPair& a, const PartPair& b) { return a.second < b.second; });
+}
+
 /// The pairs of what is exposed; none where something has no partner.
 std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile& second,
                                         FileComparison& result) {
@@ -157,6 +164,8 @@ std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile&
         for (const LayerPart* const part : others)
             result.only_second.push_back(part->label);
     }
+    if (one_format)
+        result.exposures_in_order = in_order(pairs);
     if (!ones.empty() || !others.empty())
         pairs.clear();
     return pairs;
@@ -177,10 +186,27 @@ bool exposed_alike(std::span<const PartPair> pairs, std::size_t first, std::size
     });
 }
 
+/// Whether the contours of each exposure of a plane, which agree with those of its partner, are followed in
+/// the same order, each from the same point.
+bool followed_alike(std::span<const PartPair> pairs, std::size_t first, std::size_t second,
+                    double tolerance_mm) {
+    return std::all_of(pairs.begin(), pairs.end(), [&](const PartPair& pair) {
+        const Layer& one = pair.first->layers[first];
+        const Layer& other = pair.second->layers[second];
+        if (one.contours() != other.contours())
+            return true; // some are so small that they agree with nothing
+        for (std::size_t i = 0; i < one.contours(); ++i)
+            if (!one.contour(i).empty() && !other.contour(i).empty() &&
+                distance(one.contour(i).front(), other.contour(i).front()) > tolerance_mm)
+                return false;
+        return true;
+    });
+}
+
 } // namespace
 
 bool FileComparison::agree() const noexcept {
-    return parameters.empty() && only_first.empty() && only_second.empty() &&
+    return parameters.empty() && only_first.empty() && only_second.empty() && exposures_in_order &&
            std::all_of(layers.planes.begin(), layers.planes.end(),
                        [](const ComparedPlane& plane) { return plane.agree; });
 }
@@ -193,7 +219,8 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                           .details = {},
                           .parameters = {},
                           .only_first = {},
-                          .only_second = {}};
+                          .only_second = {},
+                          .exposures_in_order = true};
     const std::vector<PartPair> pairs = compare_exposures(first, second, result);
     const double of_contours = result.layers.tolerance_mm;
     const double of_ends = tolerance_mm ? *tolerance_mm : moved_ends(first) + moved_ends(second);
@@ -212,12 +239,16 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
     }
     // Contours that differ all together are told anyway.
     std::vector<char> alike(result.layers.planes.size(), 1);
+    std::vector<char> followed(result.layers.planes.size(), 1);
     Executor executor(execution);
     executor.for_chunks(alike.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i)
             if (const ComparedPlane& plane = result.layers.planes[i];
-                plane.first && plane.second && plane.agree)
+                plane.first && plane.second && plane.agree) {
                 alike[i] = exposed_alike(pairs, *plane.first, *plane.second, of_contours) ? 1 : 0;
+                followed[i] =
+                    alike[i] == 0 || followed_alike(pairs, *plane.first, *plane.second, of_contours) ? 1 : 0;
+            }
     });
     executor.check_cancelled();
     for (std::size_t k = 0; k < result.layers.planes.size(); ++k) {
@@ -235,9 +266,11 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                                                                       same_height_mm;
             plane.agree = plane.agree && details.heights_agree && details.hatch_distance_mm <= of_ends;
             details.exposed_alike = alike[k] != 0;
-            plane.agree = plane.agree && details.exposed_alike;
+            details.followed_alike = followed[k] != 0;
+            plane.agree = plane.agree && details.exposed_alike && details.followed_alike;
             details.same = plane.difference.same && details.height_distance_mm == 0 &&
-                           details.hatch_distance_mm == 0 && details.exposed_alike;
+                           details.hatch_distance_mm == 0 && details.exposed_alike &&
+                           details.followed_alike && result.exposures_in_order;
         } else {
             details.first_hatches = plane.first ? stacks[0][*plane.first].hatches.size() / 2 : 0;
             details.second_hatches = plane.second ? stacks[1][*plane.second].hatches.size() / 2 : 0;

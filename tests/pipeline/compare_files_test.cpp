@@ -79,6 +79,40 @@ TEST(CompareFiles, SeesLayersOfLinesThatOneFileHasNot) {
     EXPECT_FALSE(compare_files(lines, fewer).agree());
 }
 
+TEST(CompareFiles, SeesTheOrderOfExposuresOfContoursAndWhereTheseBegin) {
+    LayerFile turned = job();
+    std::swap(turned.parts[0], turned.parts[1]);
+    const FileComparison found = compare_files(job(), turned);
+    EXPECT_FALSE(found.exposures_in_order);
+    EXPECT_FALSE(found.agree());
+    EXPECT_EQ(same_of(found), 0U);
+    turned.format = "cli"; // formats keep what they expose in orders of their own
+    EXPECT_TRUE(compare_files(job(), turned).exposures_in_order);
+
+    LayerFile two = job();
+    LayerFile other = job();
+    const std::vector<Point2> square = rectangle(0, 0, 4, 4);
+    const std::vector<Point2> small = rectangle(6, 0, 8, 2);
+    const auto with_rings = [](LayerFile& file, const std::vector<std::vector<Point2>>& rings) {
+        Layer layer = test::layer_of(rings);
+        Layer& its = file.parts[0].layers[1];
+        its.points = layer.points;
+        its.offsets = layer.offsets;
+        its.rings = layer.rings;
+    };
+    with_rings(two, {square, small});
+    for (const std::vector<std::vector<Point2>>& rings :
+         {std::vector{small, square}, std::vector{square, {small[1], small[2], small[3], small[0]}}}) {
+        with_rings(other, rings);
+        const FileComparison apart = compare_files(two, other);
+        EXPECT_FALSE(apart.agree());
+        EXPECT_FALSE(apart.details[1].followed_alike);
+        EXPECT_TRUE(apart.details[0].followed_alike);
+        EXPECT_EQ(same_of(apart), 2U);
+    }
+    EXPECT_TRUE(compare_files(two, two).agree());
+}
+
 TEST(CompareFiles, SeesHeights) {
     LayerFile other = job();
     for (LayerPart& part : other.parts)
