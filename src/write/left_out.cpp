@@ -13,6 +13,19 @@ namespace {
 
 constexpr std::size_t longest_label = 60; ///< of those that warnings name
 
+/// Whether a number that somebody chose is lost. What is as by default, a machine has settings of its own
+/// for.
+bool loses_a_choice(const ParameterSet& set, const ParameterSet& kept) noexcept {
+    const ParameterSet preset;
+    const auto is_lost = [&](double ParameterSet::*member) {
+        return kept.*member != set.*member && set.*member != preset.*member;
+    };
+    return is_lost(&ParameterSet::power_w) || is_lost(&ParameterSet::speed_mm_s) ||
+           is_lost(&ParameterSet::jump_speed_mm_s) || is_lost(&ParameterSet::focus_mm) ||
+           is_lost(&ParameterSet::spot_mm) || is_lost(&ParameterSet::mark_delay_us) ||
+           is_lost(&ParameterSet::jump_delay_us);
+}
+
 } // namespace
 
 LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts) : holds_(holds) {
@@ -20,7 +33,7 @@ LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts) : holds_(holds) {
         const bool known = part.exposure && !(part.exposure->parameters == unknown_parameters());
         ++(known ? known_ : unknown_);
         if (known && holds.kept != nullptr &&
-            !(holds.kept(part.exposure->parameters) == part.exposure->parameters))
+            loses_a_choice(part.exposure->parameters, holds.kept(part.exposure->parameters)))
             ++changed_parts_;
         if (part.support && !part.exposure)
             ++supports_;

@@ -66,7 +66,8 @@ class LeftOut {
     std::uint64_t supports_ = 0;      ///< parts that are, and do not say so otherwise
     std::uint64_t labelled_ = 0;      ///< parts whose labels are not the usual one
     std::string first_labelled_;      ///< of those
-    std::uint64_t changed_parts_ = 0; ///< those whose parameters are kept in part
+    std::uint64_t changed_parts_ = 0; ///< those of whose parameters a number is lost that
+                                      ///< is not as by default
     PlaneExtras noted_;               ///< of all planes
     RoundingLoss rounding_;
     std::uint64_t changed_labels_ = 0;

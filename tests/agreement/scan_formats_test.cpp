@@ -84,6 +84,11 @@ ScanStrategy strategy() {
     strategy.upskin.hatch.distance = 0.5;
     strategy.downskin.layers = 1;
     strategy.support.contours.count = 2;
+    for (ParameterSet* const set :
+         {&strategy.contours.parameters, &strategy.hatch.parameters, &strategy.upskin.hatch.parameters,
+          &strategy.downskin.hatch.parameters, &strategy.support.contours.parameters,
+          &strategy.support.hatch.parameters})
+        set->spot_mm = 0.09; // not as by default: formats without a place for it lose it
     return strategy;
 }
 
