@@ -61,8 +61,11 @@ Json name_or_null(const std::string& name) {
 Json record_of(const BatchItem& item, const BatchResult& result) {
     const FileResult& file = result.file;
     std::vector<std::uint64_t> hashes;
-    for (const LayerStatistics& layer : file.layers)
+    for (const LayerStatistics& layer : file.layers) {
         hashes.push_back(layer.hash);
+        if (!layer.scan.empty())
+            hashes.push_back(layer.scan_hash);
+    }
     Json warnings = Json::array();
     for (const std::string& warning : result.warnings)
         if (warnings.size() < most_warnings)

@@ -107,6 +107,7 @@ Figures vector_figures(const std::vector<ExposureResult>& exposures) {
     const bool timed = all_have(&ParameterSet::speed_mm_s);
     const bool powered = all_have(&ParameterSet::power_w);
     Figures figures = scan_figures(exposures);
+    std::erase_if(figures, [](const Figure& figure) { return figure.key == "unreached_mm2"; }); // not known
     for (Figure& figure : figures)
         if ((figure.key == "build_seconds" && !timed) || (figure.key == "energy_j" && !(timed && powered))) {
             figure.value = nullptr;

@@ -92,11 +92,13 @@ Json stats_of(const Command& command, const std::string& path, const LayerFile& 
             measured.add(measure(part.layers[i]));
         const double layer_mm3 = measured.area_mm2 * first.thickness();
         volume_mm3 += layer_mm3;
-        layers.push_back({{"index", first.index},
-                          {"z", first.z},
-                          {"thickness", first.thickness()},
-                          {"area_mm2", measured.area_mm2},
-                          {"scan", with_density(scan_json(result.exposures, result.layers[i]), layer_mm3)}});
+        layers.push_back(
+            {{"index", first.index},
+             {"z", first.z},
+             {"thickness", first.thickness()},
+             {"area_mm2", measured.area_mm2},
+             {"scan", with_hash(with_density(scan_json(result.exposures, result.layers[i]), layer_mm3),
+                                result.hashes[i])}});
     }
     Json stats = {
         {"lamella", version()},
@@ -104,7 +106,7 @@ Json stats_of(const Command& command, const std::string& path, const LayerFile& 
         {"input", {{"path", path}, {"format", file.format}, {"parts", file.parts.size()}}},
         {"seconds", {{"scan", result.scan_seconds}}},
         {"volume_mm3", volume_mm3},
-        {"scan", with_thin_rings(with_density(scan_json(result.exposures), volume_mm3), result.thin)}};
+        {"scan", with_unreached(with_density(scan_json(result.exposures), volume_mm3), result.unreached)}};
     stats["scan"]["strategy"] = strategy_json(strategy);
     stats["layers"] = std::move(layers);
     return stats;
@@ -132,8 +134,8 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         stacks.push_back(part.layers);
     const ScanResult result =
         scan_layers(arguments.output, format, stacks, file.rounding, info, strategy, options, execution);
-    if (result.thin.rings > 0)
-        context.messages.warn(fmt::format("{}: {}", file.path, result.thin.text()));
+    if (result.unreached.layers > 0)
+        context.messages.warn(fmt::format("{}: {}", file.path, result.unreached.text()));
     context.messages.warn_of(output_name(arguments.output), result.warnings);
     after_output(arguments.output, [&] {
         if (arguments.stats.empty())

@@ -182,7 +182,7 @@ OptionGroup checking_options(SliceArguments& target) {
               target.inspect),
          flag("strict",
               "make an error of any defect of the file or its mesh, of what the slice file would lose, of "
-              "rings too thin for scan vectors and of steps that leave nothing, and write nothing",
+              "material that no scan vector reaches and of steps that leave nothing, and write nothing",
               target.strict)}};
 }
 

@@ -111,7 +111,7 @@ std::string verification_text(const std::string& mesh, const Verification& found
     return text;
 }
 
-Json vectors_json(const VectorVerification& found) {
+Json vectors_json(bool strategy, const VectorVerification& found) {
     return {{"layers", found.layers},
             {"contour_vectors", found.contour_vectors},
             {"hatch_vectors", found.hatch_vectors},
@@ -126,6 +126,8 @@ Json vectors_json(const VectorVerification& found) {
             {"height_overlaps", found.height_overlaps},
             {"unbounded", found.unbounded},
             {"cover", found.cover ? Json(*found.cover) : Json()},
+            {"unreached_layers", found.unreached_layers},
+            {"unreached_mm2", strategy ? Json(found.unreached_mm2) : Json()},
             {"heights", heights_json(found.heights)},
             {"findings", found.findings},
             {"hint", nullptr}};
@@ -141,6 +143,8 @@ std::string vectors_text(const std::string& mesh, bool strategy, const VectorVer
     if (found.cover)
         text += fmt::format("  lines times their distance cover {:.2f} % of what they are to fill\n",
                             100 * *found.cover);
+    if (strategy && found.unreached_mm2 >= 5e-4)
+        text += fmt::format("  {:.4g} mm2 of the material are reached by no vector\n", found.unreached_mm2);
     if (!hint.empty())
         text += fmt::format("  {}\n", hint);
     text += heights_text(found.heights);
@@ -219,10 +223,6 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
 
     const LayerFile plain = taken_parts(file, false);
     const LayerFile vectors = taken_parts(file, true);
-    if (strategy && vectors.parts.empty())
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("{}: holds no scan vectors; a strategy says nothing of its contours", file.path));
     const bool cut_is_assumed = mesh && arguments.slice_at.empty() && !layer_format(file.format, {}).cuts;
     bool ok = !arguments.strict || file.warnings.empty();
     Json object{{"path", arguments.input}, {"ok", ok}, {"warnings", file.warnings}};
@@ -256,7 +256,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
             object["hint"] = hint;
         text += verification_text(arguments.mesh, found, hint);
     }
-    if (!vectors.parts.empty()) {
+    if (strategy || !vectors.parts.empty()) {
         VerifyOptions options{.mesh = mesh,
                               .plate = plate,
                               .rule = rule,
@@ -267,7 +267,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
                               .strategy = strategy};
         const VectorVerification found = verify_vectors(vectors.parts, options, execution);
         ok = ok && found.ok();
-        object["vectors"] = vectors_json(found);
+        object["vectors"] = vectors_json(strategy.has_value(), found);
         const auto disagree = [](const VectorVerification& one) {
             return one.outside > 0 || one.miscovered > 0 || one.wrong_contours > 0;
         };

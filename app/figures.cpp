@@ -117,8 +117,9 @@ Json layers_json(const FileResult& result) {
         if (result.changes)
             layers.back().update(changes_json(layer.changes));
         if (!layer.scan.empty())
-            layers.back()["scan"] = with_density(scan_json(result.exposures, layer.scan),
-                                                 layer.measure.area_mm2 * layer.thickness);
+            layers.back()["scan"] = with_hash(with_density(scan_json(result.exposures, layer.scan),
+                                                           layer.measure.area_mm2 * layer.thickness),
+                                              layer.scan_hash);
     }
     return layers;
 }
@@ -365,7 +366,7 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
     }
     if (job.scan) {
         stats["scan"] =
-            with_thin_rings(with_density(scan_json(result.exposures), result.volume_mm3), result.thin);
+            with_unreached(with_density(scan_json(result.exposures), result.volume_mm3), result.unreached);
         stats["scan"]["strategy"] = strategy_json(*job.scan);
     }
     if (result.report.matching)

@@ -31,8 +31,8 @@ std::vector<std::string> run_warnings(const FileJob& job, const FileResult& resu
                 nothing_left(result.report.layers, result.report.contours, *result.changes);
             !nothing.empty())
             add(input_name(first), nothing);
-    if (result.thin.rings > 0)
-        add(input_name(first), result.thin.text());
+    if (result.unreached.layers > 0)
+        add(input_name(first), result.unreached.text());
     for (const std::string& warning : result.warnings)
         add(output_name(job.output), warning);
     for (const std::string& warning : result.report_warnings)

@@ -80,7 +80,9 @@ Figures scan_figures(std::span<const ExposureResult> exposures) {
             {"marked_mm", sums.all.marked_mm, "marked", length_text(sums.all.marked_mm)},
             {"jumped_mm", sums.all.jumped_mm, "jumped", length_text(sums.all.jumped_mm)},
             {"build_seconds", sums.all.build_seconds, "beam time", time_text(sums.all.build_seconds)},
-            {"energy_j", sums.all.energy_j, "energy", energy_text(sums.all.energy_j)}};
+            {"energy_j", sums.all.energy_j, "energy", energy_text(sums.all.energy_j)},
+            {"unreached_mm2", sums.all.unreached_mm2, "not reached",
+             sums.all.unreached_mm2 > 0 ? fmt::format("{:.4g} mm2", sums.all.unreached_mm2) : ""}};
 }
 
 Json scan_json(std::span<const ExposureResult> exposures) {
@@ -121,18 +123,25 @@ Json with_density(Json scan, double volume_mm3) {
     return scan;
 }
 
-Json with_thin_rings(Json scan, const ThinRings& thin) {
-    scan["thin_rings"] = thin.rings;
-    scan["thin_layers"] = thin.layers;
+Json with_unreached(Json scan, const UnreachedMaterial& unreached) {
+    scan["unreached_layers"] = unreached.layers;
+    return scan;
+}
+
+Json with_hash(Json scan, std::uint64_t hash) {
+    scan["hash"] = fmt::format("{:016x}", hash); // a JSON number loses digits beyond 2^53
     return scan;
 }
 
 std::string scan_text(std::span<const ExposureResult> exposures) {
     const Sums sums = sums_of(exposures);
-    return fmt::format("{} vectors, {} marked, {} jumped, {}, {}",
+    const std::string unreached = sums.all.unreached_mm2 < 5e-4
+                                      ? std::string()
+                                      : fmt::format(", {:.4g} mm2 not reached", sums.all.unreached_mm2);
+    return fmt::format("{} vectors, {} marked, {} jumped, {}, {}{}",
                        grouped(sums.contour_vectors + sums.hatch_vectors), length_text(sums.all.marked_mm),
                        length_text(sums.all.jumped_mm), time_text(sums.all.build_seconds),
-                       energy_text(sums.all.energy_j));
+                       energy_text(sums.all.energy_j), unreached);
 }
 
 } // namespace lamella::app

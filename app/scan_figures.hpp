@@ -6,13 +6,15 @@
 
 #include "figures.hpp"
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace lamella::app {
 
-/// Of all of them together: contour_vectors, hatch_vectors, marked_mm, jumped_mm, build_seconds, energy_j.
+/// Of all of them together: contour_vectors, hatch_vectors, marked_mm, jumped_mm, build_seconds, energy_j,
+/// unreached_mm2.
 [[nodiscard]] Figures scan_figures(std::span<const ExposureResult> exposures);
 
 /// The same figures as an object; with `regions` by their names, where there are several.
@@ -31,8 +33,11 @@ struct RegionFigures {
 /// With `energy_j_mm3`: how much of the energy each cubic millimetre gets; null without volume.
 [[nodiscard]] Json with_density(Json scan, double volume_mm3);
 
-/// With `thin_rings` and `thin_layers`.
-[[nodiscard]] Json with_thin_rings(Json scan, const ThinRings& thin);
+/// With `unreached_layers`: those with more of it than is accepted.
+[[nodiscard]] Json with_unreached(Json scan, const UnreachedMaterial& unreached);
+
+/// With `hash`: of the vectors of a layer.
+[[nodiscard]] Json with_hash(Json scan, std::uint64_t hash);
 
 /// "1,234,567 vectors, 12.3 m marked, 1.2 m jumped, 1 h 02 min, 45.0 kJ"
 [[nodiscard]] std::string scan_text(std::span<const ExposureResult> exposures);

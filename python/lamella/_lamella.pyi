@@ -214,6 +214,8 @@ class ContourRule:
     before_hatch: bool
     start: str
     start_direction_degrees: float
+    thin_walls: str
+    thinnest: float
     parameters: ParameterSet
     def __eq__(self, other: object) -> bool: ...
     __hash__: ClassVar[None]  # type: ignore[assignment]
@@ -242,6 +244,7 @@ class ScanStrategy:
     downskin: SkinRule
     support: SupportRule
     seed: int
+    accepted_mm2: float
     def __eq__(self, other: object) -> bool: ...
     __hash__: ClassVar[None]  # type: ignore[assignment]
 

@@ -37,8 +37,8 @@ class ScanLayer:
     exposures: Tuple[Exposure, ...]
     #: Of each exposure: contours as rings, each from where the beam begins; hatches as `hatches`. Without copies.
     layers: Tuple[Layer, ...]
-    #: Rings of the layer that are thinner than the beam's offsets: they have no vectors.
-    thin_rings: int = 0
+    #: Material of the layer that no vector reaches, in mm2; see `accepted_mm2` of a ScanStrategy.
+    unreached_mm2: float = 0.0
 
     def __post_init__(self) -> None:
         if len(self.layers) != len(self.exposures):
@@ -218,9 +218,9 @@ def _scan(
         coming.extend(islice(layers, 1))
 
 
-def _scan_layer(layer: Layer, exposures: Tuple[Exposure, ...], scanned: Tuple[List[Layer], int]) -> ScanLayer:
-    vectors, thin_rings = scanned
-    return ScanLayer(layer.index, layer.z, layer.bottom, layer.top, exposures, tuple(vectors), thin_rings)
+def _scan_layer(layer: Layer, exposures: Tuple[Exposure, ...], scanned: Tuple[List[Layer], float]) -> ScanLayer:
+    vectors, unreached_mm2 = scanned
+    return ScanLayer(layer.index, layer.z, layer.bottom, layer.top, exposures, tuple(vectors), unreached_mm2)
 
 
 def as_strategy(name: str, strategy: StrategyLike) -> ScanStrategy:

@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -121,8 +122,12 @@ Rounding rounding_of(const Stack* stack) {
     return stack != nullptr ? stack->rounding : Rounding{};
 }
 
-/// Layers of vectors, and the number of rings that are too thin for any.
-using Scanned = std::pair<std::vector<LayerPointer>, std::uint64_t>;
+/// Layers of vectors, and how much of the material none of them reaches, in mm^2.
+using Scanned = std::pair<std::vector<LayerPointer>, double>;
+
+double sum_of(const std::vector<double>& areas) {
+    return std::accumulate(areas.begin(), areas.end(), 0.0);
+}
 
 Scanned scanned(const LayerPointer& layer, const std::vector<LayerPointer>& below,
                 const std::vector<LayerPointer>& above, const ScanStrategy& strategy, const Stack* stack) {
@@ -132,20 +137,20 @@ Scanned scanned(const LayerPointer& layer, const std::vector<LayerPointer>& belo
             points += other->get().points.size();
     const auto work = [layer, below, above, strategy,
                        rounding = rounding_of(stack)](const Execution& /*execution*/) {
-        std::uint64_t thin_rings = 0;
+        std::vector<double> unreached;
         std::vector<Layer> vectors = scan(ScanLayer(layer->get(), rounding), layers_of(below, rounding),
-                                          layers_of(above, rounding), strategy, nullptr, &thin_rings);
-        return Scanned{shared(std::move(vectors), layer->rule()), thin_rings};
+                                          layers_of(above, rounding), strategy, nullptr, &unreached);
+        return Scanned{shared(std::move(vectors), layer->rule()), sum_of(unreached)};
     };
     return result_of_points(points, work);
 }
 
 Scanned scanned_support(const LayerPointer& layer, const ScanStrategy& strategy, const Stack* stack) {
     const auto work = [layer, strategy, rounding = rounding_of(stack)](const Execution& /*execution*/) {
-        std::uint64_t thin_rings = 0;
+        std::vector<double> unreached;
         std::vector<Layer> vectors =
-            scan_support(ScanLayer(layer->get(), rounding), strategy, nullptr, &thin_rings);
-        return Scanned{shared(std::move(vectors), layer->rule()), thin_rings};
+            scan_support(ScanLayer(layer->get(), rounding), strategy, nullptr, &unreached);
+        return Scanned{shared(std::move(vectors), layer->rule()), sum_of(unreached)};
     };
     return result_of_points(layer->get().points.size(), work);
 }

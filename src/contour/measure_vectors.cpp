@@ -13,6 +13,7 @@ ScanFigures& ScanFigures::operator+=(const ScanFigures& other) noexcept {
     jumped_mm += other.jumped_mm;
     build_seconds += other.build_seconds;
     energy_j += other.energy_j;
+    unreached_mm2 += other.unreached_mm2;
     return *this;
 }
 

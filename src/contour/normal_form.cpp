@@ -209,6 +209,8 @@ std::uint64_t content_hash(const Layer& layer) noexcept {
     XXH3_64bits_update(&state, counts.data(), sizeof counts);
     XXH3_64bits_update(&state, layer.offsets.data() + 1, layer.contours() * sizeof(std::uint64_t));
     XXH3_64bits_update(&state, layer.points.data(), layer.points.size() * sizeof(Point2));
+    if (!layer.hatches.empty())
+        XXH3_64bits_update(&state, layer.hatches.data(), layer.hatches.size() * sizeof(Point2));
     return XXH3_64bits_digest(&state);
 }
 

@@ -5,7 +5,6 @@
 #include "lamella/contour/open_gaps.hpp"
 
 #include "pipeline/packed.hpp"
-#include "pipeline/plane_scan.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -66,15 +65,17 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
                               .joins = std::move(joins),
                               .hash = content_hash(parts.size() == 1 ? first : merged(parts)),
                               .changes = changes,
-                              .scan = {}};
+                              .scan = {},
+                              .scan_hash = 0};
 }
 
-void LayerTotals::add(std::uint64_t index, std::span<const ScanFigures> vectors, std::uint64_t thin_rings) {
-    assert(vectors.size() == exposures_.size());
+void LayerTotals::add(std::uint64_t index, const PlaneVectors& vectors) {
+    assert(vectors.figures.size() == exposures_.size());
     const auto place = static_cast<std::size_t>(index - rows_.front().index);
     assert(rows_.at(place).index == index);
-    rows_[place].thin_rings = thin_rings;
-    std::copy(vectors.begin(), vectors.end(),
+    rows_[place].unreached_mm2 = vectors.unreached_mm2;
+    rows_[place].scan_hash = vectors.hash;
+    std::copy(vectors.figures.begin(), vectors.figures.end(),
               vectors_.begin() + static_cast<std::ptrdiff_t>(place * exposures_.size()));
 }
 
@@ -133,14 +134,15 @@ void LayerTotals::gather(Communicator& processes) {
                                    .joins = from.get_all<GapJoin>(),
                                    .hash = from.get<std::uint64_t>(),
                                    .changes = from.get<LayerChanges>(),
-                                   .scan = {}});
+                                   .scan = {},
+                                   .scan_hash = 0});
     }
 }
 
 void LayerTotals::tell(FileResult& result) const {
     for (const Row& row : rows_) {
         result.doubts.add(row.z, row.open_gaps, row.inside_out);
-        result.thin.add(row.thin_rings, row.z);
+        result.unreached.add(row.unreached_mm2, row.z);
     }
     for (std::size_t i = 0; i < closed_.size(); ++i) {
         if (closed_[i].closed > 0)
@@ -163,6 +165,7 @@ void LayerTotals::tell(FileResult& result) const {
     for (std::size_t i = 0; i < result.layers.size() && each > 0; ++i) {
         const std::span<const ScanFigures> row = std::span(vectors_).subspan(i * each, each);
         result.layers[i].scan.assign(row.begin(), row.end());
+        result.layers[i].scan_hash = rows_[i].scan_hash;
     }
     SliceReport& report = result.report;
     report.contours = report.open_chains = report.points = 0;

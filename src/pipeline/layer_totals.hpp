@@ -7,6 +7,8 @@
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/plan.hpp"
 
+#include "pipeline/plane_scan.hpp"
+
 #include <atomic>
 #include <cstdint>
 #include <span>
@@ -26,9 +28,8 @@ class LayerTotals {
     /// these were subtracted. From any thread, once for each plane.
     void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes,
              std::span<const Layer> bodies = {});
-    /// Of the scan vectors of a plane, by `plane_exposures`, and how many rings have none. From any thread,
-    /// once for each plane.
-    void add(std::uint64_t index, std::span<const ScanFigures> vectors, std::uint64_t thin_rings);
+    /// Of the scan vectors of a plane. From any thread, once for each plane.
+    void add(std::uint64_t index, const PlaneVectors& vectors);
 
     /// Points of the layers that were added.
     [[nodiscard]] std::uint64_t points() const noexcept;
@@ -45,7 +46,8 @@ class LayerTotals {
         double z = 0;
         OpenGaps open_gaps;
         bool inside_out = false;
-        std::uint64_t thin_rings = 0; ///< that have no scan vectors
+        double unreached_mm2 = 0; ///< see PlaneVectors
+        std::uint64_t scan_hash = 0;
     };
     struct Counts {
         std::atomic<std::uint64_t> contours{0};

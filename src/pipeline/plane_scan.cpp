@@ -1,11 +1,15 @@
 #include "pipeline/plane_scan.hpp"
 
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/contour/stack_hash.hpp"
+
 #include "core/naming.hpp"
 
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -47,22 +51,28 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
     PlaneVectors vectors;
     vectors.figures.resize(each.size());
     std::optional<Point2> beam;
+    std::vector<std::uint64_t> hashes;
     for (std::size_t part = 0; part < plane.parts.size(); ++part) {
         ScanMemory* const memory = &memories[part];
-        std::uint64_t thin_rings = 0;
+        std::vector<double> unreached;
         std::vector<Layer> scanned = naming(names[part], [&] {
-            return supports[part] ? scan_support(plane.parts[part], strategy, memory, &thin_rings)
+            return supports[part] ? scan_support(plane.parts[part], strategy, memory, &unreached)
                                   : scan(plane.parts[part], layers_of(part, plane.below),
-                                         layers_of(part, plane.above), strategy, memory, &thin_rings);
+                                         layers_of(part, plane.above), strategy, memory, &unreached);
         });
-        vectors.thin_rings += thin_rings;
+        const double sum = std::accumulate(unreached.begin(), unreached.end(), 0.0);
+        if (sum > strategy.accepted_mm2)
+            vectors.unreached_mm2 += sum;
         const std::size_t first = supports[part] ? of_supports : 0;
         assert(scanned.size() == (supports[part] ? each.size() : of_supports) - first);
         for (std::size_t i = 0; i < scanned.size(); ++i) {
             vectors.figures[first + i] += measure_vectors(scanned[i], each[first + i].parameters, beam);
+            vectors.figures[first + i].unreached_mm2 += unreached[i];
+            hashes.push_back(content_hash(scanned[i]));
             vectors.layers.push_back(std::move(scanned[i]));
         }
     }
+    vectors.hash = stack_hash(hashes);
     return vectors;
 }
 

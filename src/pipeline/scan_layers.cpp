@@ -19,17 +19,21 @@
 
 namespace lamella {
 
-void ThinRings::add(std::uint64_t count, double z) noexcept {
-    rings += count;
-    if (count > 0)
+void UnreachedMaterial::add(double unreached_mm2, double z) noexcept {
+    area_mm2 += unreached_mm2;
+    if (unreached_mm2 > 0)
         AffectedLayers::add(z);
 }
 
-std::string ThinRings::text() const {
-    return fmt::format("{} on {}, the lowest at z = {:.6g} mm, {} no vectors", counted(rings, "ring"),
-                       counted(layers, "layer"), first_z,
-                       rings == 1 ? "is thinner than the beam's offsets: it has"
-                                  : "are thinner than the beam's offsets: they have");
+std::string UnreachedMaterial::text() const {
+    return fmt::format("{:.4g} mm2 of material on {}, the lowest at z = {:.6g} mm, are reached by no vector: "
+                       "it is too narrow for "
+                       "contours, for lines of hatches or for lines of thin walls. More contours or smaller "
+                       "values of beam_offset, "
+                       "border, shortest or thinnest reach more; accepted_mm2 of the strategy says how much "
+                       "of a layer may be "
+                       "left",
+                       area_mm2, counted(layers, "layer"), first_z);
 }
 
 LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy) {
@@ -85,7 +89,8 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
     for (Exposure& exposure : plane_exposures(supports, strategy))
         result.exposures.push_back({std::move(exposure), {}});
     result.layers.resize(planes.size());
-    std::vector<std::uint64_t> thin_rings(planes.size());
+    std::vector<double> unreached(planes.size());
+    result.hashes.resize(planes.size());
     std::vector<ScanMemory> memories(supports.size());
     std::atomic<std::uint64_t> nanoseconds{0};
     const std::unique_ptr<LayerWriter> writer =
@@ -97,14 +102,15 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
         nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * scanning.seconds()),
                               std::memory_order_relaxed);
         result.layers[i] = std::move(vectors.figures);
-        thin_rings[i] = vectors.thin_rings;
+        unreached[i] = vectors.unreached_mm2;
+        result.hashes[i] = vectors.hash;
         return std::move(vectors.layers);
     };
     write_planes(*writer, planes.size(), vectors_of, execution);
     for (std::size_t i = 0; i < planes.size(); ++i)
-        result.thin.add(thin_rings[i], planes[i].front().layer().z);
-    if (options.strict && result.thin.rings > 0)
-        throw Error(ErrorKind::defect, fmt::format("{}: {}", path, result.thin.text()));
+        result.unreached.add(unreached[i], planes[i].front().layer().z);
+    if (options.strict && result.unreached.layers > 0)
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", path, result.unreached.text()));
     writer->finish();
     for (const std::vector<ScanFigures>& layer : result.layers)
         for (std::size_t i = 0; i < layer.size(); ++i)

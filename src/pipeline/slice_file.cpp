@@ -399,7 +399,7 @@ class LayerWay {
         const Stopwatch scanning;
         PlaneVectors vectors = scan_plane(plane, supports_, names_, *job_.scan, memories_);
         count(scanning, scan_nanoseconds_);
-        totals_.add(plane.parts.front().layer().index, vectors.figures, vectors.thin_rings);
+        totals_.add(plane.parts.front().layer().index, vectors);
         return std::move(vectors.layers);
     }
 
@@ -598,8 +598,9 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
         result.report.contours == 0)
         throw Error(ErrorKind::defect, fmt::format("{}: nothing is left of any of {} layers after the steps",
                                                    job.inputs.front().path, result.report.layers));
-    if (job.strict && result.thin.rings > 0)
-        throw Error(ErrorKind::defect, fmt::format("{}: {}", job.inputs.front().path, result.thin.text()));
+    if (job.strict && result.unreached.layers > 0)
+        throw Error(ErrorKind::defect,
+                    fmt::format("{}: {}", job.inputs.front().path, result.unreached.text()));
 
     const Stopwatch writing;
     JobOutput::Written file = output.finish_file();

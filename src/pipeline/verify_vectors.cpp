@@ -14,6 +14,7 @@
 #include "polygon/edge_tree.hpp"
 #include "scan/hatch.hpp"
 #include "scan/hatch_lines.hpp"
+#include "scan/unreached.hpp"
 
 #include <fmt/format.h>
 
@@ -107,12 +108,14 @@ struct PlaneCheck : ContourFindings {
     Finding too_short;
     Finding misplaced;
     Finding miscovered;
+    Finding unreached;
     std::map<std::uint32_t, ContourRow> rows; ///< by the numbers of contours, of those with findings
     std::uint64_t contour_vectors = 0;
     std::uint64_t hatch_vectors = 0;
     std::uint64_t unbounded = 0;
     double covered_mm2 = 0;
     double filled_mm2 = 0; ///< what was to be covered
+    double unreached_mm2 = 0;
 };
 
 /// Where the material of a plane is known to be, and where it may be: a format may have moved the cut.
@@ -133,11 +136,14 @@ class Slack {
         if (!cells)
             return;
         const double longer = 1 + rule.overlap / rule.cell;
-        // Where a square is a whole number of lines wide, each has as many as its overlap begins with.
+        // Each square has all lines that reach into it; lines in hexagons end where they leave these.
         constexpr double rounding = 1e-9;
         const double wider = rule.pattern == HatchPattern::chessboard
-                                 ? std::ceil((rule.cell + rule.overlap) / rule.distance * (1 - rounding)) *
+                                 ? std::ceil((rule.cell + std::max(rule.overlap, rule.distance)) /
+                                             rule.distance * (1 - rounding)) *
                                        rule.distance / rule.cell
+                             : rule.pattern == HatchPattern::hexagons
+                                 ? 1 + 2 * std::max(rule.overlap, rule.distance) / rule.cell
                                  : longer;
         share_more_ = std::max(share_more_, longer * wider - 1);
         share_less_ = std::max(share_less_, (rule.shortest / rule.cell) * (rule.shortest / rule.cell));
@@ -168,7 +174,7 @@ class AskedLines {
   public:
     /// `tolerance`: by which ends may be off.
     AskedLines(const HatchRule& rule, std::uint64_t layer, double tolerance)
-        : distance_(rule.distance), tolerance_(tolerance) {
+        : distance_(rule.distance), phase_(line_phase(rule.pattern)), tolerance_(tolerance) {
         for (const CosSin& angle : line_angles(rule, layer))
             frames_.push_back({angle});
     }
@@ -176,7 +182,7 @@ class AskedLines {
     [[nodiscard]] bool have(const Point2& a, const Point2& b) const {
         return std::any_of(frames_.begin(), frames_.end(), [&](const LineFrame& frame) {
             const double across = frame.across(a);
-            const double v = std::nearbyint(across / distance_) * distance_;
+            const double v = (std::nearbyint(across / distance_ - phase_) + phase_) * distance_;
             return std::abs(across - v) <= tolerance_ && std::abs(frame.across(b) - v) <= tolerance_;
         });
     }
@@ -184,6 +190,7 @@ class AskedLines {
   private:
     std::vector<LineFrame> frames_;
     double distance_;
+    double phase_;
     double tolerance_;
 };
 
@@ -266,9 +273,11 @@ class VectorCheck {
             found.unbounded += all;
             return;
         }
-        find_outside(group, plane, bounds, found.outside);
-        if (options_.strategy)
+        find_outside(group, plane, bounds, found);
+        if (options_.strategy) {
             measure_cover(group, plane, bounds, found);
+            measure_unreached(group, plane, bounds, found);
+        }
     }
 
     /// Whether each contour that the strategy asks for of a part is there, and where it should be: as the
@@ -339,6 +348,10 @@ class VectorCheck {
 
     void check_lines(const Exposure& exposure, const Layer& vectors, PlaneCheck& found) const {
         const HatchRule& rule = hatch_of(*options_.strategy, exposure.region);
+        // Those of a contour are along the middle of thin walls.
+        if (exposure.kind == VectorKind::contour &&
+            contours_of(*options_.strategy, exposure.region).thin_walls == ThinWalls::line)
+            return;
         const bool asked = asks_for_lines(exposure);
         const AskedLines lines(rule, before_ + vectors.index, rounding_);
         for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
@@ -351,7 +364,7 @@ class VectorCheck {
         }
     }
 
-    void find_outside(const Group& group, std::size_t plane, const Bounds& bounds, Finding& outside) const {
+    void find_outside(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
         // Grown a little, so that what lies on an edge lies within.
         Layer material = bounds.sections.front();
         for (std::size_t i = 1; i < bounds.sections.size(); ++i)
@@ -359,12 +372,18 @@ class VectorCheck {
         const double grown = 2 * tolerance_;
         const EdgeTree edges(offset(material, grown));
         for (const LayerPart* const part : group.exposures) {
-            if (part == group.outermost && !options_.mesh)
-                continue;
             const double depth =
                 options_.strategy ? depth_of(*part->exposure, *options_.strategy) - bounds.depth : 0;
+            // Lines of a contour run along the middle of walls that are too thin for it.
+            const bool in_walls = part->exposure->kind == VectorKind::contour;
+            if (in_walls && options_.strategy)
+                find_in_thick(edges, std::max(0.0, depth) + grown + tolerance_, part->layers[plane],
+                              found.misplaced);
+            if (part == group.outermost && !options_.mesh)
+                continue;
             const Layer& vectors = part->layers[plane];
-            Followed followed(edges, std::max(0.0, depth) + grown - tolerance_, vectors, outside);
+            const double nearest = std::max(0.0, depth) + grown - tolerance_;
+            Followed followed(edges, nearest, vectors, found.outside);
             for (std::size_t i = 0; i < vectors.contours(); ++i) {
                 const auto contour = vectors.contour(i);
                 for (std::size_t k = 1; k < contour.size(); ++k)
@@ -372,8 +391,20 @@ class VectorCheck {
                 if (vectors.closed(i))
                     followed.mark(contour.back(), contour.front());
             }
+            Followed lines(edges, in_walls ? grown - tolerance_ : nearest, vectors, found.outside);
             for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2)
-                followed.mark(vectors.hatches[i], vectors.hatches[i + 1]);
+                lines.mark(vectors.hatches[i], vectors.hatches[i + 1]);
+        }
+    }
+
+    /// Lines whose middles are farther within the material than `depth`.
+    static void find_in_thick(const EdgeTree& edges, double depth, const Layer& vectors, Finding& found) {
+        for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
+            const Point2& a = vectors.hatches[i];
+            const Point2& b = vectors.hatches[i + 1];
+            const Point2 middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
+            if (edges.winding(middle) > 0 && edges.distance_squared(middle, depth * depth) > depth * depth)
+                found.add(vectors, a);
         }
     }
 
@@ -470,6 +501,36 @@ class VectorCheck {
         found.filled_mm2 += to_fill.area_mm2;
     }
 
+    /// Of sections of which the file may mean any, that of which the least is left.
+    void measure_unreached(const Group& group, std::size_t plane, const Bounds& bounds,
+                           PlaneCheck& found) const {
+        const ScanStrategy& strategy = *options_.strategy;
+        const ScanRegion region = group.exposures.front()->exposure->region;
+        const ContourRule& contours = contours_of(strategy, region);
+        const HatchRule& hatch = region == ScanRegion::support ? strategy.support.hatch : strategy.hatch;
+        std::vector<Stroke> strokes;
+        double least = std::numeric_limits<double>::infinity();
+        Point2 at;
+        for (const Layer& section : bounds.sections) {
+            const Layer places = narrow_places(moved_inwards(section, 0), bounds.depth, contours, hatch);
+            if (places.rings > 0 && strokes.empty())
+                for (const LayerPart* const part : group.exposures)
+                    add_strokes(part->layers[plane],
+                                2 * tolerance_ +
+                                    (part->exposure->kind == VectorKind::hatch
+                                         ? hatch_of(strategy, part->exposure->region).distance
+                                         : contour_reach(contours_of(strategy, part->exposure->region))),
+                                strokes);
+            if (const double left = unreached_area(places, strokes); left < least) {
+                least = left;
+                at = places.points.empty() ? Point2{} : places.points[0];
+            }
+        }
+        if (least > strategy.accepted_mm2)
+            found.unreached.add(group.exposures.front()->layers[plane], at);
+        found.unreached_mm2 += least;
+    }
+
     const VerifyOptions& options_;
     double rounding_;  ///< by which ends of lines may be off
     double tolerance_; ///< by which edges of the material may be off, by leaving out points of them, too
@@ -483,7 +544,7 @@ struct KindOfFinding {
     FindingWords words;
 };
 
-std::array<KindOfFinding, 7> kinds_of_findings(bool strategy) {
+std::array<KindOfFinding, 8> kinds_of_findings(bool strategy) {
     return {
         {{&PlaneCheck::open_chains, &VectorVerification::open_chains, open_chains_words},
          {&PlaneCheck::crossings, &VectorVerification::crossings, crossings_words},
@@ -505,7 +566,11 @@ std::array<KindOfFinding, 7> kinds_of_findings(bool strategy) {
          {&PlaneCheck::miscovered,
           &VectorVerification::miscovered,
           {"layer has lines that cover more or less than they should fill;",
-           "layers have lines that cover more or less than they should fill;"}}}};
+           "layers have lines that cover more or less than they should fill;"}},
+         {&PlaneCheck::unreached,
+          &VectorVerification::unreached_layers,
+          {"layer has more material that no vector reaches than the strategy accepts;",
+           "layers have more material that no vector reaches than the strategy accepts;"}}}};
 }
 
 void tell_row(std::uint32_t number, const ContourRow& row, std::vector<std::string>& findings) {
@@ -529,8 +594,15 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
     // What is asked of contours goes by the part. A mesh of several does not tell these apart.
     const std::vector<Group> of_parts = options.strategy ? groups_of(parts, false) : std::vector<Group>();
     VectorVerification result;
-    if (groups.empty())
+    const auto check_number = [&] {
+        result.none = options.strategy && result.contour_vectors + result.hatch_vectors == 0;
+        if (result.none)
+            result.findings.emplace_back("there are no scan vectors, and the strategy makes some");
+    };
+    if (groups.empty()) {
+        check_number();
         return result;
+    }
     const LayerStack& planes = groups.front().exposures.front()->layers;
     result.layers = planes.size();
     std::vector<std::vector<Layer>> sections;
@@ -593,7 +665,9 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         result.unbounded += check.unbounded;
         covered_mm2 += check.covered_mm2;
         filled_mm2 += check.filled_mm2;
+        result.unreached_mm2 += check.unreached_mm2;
     }
+    check_number();
     if (options.strategy && filled_mm2 > 0)
         result.cover = covered_mm2 / filled_mm2;
     for (const auto& row : rows) {

@@ -22,13 +22,23 @@ struct HatchArea {
     std::vector<const Layer*> without = {}; ///< nothing of these
 };
 
-/// Of the lines of a layer: islands have lines in two or three directions. Line k of each lies at v = k *
-/// distance in the LineFrame of its angle.
+/// Of the lines of a layer: islands have lines in two or three directions. Line k of each lies at v = (k +
+/// `line_phase`) * distance in the LineFrame of its angle.
 [[nodiscard]] std::vector<CosSin> line_angles(const HatchRule& rule, std::uint64_t layer);
+/// Squares begin half a distance before their first line, so that those that are a whole number of lines wide
+/// meet without a gap and without an overlap.
+[[nodiscard]] double line_phase(HatchPattern pattern) noexcept;
 
 /// Two points each, as Layer::hatches. The index of `within` says how far the lines are turned, and with the
 /// seed in which order islands come. Throws what HatchLines throws, and Error{limit} for more than 2^28
-/// stripes or islands in a row, or lines longer than 2^26 cells.
-[[nodiscard]] PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed);
+/// stripes or islands in a row, or lines longer than 2^26 cells. `bare`, where given, becomes whether there
+/// may be places that are narrower than `surely_hatched` and have no line within its distance: pieces that
+/// are too short have no lines, and strips may lie between two. What would be a few squares of half the
+/// distance in all does not count.
+[[nodiscard]] PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed,
+                               bool* bare = nullptr);
+
+/// How wide material is that has a line wherever lines come to lie.
+[[nodiscard]] double surely_hatched(const HatchRule& rule) noexcept;
 
 } // namespace lamella

@@ -52,8 +52,8 @@ void sort_ends(std::span<double> ends) {
 // meets each line an even number of times, whatever rounding makes of the ranks, and lines through vertices
 // and along edges need no care.
 
-HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance)
-    : frame_{angle}, distance_(distance) {
+HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double phase)
+    : frame_{angle}, distance_(distance), phase_(phase) {
     assert(distance > 0);
     const std::span<const Point2> all = layer.points.span().first(layer.offsets[layer.rings]);
     if (all.empty())
@@ -67,8 +67,9 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance)
         least = std::min(least, points[i].v);
         most = std::max(most, points[i].v);
     }
-    const double below = std::ceil(least / distance); // the first line, or one on which the lowest point lies
-    const double lines = std::ceil(most / distance) - below;
+    const double below =
+        std::ceil(least / distance - phase); // the first line, or one on which the lowest point lies
+    const double lines = std::ceil(most / distance - phase) - below;
     if (!(std::abs(below) < 0x1p52 && lines <= static_cast<double>(most_lines)))
         throw Error(
             ErrorKind::limit,
@@ -76,7 +77,7 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance)
                         layer.index, distance, most - least));
     first_ = static_cast<std::int64_t>(below);
     for (RankedPoint& p : points)
-        p.rank = static_cast<std::int32_t>(rounded_up(p.v / distance) - first_);
+        p.rank = static_cast<std::int32_t>(rounded_up(p.v / distance - phase) - first_);
 
     // Count, sum up, put: each edge into the lines that it meets.
     const auto for_edges = [&](const auto& visit) {
@@ -137,7 +138,7 @@ void HatchLines::subtract(const HatchLines& others) {
 /// What lies inside of the others, or outside. Ends in one place count together, so that no piece is a point.
 template <bool inside>
 void HatchLines::keep(const HatchLines& others) {
-    assert(distance_ == others.distance_);
+    assert(distance_ == others.distance_ && phase_ == others.phase_);
     std::vector<double> kept;
     kept.reserve(ends_.size());
     for (std::size_t i = 0; i < size(); ++i) {

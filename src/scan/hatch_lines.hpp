@@ -25,23 +25,26 @@ struct LineFrame {
     }
 };
 
-/// The lines that run through a layer. Line k of all lies at v = k * distance.
+/// The lines that run through a layer. Line k of all lies at v = (k + phase) * distance.
 class HatchLines {
   public:
     /// `layer`: rings that bound material, none of which cross. Throws Error{limit} for more than 2^26 lines
     /// or ends. O(points + ends), and sorting the ends of each line.
-    HatchLines(const Layer& layer, CosSin angle, double distance);
+    HatchLines(const Layer& layer, CosSin angle, double distance, double phase = 0);
 
-    /// Leaves of each line what is on others, too, or what is not. These have the same angle and distance.
+    /// Leaves of each line what is on others, too, or what is not. These have the same angle, distance and
+    /// phase.
     /// O(lines + ends).
     void intersect(const HatchLines& others);
     void subtract(const HatchLines& others);
 
     [[nodiscard]] const LineFrame& frame() const noexcept { return frame_; }
     [[nodiscard]] std::size_t size() const noexcept { return begins_.size() - 1; }
+    /// The number among all lines of line 0 of these.
+    [[nodiscard]] std::int64_t first() const noexcept { return first_; }
     /// Where line i, from 0, lies.
     [[nodiscard]] double v(std::size_t i) const noexcept {
-        return static_cast<double>(first_ + static_cast<std::int64_t>(i)) * distance_;
+        return (static_cast<double>(first_ + static_cast<std::int64_t>(i)) + phase_) * distance_;
     }
     /// Whether its number among all lines is odd.
     [[nodiscard]] bool odd(std::size_t i) const noexcept {
@@ -60,6 +63,7 @@ class HatchLines {
 
     LineFrame frame_;
     double distance_;
+    double phase_;
     std::int64_t first_ = 0;
     std::vector<std::uint32_t> begins_{0}; ///< of the ends of each line, and one past the last
     std::vector<double> ends_;

@@ -1,6 +1,7 @@
 #include "lamella/scan/scan.hpp"
 
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/offset.hpp"
 
@@ -9,8 +10,10 @@
 #include "polygon/straight_points.hpp"
 #include "scan/contours.hpp"
 #include "scan/hatch.hpp"
+#include "scan/middle_lines.hpp"
 #include "scan/skin.hpp"
 #include "scan/support.hpp"
+#include "scan/unreached.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -54,17 +57,37 @@ std::vector<double> distances_of(const ScanStrategy& strategy) {
 
 /// The material of a layer, moved inwards by several distances; each is computed once.
 struct ScanMemory::Insets {
-    Insets(Layer of, std::vector<double> by)
-        : layer(std::move(of)), distances(std::move(by)), moved(offsets(layer, distances, {}, &thin_rings)) {
+    Insets(Layer of, const ScanStrategy& strategy, std::vector<double> by)
+        : layer(std::move(of)), distances(std::move(by)), contours(strategy.contours),
+          filled(hatch_depth(contours, strategy.hatch)), moved(offsets(layer, distances)) {
         for (std::size_t i = 0; i < distances.size(); ++i)
             if (distances[i] == 0) // not looked at, and without its straight points rings may meet again
                 moved[i] = united(layer);
+        double depth = 0;
+        const auto step_to = [&](double next) {
+            narrow.push_back(narrow_places(depth == 0 ? layer : at(depth), at(next), next - depth));
+            depth = next;
+        };
+        for (std::uint32_t i = 1; i <= contours.count; ++i)
+            step_to(contour_depth(contours, i));
+        step_to(filled);
+        if (contours.thin_walls == ThinWalls::line)
+            for (std::uint32_t i = 0; i < contours.count; ++i)
+                lines.push_back(i == 0 ? middle_lines(narrow[i], 2 * contours.beam_offset, contours.thinnest)
+                                       : middle_lines(narrow[i], 2 * contours.distance,
+                                                      2 * contour_reach(contours) + contours.thinnest / 2));
+        lines.resize(contours.count);
     }
 
     /// Whether these are those of another layer, too.
-    [[nodiscard]] bool fit(const Layer& other, std::span<const double> by) const {
-        return same_contours(layer, other) &&
-               std::equal(distances.begin(), distances.end(), by.begin(), by.end());
+    [[nodiscard]] bool fit(const Layer& other, const ScanStrategy& strategy,
+                           std::span<const double> by) const {
+        const ContourRule& rule = strategy.contours;
+        return same_contours(layer, other) && filled == hatch_depth(rule, strategy.hatch) &&
+               std::equal(distances.begin(), distances.end(), by.begin(), by.end()) &&
+               contours.count == rule.count && contours.beam_offset == rule.beam_offset &&
+               contours.distance == rule.distance && contours.thin_walls == rule.thin_walls &&
+               contours.thinnest == rule.thinnest;
     }
     [[nodiscard]] const Layer& at(double depth) const {
         const auto found = std::find(distances.begin(), distances.end(), -depth);
@@ -74,8 +97,15 @@ struct ScanMemory::Insets {
 
     Layer layer;
     std::vector<double> distances;
-    std::uint64_t thin_rings = 0; ///< that nothing is left of by the least of them
+    ContourRule contours;
+    double filled; ///< from which depth on, by the hatch of the core
     std::vector<Layer> moved;
+    /// What is too narrow for each contour, from the outermost one on, and has room for those before it; then
+    /// for the hatch of the core.
+    std::vector<Layer> narrow;
+    /// For each contour those along the middle of what is too narrow for it, and is not reached by those
+    /// before it.
+    std::vector<std::vector<std::vector<Point2>>> lines;
 };
 
 std::shared_ptr<const ScanMemory::Insets> ScanMemory::last() const {
@@ -94,12 +124,56 @@ std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const Sc
                                                     ScanMemory* memory) {
     std::vector<double> distances = distances_of(strategy);
     if (memory != nullptr)
-        if (auto last = memory->last(); last && last->fit(layer, distances))
+        if (auto last = memory->last(); last && last->fit(layer, strategy, distances))
             return last;
-    auto insets = std::make_shared<const ScanMemory::Insets>(layer, std::move(distances));
+    auto insets = std::make_shared<const ScanMemory::Insets>(layer, strategy, std::move(distances));
     if (memory != nullptr)
         memory->keep(insets);
     return insets;
+}
+
+const HatchRule& hatch_of(const ScanStrategy& strategy, ScanRegion region) noexcept {
+    return region == ScanRegion::downskin ? strategy.downskin.hatch
+           : region == ScanRegion::upskin ? strategy.upskin.hatch
+                                          : strategy.hatch;
+}
+
+/// Two points for each piece.
+PointArray pieces_of(const std::vector<std::vector<Point2>>& lines) {
+    std::vector<Point2> pieces;
+    for (const std::vector<Point2>& line : lines)
+        for (std::size_t i = 1; i < line.size(); ++i) {
+            pieces.push_back(line[i - 1]);
+            pieces.push_back(line[i]);
+        }
+    return PointArray(std::move(pieces));
+}
+
+/// All vectors of a layer, by its exposures.
+std::vector<Stroke> strokes_of(const std::vector<Layer>& vectors, std::span<const Exposure> all,
+                               const ScanStrategy& strategy) {
+    std::vector<Stroke> strokes;
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        add_strokes(vectors[i],
+                    all[i].kind == VectorKind::hatch ? hatch_of(strategy, all[i].region).distance
+                                                     : contour_reach(strategy.contours),
+                    strokes);
+    return strokes;
+}
+
+/// What of some places is of a region: of what is both, downskin counts.
+Layer in_region(const Layer& places, ScanRegion region, const Skin& downskin, const Skin& upskin) {
+    const auto cut = [](const Layer& layer, const Skin& skin, bool inside) {
+        if (skin.whole())
+            return inside ? layer : Layer{};
+        if (skin.area().rings == 0)
+            return inside ? Layer{} : layer;
+        return combine(layer, skin.area(), inside ? BooleanOperation::intersect : BooleanOperation::subtract);
+    };
+    if (region == ScanRegion::downskin)
+        return cut(places, downskin, true);
+    const Layer rest = cut(places, downskin, false);
+    return cut(rest, upskin, region == ScanRegion::upskin);
 }
 
 } // namespace
@@ -119,21 +193,17 @@ void ScanLayer::share_points(const ScanLayer& other) {
 
 std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
                         std::span<const ScanLayer> above, const ScanStrategy& strategy, ScanMemory* memory,
-                        std::uint64_t* thin_rings) {
+                        std::vector<double>* unreached) {
     check_strategy(strategy);
     const Layer& layer = scanned.layer();
     const auto insets = insets_of(layer, strategy, memory);
-    if (thin_rings != nullptr)
-        *thin_rings = insets->thin_rings;
     const Skin downskin(scanned, below, strategy.downskin);
     const Skin upskin(scanned, above, strategy.upskin);
     const auto inset = [&](double depth) {
         return with_head_of(layer, insets->at(depth));
     };
-    const auto hatched = [&](ScanRegion region) {
-        const HatchRule& rule = region == ScanRegion::downskin ? strategy.downskin.hatch
-                                : region == ScanRegion::upskin ? strategy.upskin.hatch
-                                                               : strategy.hatch;
+    const auto hatched = [&](ScanRegion region, bool& bare) {
+        const HatchRule& rule = hatch_of(strategy, region);
         const Skin* const own = region == ScanRegion::downskin ? &downskin
                                 : region == ScanRegion::upskin ? &upskin
                                                                : nullptr;
@@ -152,26 +222,55 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
             if (other->area().rings > 0)
                 area.without.push_back(&other->area());
         }
-        return hatch(area, rule, strategy.seed);
+        return hatch(area, rule, strategy.seed, &bare);
     };
+    const std::vector<Exposure> all = exposures(strategy, {});
     std::vector<Layer> result;
-    for (const Exposure& exposure : exposures(strategy, {})) {
+    std::vector<Layer> bare(all.size()); // places that each exposure may not reach
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const Exposure& exposure = all[i];
         if (exposure.kind == VectorKind::contour) {
             const Layer rings = inset(contour_depth(strategy.contours, exposure.contour));
             result.push_back(followed(rings, strategy.contours, exposure.contour, strategy.seed));
-        } else {
-            result.push_back(with_head_of(layer, {}));
-            result.back().hatches = hatched(exposure.region);
+            result.back().hatches = pieces_of(insets->lines[exposure.contour - 1]);
+            bare[i] = insets->narrow[exposure.contour - 1];
+            continue;
         }
+        bool may_be_bare = false;
+        result.push_back(with_head_of(layer, {}));
+        result.back().hatches = hatched(exposure.region, may_be_bare);
+        if (unreached == nullptr)
+            continue;
+        Layer places = insets->narrow.back();
+        if (may_be_bare) {
+            const HatchRule& rule = hatch_of(strategy, exposure.region);
+            const Layer& within = insets->at(hatch_depth(strategy.contours, rule));
+            const double half = surely_hatched(rule) / 2;
+            places =
+                combine(places, narrow_places(within, offset(within, -half), half), BooleanOperation::unite);
+        }
+        if (places.rings > 0)
+            bare[i] = in_region(places, exposure.region, downskin, upskin);
+    }
+    if (unreached == nullptr)
+        return result;
+    unreached->assign(all.size(), 0);
+    std::vector<Stroke> strokes;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        if (bare[i].rings == 0)
+            continue;
+        if (strokes.empty())
+            strokes = strokes_of(result, all, strategy);
+        (*unreached)[i] = unreached_area(bare[i], strokes);
     }
     return result;
 }
 
 // What is left of a part without skins, by other rules.
 std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy, ScanMemory* memory,
-                                std::uint64_t* thin_rings) {
+                                std::vector<double>* unreached) {
     check_strategy(strategy); // so that errors name fields of supports
-    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), memory, thin_rings);
+    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), memory, unreached);
 }
 
 } // namespace lamella

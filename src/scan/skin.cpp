@@ -117,26 +117,28 @@ constexpr double spread = 0.01;
 /// So many neighbours at once: the rings of these cross one another, too, those of each pair.
 constexpr std::size_t most_at_once = 4;
 
-/// What is left of a layer without what all its neighbours have, grown.
+/// What is left of a layer without what all its neighbours have, where it is at least `narrowest` wide,
+/// shrunk by half of that.
 ///
 /// Not what the layer has and the intersection of its neighbours has not: walls of a prism have their corners
 /// in the same places on all layers, and others where edges slant across them, so its layers are the same but
-/// for roundings. What a neighbour has is grown before it is taken away, each one by a little more than the
-/// one before it, and what is left is grown by as much as the first one. So such rings do not meet at all,
-/// which takes a fraction of the time, and no slivers are left.
+/// for roundings. The layer is shrunk and what a neighbour has is grown before it is taken away, each one by
+/// a little more than the one before it: that is what the difference becomes when it is shrunk. So such rings
+/// do not meet at all, which takes a fraction of the time, and no slivers are left. The layer is shrunk by a
+/// little less, so that grown again, skin reaches beyond its outline: on it no slivers are left either.
 ///
-/// Rings alongside each other wind around a place alike, unless it lies between them, and then it is covered
-/// by what is grown. So whatever is left lies within rings that have none alongside, and only what is near to
-/// these is looked at.
-Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double grown) {
+/// Rings alongside each other wind around a place alike, unless it lies between them, and then it is nearer
+/// than half of `narrowest` to one of them. So whatever is left lies within rings that have none alongside,
+/// and only what is near to these is looked at.
+Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double narrowest) {
     const auto count = static_cast<double>(neighbours.size());
-    const double reach = grown * (1 + spread) * OffsetCorners{}.mitre_limit;
+    const double reach = narrowest * (1 + spread) * OffsetCorners{}.mitre_limit;
     std::vector<Differing> different;
     std::vector<bool> chosen(layer.rings);
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
         if (same_contours(layer, neighbours[k].layer()))
             continue;
-        std::vector<std::uint32_t> partners = rings_alongside(layer, neighbours[k].layer(), grown);
+        std::vector<std::uint32_t> partners = rings_alongside(layer, neighbours[k].layer(), narrowest);
         const std::vector<bool> counts = differing(layer, neighbours[k].layer(), partners, reach);
         if (counts.empty())
             continue;
@@ -144,7 +146,8 @@ Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double 
         for (std::size_t i = 0; i < layer.rings; ++i)
             chosen[i] = chosen[i] || counts[i];
     }
-    const Layer own = rings_of(layer, [&](std::size_t i) { return chosen[i]; });
+    const Layer own =
+        offset(rings_of(layer, [&](std::size_t i) { return chosen[i]; }), -narrowest / 2 * (1 - spread));
     if (own.rings == 0)
         return {};
     Layer open;
@@ -156,8 +159,9 @@ Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double 
         for (std::size_t i = 0; i < layer.rings; ++i)
             if (neighbour.partners[i] != no_ring && !chosen[i])
                 left_out[neighbour.partners[i]] = true;
-        others.push_back(offset(rings_of(other, [&](std::size_t j) { return !left_out[j]; }),
-                                grown * (1 + spread * static_cast<double>(neighbour.number) / count)));
+        others.push_back(
+            offset(rings_of(other, [&](std::size_t j) { return !left_out[j]; }),
+                   narrowest / 2 * (1 + spread * static_cast<double>(neighbour.number) / count)));
         if (others.size() < most_at_once && d + 1 < different.size())
             continue;
         const Layer more = subtract_common(own, others);
@@ -194,7 +198,8 @@ Skin::Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const 
     const Layer open = open_of(layer.layer(), neighbours, rule.narrowest);
     if (open.rings == 0)
         return;
-    std::vector<Layer> moved = offsets(open, std::array{rule.narrowest, rule.narrowest + rule.overlap});
+    std::vector<Layer> moved =
+        offsets(open, std::array{rule.narrowest / 2, rule.narrowest / 2 + rule.overlap});
     area_ = std::move(moved[0]);
     with_overlap_ = std::move(moved[1]);
 }

@@ -74,6 +74,7 @@ void check(std::string_view rule, const ContourRule& contours) {
     check_not_negative(rule, "beam_offset", contours.beam_offset);
     check_positive(rule, "distance", contours.distance);
     check_finite(rule, "start_direction_degrees", contours.start_direction_degrees);
+    check_not_negative(rule, "thinnest", contours.thinnest);
     check(rule, contours.parameters);
 }
 
@@ -121,6 +122,10 @@ std::string_view contour_order_name(ContourOrder order) noexcept {
     return order == ContourOrder::inside_out ? "inside-out" : "outside-in";
 }
 
+std::string_view thin_walls_name(ThinWalls walls) noexcept {
+    return walls == ThinWalls::line ? "line" : "leave out";
+}
+
 double contour_depth(const ContourRule& rule, std::uint32_t number) noexcept {
     return rule.beam_offset + (number - 1) * rule.distance;
 }
@@ -136,6 +141,9 @@ void check_strategy(const ScanStrategy& strategy) {
     check("downskin", strategy.downskin);
     check("support.contours", strategy.support.contours);
     check("support.hatch", strategy.support.hatch);
+    if (!(strategy.accepted_mm2 >= 0 && std::isfinite(strategy.accepted_mm2)))
+        throw Error(ErrorKind::usage,
+                    fmt::format("`accepted_mm2` is {:g}, but has to be 0 or more", strategy.accepted_mm2));
 }
 
 std::vector<Exposure> exposures(const ScanStrategy& strategy, const std::string& part) {

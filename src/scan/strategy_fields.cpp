@@ -7,7 +7,7 @@ namespace lamella {
 // Quiet about presets: whoever prints them takes them from a strategy.
 
 std::span<const StrategyField<ContourRule>> contour_fields() noexcept {
-    static constexpr std::array<StrategyField<ContourRule>, 7> fields{
+    static constexpr std::array<StrategyField<ContourRule>, 9> fields{
         {{"count", "", "how many contours; 0 leaves them out", &ContourRule::count},
          {"beam_offset", "mm", "from the outline of the part inwards to the outermost contour",
           &ContourRule::beam_offset},
@@ -16,7 +16,10 @@ std::span<const StrategyField<ContourRule>> contour_fields() noexcept {
          {"before_hatch", "", "contours before the hatch instead of after it", &ContourRule::before_hatch},
          {"start", "", "where the beam begins to follow a contour", &ContourRule::start},
          {"start_direction_degrees", "degrees", "of an aligned start: the corner that is farthest this way",
-          &ContourRule::start_direction_degrees}}};
+          &ContourRule::start_direction_degrees},
+         {"thin_walls", "", "what becomes of walls thinner than twice the beam offset",
+          &ContourRule::thin_walls},
+         {"thinnest", "mm", "thinner walls have no line either", &ContourRule::thinnest}}};
     return fields;
 }
 
@@ -59,8 +62,11 @@ std::span<const StrategyField<ParameterSet>> parameter_fields() noexcept {
 }
 
 std::span<const StrategyField<ScanStrategy>> strategy_fields() noexcept {
-    static constexpr std::array<StrategyField<ScanStrategy>, 1> fields{
-        {{"seed", "", "of all that is drawn by lot: random orders and starts", &ScanStrategy::seed}}};
+    static constexpr std::array<StrategyField<ScanStrategy>, 2> fields{
+        {{"seed", "", "of all that is drawn by lot: random orders and starts", &ScanStrategy::seed},
+         {"accepted_mm2", "mm2",
+          "more of a layer that no vector reaches is a warning, with --strict an error",
+          &ScanStrategy::accepted_mm2}}};
     return fields;
 }
 
@@ -83,6 +89,11 @@ NamedValues<StartPoint> named_values(StartPoint) noexcept {
 NamedValues<ContourOrder> named_values(ContourOrder) noexcept {
     static constexpr std::array values{ContourOrder::inside_out, ContourOrder::outside_in};
     return {values, contour_order_name};
+}
+
+NamedValues<ThinWalls> named_values(ThinWalls) noexcept {
+    static constexpr std::array values{ThinWalls::line, ThinWalls::leave_out};
+    return {values, thin_walls_name};
 }
 
 } // namespace lamella

@@ -101,9 +101,7 @@ class Scan(ProgramTest):
         """What writing a job of so many parts says of the parameters that its format has no place for."""
         if name.endswith((".json", ".cli")):
             return self.without_parameters(name, parts)
-        lost = {"ilt": "jump speeds, delays and spot sizes", "ovf": "spot sizes"}.get(name.rpartition(".")[2])
-        return "" if lost is None else (f"lamella: warning: {name}: {lost} were left out for {parts} exposures: "
-                                        "the format cannot store them\n")
+        return ""
 
     def test_powers_and_speeds_are_not_lost_in_silence(self):
         slicing = ["slice", "part.stl", "--layer-height", "1", "--scan"]
@@ -339,24 +337,58 @@ class Scan(ProgramTest):
         self.succeed("slice", "open.stl", "-o", "open.json", "--layer-height", "1")
         self.assertRegex(self.succeed("scan", "open.json", "-o", "open.cli").err, "5 open contours left out")
 
-    def test_walls_that_are_too_thin_are_counted(self):
+    def test_material_that_no_vector_reaches_is_measured(self):
         self.write("wall.stl", binary_stl(box_triangles(0.08, 6, 4)))
+        self.write("none.toml", '[contours]\nthin_walls = "leave out"\n')
         slicing = ["slice", "part.stl", "wall.stl", "--translate", "20,0,0", "--layer-height", "1"]
-        thin = "4 rings on 4 layers, the lowest at z = 0.5 mm, are thinner than the beam's offsets: they have no vectors"
-        result = self.succeed(*slicing, "--scan", "-o", "job.json", "--stats", "stats.json")
-        self.assertIn(f"lamella: warning: part.stl: {thin}\n", result.err)
-        scan = json.loads(self.bytes_of("stats.json"))["scan"]
-        self.assertEqual((scan["thin_rings"], scan["thin_layers"]), (4, 4))
-        self.fail_with(4, thin, *slicing, "--scan", "-o", "x.ilt", "--strict")
+        leaving = ["--strategy", "none.toml"]
+        thin = r"1\.92 mm2 of material on 4 layers, the lowest at z = 0\.5 mm, are reached by no vector: it is too narrow .*; accepted_mm2 of the strategy says"
+        result = self.succeed(*slicing, *leaving, "-o", "job.json", "--stats", "stats.json")
+        self.assertRegex(result.err, f"lamella: warning: part.stl: {thin}")
+        self.assertRegex(result.text, r"(?m)^scan .*, 1\.92 mm2 not reached$")
+        stats = json.loads(self.bytes_of("stats.json"))
+        self.assertAlmostEqual(stats["scan"]["unreached_mm2"], 1.92, places=4)
+        self.assertEqual(stats["scan"]["unreached_layers"], 4)
+        for layer in stats["layers"]:
+            self.assertAlmostEqual(layer["scan"]["unreached_mm2"], 0.48, places=4)
+        self.fail_with(4, thin, *slicing, *leaving, "-o", "x.ilt", "--strict")
         self.succeed(*slicing, "-o", "layers.npz")
-        result = self.succeed("scan", "layers.npz", "-o", "again.json", "--stats", "stats.json")
-        self.assertIn(f"layers.npz: {thin}", result.err)
-        self.assertEqual(json.loads(self.bytes_of("stats.json"))["scan"]["thin_rings"], 4)
-        self.fail_with(4, thin, "scan", "layers.npz", "-o", "x.ilt", "--strict")
+        result = self.succeed("scan", "layers.npz", "-o", "again.json", "--stats", "stats.json", *leaving)
+        self.assertRegex(result.err, f"layers.npz: {thin}")
+        self.assertAlmostEqual(json.loads(self.bytes_of("stats.json"))["scan"]["unreached_mm2"], 1.92, places=4)
+        self.fail_with(4, thin, "scan", "layers.npz", "-o", "x.ilt", "--strict", *leaving)
+        self.write("more.toml", 'accepted_mm2 = 0.5\n[contours]\nthin_walls = "leave out"\n')
+        self.succeed(*slicing, "--strategy", "more.toml", "-o", "y.ilt", "--strict")
         self.path("parts").mkdir()
-        self.path("wall.stl").rename(self.path("parts/wall.stl"))
-        record = self.succeed("slice", "--batch", "parts", "-o", "out", "--format", "ilt", "--layer-height", "1", "--scan").json()
-        self.assertEqual(len([warning for warning in record["warnings"] if thin in warning]), 1)
+        self.write("parts/wall.stl", self.bytes_of("wall.stl"))
+        record = self.succeed("slice", "--batch", "parts", "-o", "out", "--format", "ilt", "--layer-height", "1", *leaving).json()
+        self.assertEqual(len([warning for warning in record["warnings"] if "reached by no vector" in warning]), 1)
+
+    def test_a_thin_wall_has_a_line_in_every_format_of_jobs(self):
+        self.write("wall.stl", binary_stl(box_triangles(0.08, 6, 4)))
+        self.succeed("slice", "wall.stl", "--layer-height", "1", "--scan", "--stats", "stats.json", "-o", "job.json")
+        scan = json.loads(self.bytes_of("stats.json"))["scan"]
+        self.assertEqual((scan["contour_vectors"], scan["hatch_vectors"], scan["unreached_layers"]), (4, 0, 0))
+        self.assertAlmostEqual(scan["marked_mm"], 4 * 5.92, delta=0.1)
+        for name in ("job.cli", "job.ilt", "job.ovf", "job.build.3mf", "job.json", "job.npz"):
+            format = ["--format", "3mf-toolpath"] if name.endswith("3mf") else []
+            self.succeed("slice", "wall.stl", "--layer-height", "1", "--scan", "-o", name, *format)
+            self.assertIn("ok", self.succeed("verify", name, "--mesh", "wall.stl", "--scan").text)
+            self.succeed("convert", name, "back.json")
+            for layer in json.loads(self.bytes_of("back.json"))["layers"]:
+                vectors = [part for part in layer["parts"] if part.get("hatches")]
+                self.assertEqual([len(part["hatches"]) for part in vectors], [4], name)
+
+    def test_strict_succeeds_where_formats_lose_nothing_that_somebody_chose(self):
+        slicing = ["slice", "part.stl", "--layer-height", "1", "--strict"]
+        self.write("own.toml", "[parameters.hatch]\nspot_mm = 0.1\njump_speed_mm_s = 4000\n")
+        for name, keeps in (("job.ilt", []), ("job.ovf", []), ("job.build.3mf", ["--format", "3mf-toolpath"])):
+            self.assertEqual(self.succeed(*slicing, "--scan", "-o", name, *keeps).err, "")
+        self.fail_with(4, "jump speeds, delays and spot sizes were left out for 1 exposure", *slicing, "--strategy", "own.toml", "-o", "x.ilt")
+        self.fail_with(4, "spot sizes were left out for 1 exposure", *slicing, "--strategy", "own.toml", "-o", "x.ovf")
+        self.succeed(*slicing, "--strategy", "own.toml", "-o", "x.build.3mf", "--format", "3mf-toolpath")
+        for name in ("x.cli", "x.json", "x.npz"):
+            self.fail_with(4, "power and speed, were left out", *slicing, "--scan", "-o", name)
 
     def test_layers_that_are_inside_out_are_told(self):
         self.write("inverted.stl", binary_stl([t[::-1] for t in box_triangles(5, 5, 3)]))

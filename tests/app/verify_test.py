@@ -3,7 +3,7 @@
 import json
 import math
 
-from program import ProgramTest, binary_stl, main
+from program import ProgramTest, binary_stl, box_triangles, main
 
 KEYS = ["path", "ok", "warnings", "layers", "contours", "open_chains", "crossings", "misoriented", "overlapping",
         "volume_mm3", "max_area_error_mm2", "displaced", "height_overlaps", "hatches", "heights", "findings",
@@ -182,7 +182,17 @@ class Vectors(ProgramTest):
 
     def test_layers_know_no_strategy(self):
         self.succeed("slice", "rook.stl", "--layer-height", "1", "-o", "rook.cli")
-        self.fail_with(2, r"rook\.cli: holds no scan vectors", "verify", "rook.cli", "--contours", "2")
+        result = self.run_program("verify", "rook.cli", "--contours", "2")
+        self.assertEqual(result.code, 4)
+        self.assertRegex(result.err, r"rook\.cli: the check failed")
+        self.assertIn("there are no scan vectors, and the strategy makes some", result.text)
+
+    def test_a_job_without_vectors_has_one_exit_code(self):
+        self.write("hair.stl", binary_stl(box_triangles(0.01, 6, 4)))
+        for name in ("hair.cli", "hair.ilt", "hair.ovf", "hair.build.3mf", "hair.json", "hair.npz"):
+            format = ["--format", "3mf-toolpath"] if name.endswith("3mf") else []
+            self.succeed("slice", "hair.stl", "--layer-height", "1", "--scan", "-o", name, *format)
+            self.assertEqual(self.run_program("verify", name, "--scan").code, 4, name)
 
 
 class Verify(ProgramTest):

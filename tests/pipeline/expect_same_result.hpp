@@ -84,9 +84,9 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
         EXPECT_EQ(one.near_faces[i].area_mm2, other.near_faces[i].area_mm2);
         EXPECT_EQ(one.near_faces[i].farthest_mm, other.near_faces[i].farthest_mm);
     }
-    EXPECT_EQ(one.thin.rings, other.thin.rings);
-    EXPECT_EQ(one.thin.layers, other.thin.layers);
-    EXPECT_EQ(one.thin.first_z, other.thin.first_z);
+    EXPECT_EQ(one.unreached.area_mm2, other.unreached.area_mm2);
+    EXPECT_EQ(one.unreached.layers, other.unreached.layers);
+    EXPECT_EQ(one.unreached.first_z, other.unreached.first_z);
     expect_same(one.doubts.open_gaps, other.doubts.open_gaps);
     EXPECT_EQ(one.gaps.closed, other.gaps.closed);
     EXPECT_EQ(one.gaps.longest_mm, other.gaps.longest_mm);

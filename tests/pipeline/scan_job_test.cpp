@@ -191,17 +191,24 @@ TEST_F(ScanJob, HasTheSameBytesInShards) {
         EXPECT_EQ(merged_shards(scanned, count), content("whole.cli"));
 }
 
-TEST_F(ScanJob, CountsRingsThatAreTooThinForVectors) {
+TEST_F(ScanJob, MeasuresMaterialThatNoVectorReaches) {
     FileJob scanned = job("job.cli"); // the outermost contour is at 0.05
     write_stl(path("wall.stl"), make_box(0.08, 10, 2));
     scanned.inputs.push_back({.path = path("wall.stl"), .placement = translation(30, 0, -2)});
+    EXPECT_EQ(slice_file(scanned).unreached.layers, 0U) << "a line along its middle";
+    scanned.scan->contours.thin_walls = ThinWalls::leave_out;
     const FileResult one = slice_file(scanned, {.threads = 1});
-    EXPECT_EQ(one.thin.rings, 4U);
-    EXPECT_EQ(one.thin.layers, 4U);
-    EXPECT_GT(one.thin.first_z, -2);
-    EXPECT_LT(one.thin.first_z, -1.5); // the lowest plane of the wall
-    EXPECT_TRUE(one.thin.text().starts_with("4 rings on 4 layers, the lowest at z = -1.7"))
-        << one.thin.text();
+    EXPECT_NEAR(one.unreached.area_mm2, 4 * 0.8, 1e-5);
+    EXPECT_EQ(one.unreached.layers, 4U);
+    EXPECT_GT(one.unreached.first_z, -2);
+    EXPECT_LT(one.unreached.first_z, -1.5); // the lowest plane of the wall
+    EXPECT_TRUE(one.unreached.text().starts_with("3.2 mm2 of material on 4 layers, the lowest at z = -1.7"))
+        << one.unreached.text();
+    double of_contours = 0;
+    for (const ExposureResult& all : one.exposures)
+        if (all.exposure.contour == 1)
+            of_contours = all.figures.unreached_mm2;
+    EXPECT_NEAR(of_contours, 3.2, 1e-5);
     test::expect_same(one, slice_file(scanned, {.threads = 4}));
     for (const FileResult& many : test::slice_by(3, scanned))
         test::expect_same(one, many);
@@ -209,7 +216,7 @@ TEST_F(ScanJob, CountsRingsThatAreTooThinForVectors) {
     for (const std::uint32_t number : {1U, 2U, 3U}) {
         FileJob shard = scanned;
         shard.shard = Shard{number, 3};
-        of_shards += slice_file(shard).thin.rings;
+        of_shards += slice_file(shard).unreached.layers;
     }
     EXPECT_EQ(of_shards, 4U);
 
@@ -225,13 +232,35 @@ TEST_F(ScanJob, CountsRingsThatAreTooThinForVectors) {
     }
     const ScanResult of_layers =
         scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, {}, info, *scanned.scan);
-    EXPECT_EQ(of_layers.thin.rings, 4U);
-    EXPECT_EQ(of_layers.thin.first_z, one.thin.first_z);
+    EXPECT_EQ(of_layers.unreached.layers, 4U);
+    EXPECT_EQ(of_layers.unreached.area_mm2, one.unreached.area_mm2);
+    EXPECT_EQ(of_layers.unreached.first_z, one.unreached.first_z);
+    for (std::size_t i = 0; i < one.layers.size(); ++i)
+        EXPECT_EQ(of_layers.hashes[i], one.layers[i].scan_hash);
 
     scanned.strict = true;
     EXPECT_THROW(static_cast<void>(slice_file(scanned)), Error);
+    scanned.scan->accepted_mm2 = 0.9;
+    EXPECT_EQ(slice_file(scanned).unreached.layers, 0U);
+    scanned.scan->accepted_mm2 = 0;
     scanned.inputs.pop_back();
-    EXPECT_EQ(slice_file(scanned).thin.rings, 0U);
+    EXPECT_EQ(slice_file(scanned).unreached.layers, 0U);
+}
+
+TEST_F(ScanJob, HashesSeeTheOrderOfExposuresAndOfVectors) {
+    const FileResult one = slice_file(job("one.npz"));
+    FileJob before = job("before.npz");
+    before.scan->contours.before_hatch = true;
+    FileJob random = job("random.npz");
+    random.scan->contours.start = StartPoint::random;
+    for (const FileJob& other_job : {before, random}) {
+        const FileResult other = slice_file(other_job);
+        ASSERT_EQ(other.layers.size(), one.layers.size());
+        for (std::size_t i = 1; i + 1 < one.layers.size(); ++i) {
+            EXPECT_EQ(other.layers[i].hash, one.layers[i].hash);
+            EXPECT_NE(other.layers[i].scan_hash, one.layers[i].scan_hash) << i;
+        }
+    }
 }
 
 TEST_F(ScanJob, GivesChosenLayersTheVectorsTheyHaveInTheWhole) {

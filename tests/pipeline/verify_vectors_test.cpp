@@ -279,6 +279,57 @@ TEST_F(VerifyVectors, TakesContoursThatFilesDoNotNumber) {
     EXPECT_EQ(verify_vectors(std::vector{both}).misoriented, 0U);
 }
 
+TEST_F(VerifyVectors, FindsMaterialThatNoVectorReaches) {
+    mesh_ = test::box_mesh({0, 0, 0}, {20, 0.08F, 1});
+    strategy_ = {};
+    parts_ = scanned(slice(mesh_, plan_), strategy_, "fin");
+    EXPECT_TRUE(with_all().ok());
+    EXPECT_LT(with_all().unreached_mm2, 0.01);
+    EXPECT_TRUE(with_strategy().ok());
+    change_hatches("core contour 1", 3, [](std::vector<Point2>& points) { points.clear(); });
+    const VectorVerification found = with_all();
+    EXPECT_FALSE(found.ok());
+    EXPECT_EQ(found.unreached_layers, 1U);
+    EXPECT_NEAR(found.unreached_mm2, 1.6, 0.01);
+    ASSERT_EQ(found.findings.size(), 1U);
+    EXPECT_TRUE(found.findings.front().starts_with(
+        "1 layer has more material that no vector reaches than the strategy accepts; "))
+        << found.findings.front();
+    strategy_.accepted_mm2 = 2;
+    EXPECT_TRUE(with_all().ok());
+    strategy_.contours.thin_walls = ThinWalls::leave_out; // then lines are none of a contour
+    EXPECT_GT(with_all().misplaced, 0U);
+    // Lines of thin walls may be near to the edge of the material, and not beyond.
+    strategy_ = {};
+    change_hatches("core contour 1", 4, [](std::vector<Point2>& points) { points[0].x -= 1; });
+    EXPECT_EQ(with_all().outside, 1U);
+}
+
+TEST_F(VerifyVectors, FindsThatTheMiddleOfAWallIsNotFilled) {
+    mesh_ = test::box_mesh({0, 0, 0}, {20, 0.25F, 1});
+    strategy_ = {};
+    parts_ = scanned(slice(mesh_, plan_), strategy_, "wall");
+    const VectorVerification found = with_all();
+    EXPECT_GT(found.unreached_layers, 3U);
+    EXPECT_GT(found.unreached_mm2, 0.05 * 19.8 * 3);
+    EXPECT_NEAR(with_strategy().unreached_mm2, found.unreached_mm2, 0.01)
+        << "within its contours it is known";
+    EXPECT_EQ(with_mesh().unreached_layers, 0U) << "nobody asks for any";
+}
+
+TEST_F(VerifyVectors, OfNoVectorsFails) {
+    const VectorVerification nothing = verify_vectors({}, {.strategy = strategy_});
+    EXPECT_FALSE(nothing.ok());
+    EXPECT_EQ(nothing.findings.size(), 1U);
+    EXPECT_TRUE(verify_vectors({}).ok());
+    for (LayerPart& part : parts_)
+        for (Layer& layer : part.layers) {
+            layer = {.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
+        }
+    EXPECT_FALSE(with_strategy().ok());
+    EXPECT_TRUE(with_strategy().none);
+}
+
 TEST_F(VerifyVectors, SaysWhereNothingTellsOfTheMaterial) {
     std::erase_if(parts_, [](const LayerPart& part) { return part.exposure->kind == VectorKind::contour; });
     const VectorVerification found = with_nothing();

@@ -30,11 +30,27 @@ def test_vectors_are_views_and_lines(tmp_path):
     assert figures[0].vectors == len(hatch.hatches) and figures[0].energy_j > 0
 
 
-def test_rings_that_are_too_thin_for_vectors_are_counted():
+def test_material_that_no_vector_reaches_is_measured():
     thin = lamella.Layer([[(20, 0), (20.08, 0), (20.08, 5), (20, 5)], *square(10)], 0.05, 0, 0.1)
+    strategy = lamella.ScanStrategy()
+    strategy.contours.thin_walls = strategy.support.contours.thin_walls = "leave out"
     for support in [False, True]:
-        assert [layer.thin_rings for layer in lamella.scan([square(10)], support=support)] == [0]
-        assert [layer.thin_rings for layer in lamella.scan([thin], support=support)] == [1]
+        assert [layer.unreached_mm2 for layer in lamella.scan([square(10)], support=support)] == [0]
+        (layer,) = lamella.scan([thin], strategy, support=support)
+        assert np.isclose(layer.unreached_mm2, 0.4)
+        (layer,) = lamella.scan([thin], support=support)
+        assert layer.unreached_mm2 < strategy.accepted_mm2
+        assert len(layer.layers[1].hatches) == 1
+
+
+def test_hashes_of_vectors_see_their_order():
+    hatches = [
+        layer.layers[0]
+        for pattern in ["lines", "meander", "lines"]
+        for layer in lamella.scan([square(10)], {"hatch": {"pattern": pattern}})
+    ]
+    assert hatches[0] == hatches[2] != hatches[1]
+    assert hatches[0].hash == hatches[2].hash != hatches[1].hash
 
 
 def test_what_no_vectors_are_made_of_is_told(tmp_path):
@@ -61,7 +77,7 @@ def test_what_no_vectors_are_made_of_is_told(tmp_path):
     ]
 
 
-@pytest.mark.filterwarnings("ignore:.* spots were left out")
+@pytest.mark.filterwarnings("ignore:.* spot sizes were left out")
 @pytest.mark.parametrize(
     "options, keywords",
     [

@@ -200,7 +200,6 @@ TEST(Hatch, SquaresAreHatchedOneByOneAcrossTheirNeighbours) {
     const std::vector<Vector> vectors = vectors_of(hatch(square, bare(HatchPattern::chessboard, 0.5, 5), 1));
     EXPECT_EQ(vectors.size(), 16U * 10U);
     for (std::size_t i = 0; i < vectors.size(); i += 10) {
-        // Of lines on a border counts what is above: to the left of those that run upwards.
         const auto column = [](const Vector& v) {
             return std::ceil((v.from.x + v.to.x) / 2 / 5);
         };
@@ -236,12 +235,73 @@ TEST(Hatch, IslandsAtRandomComeInAnotherOrderForEachSeedAndLayer) {
 TEST(Hatch, SixHexagonsLieAroundEachWithoutGapsOrOverlaps) {
     // A plate much larger than a hexagon: all of its lines together make its area to 1 in 1,000.
     const Layer plate = layer_of({rectangle(0, 0, 100, 100)});
-    HatchRule rule = bare(HatchPattern::hexagons, 0.01, 7);
+    HatchRule rule = bare(HatchPattern::hexagons, 0.005, 7);
     rule.angle_degrees = 13;
     EXPECT_NEAR(marked(vectors_of(hatch(plate, rule, 1))) * rule.distance, 10000, 10);
     rule.overlap = 0.7;
     const double grown = marked(vectors_of(hatch(plate, rule, 1))) * rule.distance;
     EXPECT_NEAR(grown, 10000 * 1.1 * 1.1, 250); // each a tenth wider; those at the border less
+}
+
+/// Whether a place is within half a distance of a line, and not beyond its ends.
+bool is_exposed(const std::vector<Vector>& vectors, const Point2& p, double distance) {
+    return std::any_of(vectors.begin(), vectors.end(), [&](const Vector& vector) {
+        const double length = vector.length();
+        const Point2 way{(vector.to.x - vector.from.x) / length, (vector.to.y - vector.from.y) / length};
+        const Point2 to{p.x - vector.from.x, p.y - vector.from.y};
+        const double along = to.x * way.x + to.y * way.y;
+        return -1e-6 <= along && along <= length + 1e-6 &&
+               std::abs(to.x * way.y - to.y * way.x) <= distance / 2 * (1 + 1e-6);
+    });
+}
+
+TEST(Hatch, CellsMeetWithoutAGapWhateverTheirOverlap) {
+    Random random(41);
+    const Layer square = layer_of({rectangle(-4, -4, 4, 4)});
+    for (const HatchPattern pattern :
+         {HatchPattern::stripes, HatchPattern::chessboard, HatchPattern::hexagons})
+        for (const double cell : {1.0, 1.13, 2.0})
+            for (const double overlap : {0.0, 0.01, 0.07, 0.1, 0.16, 0.3}) {
+                HatchRule rule = bare(pattern, 0.1, cell);
+                rule.shortest = 0.1;
+                rule.overlap = overlap;
+                rule.angle_degrees = random.real(0, 90);
+                const std::vector<Vector> vectors = vectors_of(hatch(square, rule, 1));
+                int bare_places = 0;
+                for (int i = 0; i < rounds_within_reason(500); ++i) // far from the edge of the material
+                    bare_places +=
+                        is_exposed(vectors, {random.real(-3.7, 3.7), random.real(-3.7, 3.7)}, 0.1) ? 0 : 1;
+                EXPECT_EQ(bare_places, 0) << hatch_pattern_name(pattern) << ' ' << cell << ' ' << overlap;
+            }
+}
+
+TEST(Hatch, SquaresOfAWholeNumberOfLinesMeetWithoutAnOverlap) {
+    for (const double cell : {1.0, 2.5, 5.0}) {
+        HatchRule rule = bare(HatchPattern::chessboard, 0.1, cell);
+        EXPECT_NEAR(marked(vectors_of(hatch(layer_of({rectangle(0, 0, 10, 10)}), rule, 1))) * 0.1, 100, 1e-6);
+        rule.overlap = 0.1;
+        rule.distance = 0.09; // as far apart as is asked for
+        for (const Vector& vector : vectors_of(hatch(layer_of({rectangle(0, 0, 10, 10)}), rule, 1))) {
+            const double across =
+                std::abs(vector.from.x - vector.to.x) < 1e-9 ? vector.from.x : vector.from.y;
+            EXPECT_NEAR(std::fmod(across / 0.09, 1), 0.5, 1e-6);
+        }
+    }
+}
+
+TEST(Hatch, WhatACellHasTooLittleOfIsExposedAllTheSame) {
+    HatchRule rule = bare(HatchPattern::chessboard, 0.1, 5);
+    rule.shortest = 0.3;
+    // Two squares of each colour end just beyond a border of the cells.
+    const Layer square = layer_of({rectangle(-0.1, -0.1, 5.1, 5.1)});
+    const std::vector<Vector> vectors = vectors_of(hatch(square, rule, 1));
+    Random random(5);
+    for (int i = 0; i < 2000; ++i) {
+        const Point2 p{random.real(0.1, 4.9), random.real(-0.1, 5.1)};
+        EXPECT_TRUE(is_exposed(vectors, p, 0.1) || is_exposed(vectors, p, 0.2)) << p.x << ' ' << p.y;
+    }
+    for (const Vector& vector : vectors)
+        EXPECT_GE(vector.length(), 0.3 - 1e-12);
 }
 
 TEST(Hatch, AnyNumberOfPointsOnALine) {

@@ -9,6 +9,7 @@
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
 #include "scan/random_layers.hpp"
+#include "scan/skin.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +18,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <vector>
@@ -78,24 +80,111 @@ TEST(Scan, GivesALayerForEachExposureWithTheHeightsOfItsOwn) {
     EXPECT_NEAR(measure(vectors[3]).perimeter_mm, 4 * (10 - 2 * 0.05), 1e-12);
 }
 
-TEST(Scan, CountsRingsThatAreTooThinForVectors) {
+double sum(const std::vector<double>& areas) {
+    return std::accumulate(areas.begin(), areas.end(), 0.0);
+}
+
+double unreached(const Layer& layer, const ScanStrategy& strategy) {
+    std::vector<double> areas;
+    static_cast<void>(scan(layer, {}, {}, strategy, nullptr, &areas));
+    return sum(areas);
+}
+
+TEST(Scan, MeasuresWhatNoVectorReaches) {
     const Layer layer = normal_layer({rectangle(0, 0, 10, 10), rectangle(12, 0, 12.09, 10)});
     ScanStrategy strategy; // the outermost contour is at 0.05
+    strategy.contours.thin_walls = ThinWalls::leave_out;
     ScanMemory memory;
-    std::uint64_t thin = 9;
-    static_cast<void>(scan(layer, {}, {}, strategy, nullptr, &thin));
-    EXPECT_EQ(thin, 1U);
+    std::vector<double> areas;
+    static_cast<void>(scan(layer, {}, {}, strategy, nullptr, &areas));
+    ASSERT_EQ(areas.size(), 2U);
+    EXPECT_EQ(areas[0], 0) << "the hatch";
+    EXPECT_NEAR(areas[1], 0.9, 1e-9) << "the contour";
     static_cast<void>(scan(layer, {}, {}, strategy, &memory));
-    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &thin));
-    EXPECT_EQ(thin, 1U) << "out of the memory, too";
+    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &areas));
+    EXPECT_NEAR(areas[1], 0.9, 1e-9) << "out of the memory, too";
     strategy.contours.beam_offset = 0.04;
-    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &thin));
-    EXPECT_EQ(thin, 0U);
+    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &areas));
+    EXPECT_EQ(sum(areas), 0);
     strategy.contours.count = 0; // the border of the hatch is at 0.05
-    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &thin));
-    EXPECT_EQ(thin, 1U);
-    static_cast<void>(scan_support(layer, strategy, nullptr, &thin));
-    EXPECT_EQ(thin, 1U);
+    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &areas));
+    EXPECT_NEAR(sum(areas), 0.9, 1e-9);
+    strategy.support.contours.thin_walls = ThinWalls::leave_out;
+    static_cast<void>(scan_support(layer, strategy, nullptr, &areas));
+    EXPECT_NEAR(sum(areas), 0.9, 1e-9);
+}
+
+TEST(Scan, ReachesAllOfWhatIsWide) {
+    for (const HatchPattern pattern : {HatchPattern::lines, HatchPattern::meander, HatchPattern::stripes,
+                                       HatchPattern::chessboard, HatchPattern::hexagons}) {
+        ScanStrategy strategy;
+        strategy.hatch.pattern = pattern;
+        for (const double overlap : {0.0, 0.1})
+            for (std::uint64_t index = 0; index < 5; ++index) {
+                strategy.hatch.overlap = overlap;
+                Layer layer =
+                    normal_layer({test::regular_polygon(200, 7), reversed(rectangle(-1, -1, 1, 1))});
+                layer.index = index;
+                EXPECT_EQ(unreached(layer, strategy), 0) << hatch_pattern_name(pattern);
+            }
+    }
+}
+
+// Between its contours 0.05 mm are left: some lines are too short there, and some directions have none.
+TEST(Scan, MeasuresWhatIsLeftInTheMiddleOfAWallWhereLinesDoNotFit) {
+    ScanStrategy strategy;
+    double least = 9;
+    double most = 0;
+    for (std::uint64_t index = 0; index < 12; ++index) {
+        Layer wall = normal_layer({rectangle(0, 0, 10, 0.25)});
+        wall.index = index;
+        const double area = unreached(wall, strategy);
+        least = std::min(least, area);
+        most = std::max(most, area);
+        if (scan(wall, {}, {}, strategy)[0].hatches.empty()) {
+            EXPECT_NEAR(area, 0.05 * 9.8, 1e-4);
+        }
+    }
+    EXPECT_LT(least, 0.01);
+    EXPECT_NEAR(most, 0.05 * 9.8, 1e-4);
+    strategy.contours.count = 2; // no second contour fits: there is a line instead
+    Layer wall = normal_layer({rectangle(0, 0, 10, 0.25)});
+    const std::vector<Layer> vectors = scan(wall, {}, {}, strategy);
+    EXPECT_EQ(vectors[1].rings, 0U);
+    EXPECT_EQ(vectors[1].hatches.size(), 2U);
+    EXPECT_LT(unreached(wall, strategy), 1e-3);
+}
+
+TEST(Scan, TellsApartOfWhichRegionItIsThatNothingReaches) {
+    ScanStrategy strategy;
+    strategy.contours.thin_walls = ThinWalls::leave_out;
+    strategy.hatch.angle_degrees = 45;
+    strategy.upskin = strategy.downskin;
+    strategy.upskin.layers = 1;
+    strategy.upskin.hatch.angle_degrees = 45;
+    strategy.hatch.shortest = strategy.upskin.hatch.shortest = 0.2;
+    const Layer walls = normal_layer({rectangle(0, 0, 10, 0.25), rectangle(0, 5, 20, 5.25)});
+    const std::vector<ScanLayer> above{normal_layer({rectangle(0, 0, 10, 0.25)})};
+    std::vector<double> areas;
+    static_cast<void>(scan(walls, {}, above, strategy, nullptr, &areas));
+    ASSERT_EQ(areas.size(), 3U); // core hatch, upskin hatch, contour
+    EXPECT_NEAR(areas[0], 0.05 * 9.8, 1e-3);
+    EXPECT_NEAR(areas[1], 0.05 * 19.8, 1e-3);
+    EXPECT_EQ(areas[2], 0);
+}
+
+TEST(Scan, GivesThinWallsALineThatEveryOrderOfRingsHas) {
+    const std::vector<Contour> rings{rectangle(0, 0, 10, 10), rectangle(12, 0, 12.09, 10),
+                                     rectangle(13, 3, 19, 3.07), reversed(rectangle(2, 2, 3, 3))};
+    const ScanStrategy strategy;
+    const std::vector<Layer> vectors = scan(normal_layer(rings), {}, {}, strategy);
+    ASSERT_EQ(vectors[1].hatches.size(), 4U);
+    EXPECT_EQ(vectors[1].rings, 2U);
+    EXPECT_NEAR(marked(vectors[1]), 4 * 9.9 + 4 * 1.1 + 10 + 6, 0.15);
+    EXPECT_LT(unreached(normal_layer(rings), strategy), 2e-3);
+    const std::vector<Layer> again =
+        scan(layer_of({rings[2], rings[3], rings[1], rings[0]}), {}, {}, strategy);
+    EXPECT_TRUE(std::ranges::equal(again[1].hatches, vectors[1].hatches));
 }
 
 TEST(Scan, KeepsItsDistancesToTheOutline) {
@@ -322,6 +411,27 @@ TEST(Scan, StripsTooNarrowAreNoSkin) {
     EXPECT_EQ(skin(1e-12), 0U);
     EXPECT_EQ(skin(0.04), 0U);
     EXPECT_GT(skin(0.3), 0U);
+}
+
+// The layer above has a groove, or a rib is what is left of it: both are strips from side to side.
+TEST(Scan, GroovesAndRibsAreSkinFromTheNarrowestOn) {
+    SkinRule rule;
+    rule.layers = 1;
+    const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
+    for (const double width : {0.02, 0.09, 0.098, 0.101, 0.11, 0.15, 0.19, 0.21, 0.5}) {
+        const std::vector<ScanLayer> grooved{
+            normal_layer({rectangle(0, 0, 10, 10), reversed(rectangle(2, 5, 8, 5 + width))})};
+        const Skin floor(layer, grooved, rule);
+        const std::vector<ScanLayer> nothing{normal_layer({rectangle(0, 2, 10, 4)})};
+        const Layer ribbed = normal_layer({rectangle(0, 2, 10, 4), rectangle(0, 7, 10, 7 + width)});
+        const Skin rib(ribbed, nothing, rule);
+        const double skin = width > rule.narrowest ? width : 0;
+        const auto area = [](const Layer& all, const Skin& part) {
+            return measure(combine(all, part.area(), BooleanOperation::intersect)).area_mm2;
+        };
+        EXPECT_NEAR(area(layer, floor), 6 * skin, 1e-6) << width;
+        EXPECT_NEAR(area(ribbed, rib), 10 * skin, 1e-6) << width;
+    }
 }
 
 // Which is to say: they are scanned as parts without skins would be by these rules.

@@ -78,6 +78,8 @@ struct ScanFigures {
     double build_seconds =
         0; ///< by the speeds and delays of the parameter sets alone: what accelerates is left out
     double energy_j = 0; ///< power by the time of marking
+    double unreached_mm2 =
+        0; ///< material that these vectors are for, and that no vector of the layer reaches
 
     ScanFigures& operator+=(const ScanFigures& other) noexcept;
 };

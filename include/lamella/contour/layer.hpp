@@ -61,7 +61,7 @@ struct Layer {
     std::vector<std::uint64_t> offsets{0};
     std::size_t rings = 0;
     /// Fill lines, two points each, as slice files may hold them beside the contours. Slicing makes none, and
-    /// they do not count where layers are compared or hashed.
+    /// they do not count where layers are compared.
     PointArray hatches = {};
 
     [[nodiscard]] std::size_t contours() const noexcept { return offsets.size() - 1; }

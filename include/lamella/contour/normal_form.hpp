@@ -36,7 +36,9 @@ namespace lamella {
 /// A 64-bit hash of the contours of a layer in normal form. It is XXH3 (64 bits, seed 0) over these bytes,
 /// all little-endian: the number of contours and the number of rings as 64-bit integers, then for each
 /// contour the number of points up to its end as a 64-bit integer (`offsets` without its first element), then
-/// x and y of all points as doubles. Index, z, bottom and top do not count. O(n), at the speed of memory.
+/// x and y of all points as doubles, then those of hatch lines, where there are any. Index, z, bottom and top
+/// do not count. So of scan vectors, which are in no normal form, it tells the order. O(n), at the speed of
+/// memory.
 [[nodiscard]] std::uint64_t content_hash(const Layer& layer) noexcept;
 
 } // namespace lamella

@@ -29,14 +29,14 @@ struct ExposureResult {
 /// the part and their own name, such as "bracket core hatch".
 [[nodiscard]] LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy);
 
-/// Rings of layers that are thinner than the beam's offsets: nothing is left of them for vectors.
-struct ThinRings : AffectedLayers {
-    std::uint64_t rings = 0;
+/// Layers with more material that no vector reaches than the strategy accepts of a part.
+struct UnreachedMaterial : AffectedLayers {
+    double area_mm2 = 0; ///< of all of these layers
 
     /// Of the next layer above.
-    void add(std::uint64_t count, double z) noexcept;
-    /// "12 rings on 3 layers, the lowest at z = 0.5 mm, are thinner than the beam's offsets: they have no
-    /// vectors"
+    void add(double unreached_mm2, double z) noexcept;
+    /// "8.1 mm2 of material on 10 layers, the lowest at z = 0.5 mm, are reached by no vector: ...", with the
+    /// cure.
     [[nodiscard]] std::string text() const;
 };
 
@@ -47,7 +47,9 @@ struct ScanResult {
     std::vector<ExposureResult> exposures;
     /// For each layer what each of these takes.
     std::vector<std::vector<ScanFigures>> layers;
-    ThinRings thin;
+    /// And the hash of its vectors: see LayerStatistics::scan_hash.
+    std::vector<std::uint64_t> hashes;
+    UnreachedMaterial unreached;
     double scan_seconds = 0; ///< of all threads
     std::uint64_t bytes = 0; ///< written
     std::vector<std::string> warnings;
@@ -56,8 +58,8 @@ struct ScanResult {
 /// Scans the layers of parts, whose stacks have the same planes, and writes the vectors. `rounding`: of the
 /// file that they come from, none for layers just cut; `info`: the head of a file of these layers. Hatches
 /// that layers have already do not count. On all threads, each of which holds the vectors of one plane.
-/// Throws what `scan` and `write_layers` throw, and Error{defect} for thin rings with
-/// LayerWriteOptions::strict.
+/// Throws what `scan` and `write_layers` throw, and Error{defect} for material that no
+/// vector reaches with LayerWriteOptions::strict.
 [[nodiscard]] ScanResult scan_layers(const std::string& path, const LayerFormat& format,
                                      std::span<const LayerStack> parts, const Rounding& rounding,
                                      const LayerFileInfo& info, const ScanStrategy& strategy,

@@ -78,8 +78,8 @@ struct FileJob {
     std::string engine; ///< by name; "" is the default engine
     /// Weld the mesh and count its defects first.
     bool inspect = false;
-    /// Inspect, and make an Error{defect} of any defect, of level faces within rounding of a plane, of rings
-    /// that are too thin for scan vectors, and of steps that leave no contour in any layer, before anything
+    /// Inspect, and make an Error{defect} of any defect, of level faces within rounding of a plane, of
+    /// material that no scan vectors reach, and of steps that leave no contour in any layer, before anything
     /// is written.
     bool strict = false;
     /// Measure and hash every layer.
@@ -107,6 +107,9 @@ struct LayerStatistics {
     std::uint64_t hash = 0; ///< content_hash of all contours, whichever part they belong to (see `merged`)
     LayerChanges changes;   ///< by FileJob::steps
     std::vector<ScanFigures> scan; ///< with FileJob::scan: of each of FileResult::exposures
+    /// Then of the vectors: the stack hash of the content hashes of all exposures, part by part, in their
+    /// order.
+    std::uint64_t scan_hash = 0;
 };
 
 /// What became of one part.
@@ -152,8 +155,8 @@ struct FileResult {
     std::optional<LayerChanges> changes; ///< by FileJob::steps, where there are any
     /// With FileJob::scan; the other figures are those of the layers that vectors are made of.
     std::vector<ExposureResult> exposures;
-    ThinRings thin;    ///< with FileJob::scan
-    MeshDoubts doubts; ///< what the layers tell
+    UnreachedMaterial unreached; ///< with FileJob::scan
+    MeshDoubts doubts;           ///< what the layers tell
     std::vector<NearFaceLayers>
         near_faces;                   ///< of each of `files`, where rounding decides what its layers are
     std::uint64_t planned_layers = 0; ///< by all shards

@@ -150,6 +150,11 @@ struct VectorVerification {
     std::uint64_t miscovered = 0;
     /// What lines cover by what they are to fill, of all layers; where there is a strategy.
     std::optional<double> cover;
+    /// Planes of a part, of all parts with a mesh, with more material that no vector reaches than the
+    /// strategy accepts; and all such material, in mm^2. Without a mesh, of what the outermost contour
+    /// encloses.
+    std::uint64_t unreached_layers = 0;
+    double unreached_mm2 = 0;
     /// Contours that are missing on a plane of a part, or enclose another area than the material has at their
     /// depth: by more than both perimeters times four times what rounding and `simplify_mm` move. Of a mesh
     /// of several parts these are held against the outermost contours of each.
@@ -160,13 +165,14 @@ struct VectorVerification {
     /// Vectors of which nothing tells where the material is: neither a mesh nor an outer contour, or an open
     /// one.
     std::uint64_t unbounded = 0;
+    bool none = false; ///< whether there is a strategy, and not a single vector
     /// One line for each kind of finding, with the first layer and place where it occurs.
     std::vector<std::string> findings;
 
     [[nodiscard]] bool ok() const noexcept {
-        return open_chains == 0 && crossings == 0 && misoriented == 0 && outside == 0 && too_short == 0 &&
-               misplaced == 0 && miscovered == 0 && wrong_contours == 0 && height_overlaps == 0 &&
-               (!heights || heights->gaps == 0);
+        return !none && open_chains == 0 && crossings == 0 && misoriented == 0 && outside == 0 &&
+               too_short == 0 && misplaced == 0 && unreached_layers == 0 && miscovered == 0 &&
+               wrong_contours == 0 && height_overlaps == 0 && (!heights || heights->gaps == 0);
     }
 };
 

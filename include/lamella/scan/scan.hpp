@@ -64,21 +64,26 @@ class ScanMemory {
 /// `below` and `above`: the layers beneath and on top, the nearest one first, for skins; as many as the
 /// strategy asks for (`SkinRule::layers`), and fewer only where there are no more: where the part ends there
 /// is no material. So it is where heights leave a gap of more than 1e-6 mm between one layer and the next.
-/// `memory`, where given, is that of the part. `thin_rings`, where given, becomes the number of rings that
-/// are thinner than the least of these offsets: nothing is left of them, and they have no vectors.
+/// Walls too thin for the outermost contour have lines along their middle, where the strategy says so: in the
+/// layer of that contour, as its `hatches`.
+///
+/// `memory`, where given, is that of the part. `unreached`, where given, becomes for each exposure how many
+/// mm^2 of the material that it is for no vector reaches: what is narrow, and farther from contours and lines
+/// of `ThinWalls` than the beam's offset (than half the distance of contours, where that is more), and
+/// farther from the lines of hatches than their distance.
 ///
 /// The same bits on every machine, for any order of rings. O((n + v) log) for n points and v vectors, beside
 /// what offsets and, for skins, differences take. Throws Error{usage} as `check_strategy`, and Error{limit}
 /// for a layer that would have more than 2^26 lines, or islands, before memory is spent on them.
 [[nodiscard]] std::vector<Layer> scan(const ScanLayer& layer, std::span<const ScanLayer> below,
                                       std::span<const ScanLayer> above, const ScanStrategy& strategy,
-                                      ScanMemory* memory = nullptr, std::uint64_t* thin_rings = nullptr);
+                                      ScanMemory* memory = nullptr, std::vector<double>* unreached = nullptr);
 
 /// The same of a layer of a support: by the strategy's rule for these, a layer for each of its
 /// `support_exposures`.
 [[nodiscard]] std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy,
                                               ScanMemory* memory = nullptr,
-                                              std::uint64_t* thin_rings = nullptr);
+                                              std::vector<double>* unreached = nullptr);
 
 } // namespace lamella
 LAMELLA_API_END

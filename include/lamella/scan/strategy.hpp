@@ -61,6 +61,13 @@ enum class StartPoint : std::uint8_t {
 enum class ContourOrder : std::uint8_t { inside_out, outside_in };
 [[nodiscard]] std::string_view contour_order_name(ContourOrder order) noexcept;
 
+/// What becomes of walls that are too thin for a contour on either side.
+enum class ThinWalls : std::uint8_t {
+    line,      ///< a single line along their middle
+    leave_out, ///< nothing
+};
+[[nodiscard]] std::string_view thin_walls_name(ThinWalls walls) noexcept;
+
 /// The most that a strategy can ask for.
 inline constexpr std::uint32_t most_contours = 100;
 inline constexpr std::uint32_t most_skin_layers = 1000;
@@ -75,13 +82,17 @@ struct ContourRule {
     bool before_hatch = false;
     StartPoint start = StartPoint::aligned;
     double start_direction_degrees = 90; ///< of StartPoint::aligned
+    /// Of walls thinner than twice the beam's offset: of those, lines are for the ones that are at least so
+    /// wide. They follow the outermost contour, as its hatches, two points each.
+    ThinWalls thin_walls = ThinWalls::line;
+    double thinnest = 0.05;
     ParameterSet parameters{.name = "contour", .power_w = 120, .speed_mm_s = 500};
 };
 
 /// A region of the layer that has less than `layers` layers of material above it, or below.
 struct SkinRule {
     std::uint32_t layers = 0; ///< at most `most_skin_layers`; 0: there is no such region
-    /// Strips that are narrower are none (for the farther layers, those narrower than up to 1.01 times that):
+    /// Strips that are narrower, to a hundredth, are none, whether along an edge, as grooves or as ribs:
     /// walls differ from layer to layer by roundings, and by their slope. By default as wide as a line.
     double narrowest = 0.1;
     double overlap = 0.1; ///< by which it is grown into the core
@@ -104,6 +115,8 @@ struct ScanStrategy {
     SkinRule downskin{.hatch = {.parameters = {.name = "downskin", .power_w = 120, .speed_mm_s = 1200}}};
     SupportRule support; ///< of parts that are supports, which have no skins
     std::uint64_t seed = 1;
+    /// As much of a part's layer, in mm^2, may be out of reach of all vectors before somebody is told.
+    double accepted_mm2 = 0.005;
 };
 
 /// How far inside of the outline of the part a contour is, of those counted from 1 at the outermost one.

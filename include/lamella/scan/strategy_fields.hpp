@@ -23,7 +23,8 @@ struct StrategyField {
     std::string_view unit; ///< such as "mm"; "" where there is none
     std::string_view help;
     std::variant<double Rule::*, std::uint32_t Rule::*, std::uint64_t Rule::*, bool Rule::*,
-                 HatchPattern Rule::*, IslandOrder Rule::*, StartPoint Rule::*, ContourOrder Rule::*>
+                 HatchPattern Rule::*, IslandOrder Rule::*, StartPoint Rule::*, ContourOrder Rule::*,
+                 ThinWalls Rule::*>
         member;
 };
 
@@ -53,6 +54,7 @@ struct NamedValues {
 [[nodiscard]] NamedValues<IslandOrder> named_values(IslandOrder) noexcept;
 [[nodiscard]] NamedValues<StartPoint> named_values(StartPoint) noexcept;
 [[nodiscard]] NamedValues<ContourOrder> named_values(ContourOrder) noexcept;
+[[nodiscard]] NamedValues<ThinWalls> named_values(ThinWalls) noexcept;
 
 } // namespace lamella
 LAMELLA_API_END

@@ -1,0 +1,274 @@
+#include "scan/unreached.hpp"
+
+#include "lamella/contour/measure.hpp"
+#include "lamella/core/unit_circle.hpp"
+#include "lamella/polygon/boolean.hpp"
+#include "lamella/polygon/offset.hpp"
+
+#include "polygon/box2.hpp"
+#include "scan/hatch.hpp"
+#include "scan/hatch_lines.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+#include <vector>
+
+namespace lamella {
+
+namespace {
+
+/// A corner of a ring.
+struct Corner {
+    double cross;   ///< of the sides before and after it
+    double dot;     ///< of these
+    double lengths; ///< their product
+    double after;   ///< the length of the side after it
+
+    /// Whether it is sharper than the limit of mitres, 60 degrees.
+    [[nodiscard]] bool sharp() const noexcept { return cross > 0 && dot < -0.5 * lengths; }
+    /// Of half of the angle by which the ring turns.
+    [[nodiscard]] double tangent() const noexcept { return cross / (lengths + dot); }
+    /// By how much more than a strip along both sides it adds when these are moved outwards by 1. A sharp one
+    /// is cut off: two corners of half as much.
+    [[nodiscard]] double grown() const noexcept {
+        if (!sharp())
+            return lengths + dot > 0 ? tangent() : 0;
+        const double cosine = std::sqrt(std::max(0.0, (1 + dot / lengths) / 2));
+        return 2 * std::sqrt(1 - cosine * cosine) / (1 + cosine);
+    }
+};
+
+template <class Visit>
+void for_corners(std::span<const Point2> ring, const Visit& visit) {
+    const Point2& last = ring.back();
+    Point2 u{ring.front().x - last.x, ring.front().y - last.y};
+    double before = std::sqrt(u.x * u.x + u.y * u.y);
+    for (std::size_t k = 0; k < ring.size(); ++k) {
+        const Point2& next = ring[k + 1 == ring.size() ? 0 : k + 1];
+        const Point2 v{next.x - ring[k].x, next.y - ring[k].y};
+        const double after = std::sqrt(v.x * v.x + v.y * v.y);
+        visit(Corner{u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y, before * after, after});
+        u = v;
+        before = after;
+    }
+}
+
+/// The area that rings bound when they are grown: as long as what is grown does not meet. It may meet near
+/// the ends of necks, by less than the square of the distance each.
+double grown_area(const Layer& layer, double by) {
+    static_assert(OffsetCorners{}.mitre_limit == 2);
+    double area = 0;
+    double length = 0;
+    double corners = 0;
+    for (std::size_t i = 0; i < layer.rings; ++i) {
+        area += ring_area(layer.contour(i));
+        for_corners(layer.contour(i), [&](const Corner& corner) {
+            length += corner.after;
+            corners += corner.grown();
+        });
+    }
+    return area + by * length + by * by * corners;
+}
+
+/// What is out of reach in the tips of sharp corners, which a beam of some width always rounds off: those of
+/// 30 degrees and more.
+double tips_area(const Layer& layer, double by) {
+    constexpr double sharpest = -0.8660254; // the cosine of 180 - 30 degrees
+    double corners = 0;
+    for (std::size_t i = 0; i < layer.rings; ++i)
+        for_corners(layer.contour(i), [&](const Corner& corner) {
+            if (corner.sharp() && corner.dot >= sharpest * corner.lengths)
+                corners += corner.tangent() - corner.grown();
+        });
+    return by * by * corners;
+}
+
+/// Whether each side of a layer's rings is a side of its inset, and no side of that is another's.
+bool side_by_side(const Layer& layer, const Layer& inset) noexcept {
+    if (layer.rings != inset.rings || layer.offsets != inset.offsets)
+        return false;
+    for (std::size_t i = 0; i < layer.rings; ++i) {
+        const std::span<const Point2> one = layer.contour(i);
+        const std::span<const Point2> other = inset.contour(i);
+        Point2 p = one.back();
+        Point2 q = other.back();
+        for (std::size_t k = 0; k < one.size(); ++k) {
+            const Point2 u{one[k].x - p.x, one[k].y - p.y};
+            const Point2 v{other[k].x - q.x, other[k].y - q.y};
+            constexpr double parallel = 1e-6;
+            const double dot = u.x * v.x + u.y * v.y;
+            if (!(std::abs(u.x * v.y - u.y * v.x) <= parallel * dot))
+                return false;
+            p = one[k];
+            q = other[k];
+        }
+    }
+    return true;
+}
+
+/// Where a stroke is within reach of a line, from end to end: its outline is convex.
+class Within {
+  public:
+    void add(double u) noexcept {
+        from_ = std::min(from_, u);
+        to_ = std::max(to_, u);
+    }
+    /// Of a circle.
+    void add_circle(double u, double off, double radius) noexcept {
+        if (const double squared = radius * radius - off * off; squared >= 0) {
+            add(u - std::sqrt(squared));
+            add(u + std::sqrt(squared));
+        }
+    }
+    /// Of the side from (u0, v0) to (u1, v1), on a line at v.
+    void add_side(double u0, double v0, double u1, double v1, double v) noexcept {
+        if ((v0 <= v) != (v1 <= v))
+            add(u0 + (v - v0) / (v1 - v0) * (u1 - u0));
+    }
+    [[nodiscard]] double from() const noexcept { return from_; }
+    [[nodiscard]] double to() const noexcept { return to_; }
+
+  private:
+    double from_ = std::numeric_limits<double>::infinity();
+    double to_ = -from_;
+};
+
+struct Reached {
+    std::size_t line;
+    double from;
+    double to;
+
+    friend bool operator<(const Reached& a, const Reached& b) noexcept {
+        return std::tie(a.line, a.from, a.to) < std::tie(b.line, b.from, b.to);
+    }
+};
+
+} // namespace
+
+Layer narrow_places(const Layer& material, const Layer& inset, double by) {
+    constexpr double next_to_nothing = 1.0 / 2; // of the square of the distance
+    constexpr double more = 1 + 1e-3;           // so that no slivers are left
+    if (!(by > 0) || material.rings == 0)
+        return {};
+    if (inset.rings == 0)
+        return material;
+    if (side_by_side(material, inset))
+        return {};
+    const double lost = measure(material).area_mm2 - grown_area(inset, by);
+    if (lost <= next_to_nothing * by * by || lost - tips_area(material, by) <= next_to_nothing * by * by)
+        return {};
+    const Layer places = combine(material, offset(inset, by * more), BooleanOperation::subtract);
+    return measure(places).area_mm2 > next_to_nothing * by * by ? places : Layer{};
+}
+
+Layer narrow_places(const Layer& material, double depth, const ContourRule& contours,
+                    const HatchRule& hatch) {
+    std::vector<double> steps;
+    for (std::uint32_t i = 1; i <= contours.count; ++i)
+        if (const double to = contour_depth(contours, i) - depth; to > 0)
+            steps.push_back(-to);
+    const double filled = hatch_depth(contours, hatch) - depth;
+    steps.push_back(-std::max(0.0, filled));
+    steps.push_back(-std::max(0.0, filled) - surely_hatched(hatch) / 2);
+    const std::vector<Layer> insets = offsets(material, steps);
+    Layer all;
+    const Layer* outer = &material;
+    double last = 0;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        all = combine(all, narrow_places(*outer, insets[i], last - steps[i]), BooleanOperation::unite);
+        outer = &insets[i];
+        last = steps[i];
+    }
+    return all;
+}
+
+double contour_reach(const ContourRule& rule) noexcept {
+    return rule.count > 1 ? std::max(rule.beam_offset, rule.distance / 2) : rule.beam_offset;
+}
+
+void add_strokes(const Layer& vectors, double reach, std::vector<Stroke>& strokes) {
+    for (std::size_t i = 0; i < vectors.rings; ++i) {
+        const std::span<const Point2> ring = vectors.contour(i);
+        for (std::size_t p = 0; p < ring.size(); ++p)
+            strokes.push_back({ring[p], ring[p + 1 < ring.size() ? p + 1 : 0], reach});
+    }
+    for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2)
+        strokes.push_back({vectors.hatches[i], vectors.hatches[i + 1], reach});
+}
+
+double unreached_area(const Layer& places, std::span<const Stroke> strokes) {
+    if (places.rings == 0)
+        return 0;
+    const double area = measure(places).area_mm2;
+    const Box2 box = box_of(places.points.span());
+    double least = std::numeric_limits<double>::infinity();
+    for (const Stroke& stroke : strokes)
+        if (stroke.reach > 0)
+            least = std::min(least, stroke.reach);
+    if (!std::isfinite(least))
+        return std::max(0.0, area);
+    // Aslant to what walls and hatches run along, mostly.
+    constexpr double angle = 27.18;
+    constexpr double most_lines = 1 << 15;
+    const double distance =
+        std::max({least / 4, (box.width() + box.height()) / most_lines, box.largest_coordinate() * 0x1p-40});
+    const HatchLines lines(places, cos_sin_degrees(angle), distance);
+    const LineFrame& frame = lines.frame();
+    std::vector<Reached> reached;
+    for (const auto& [a, b, reach] : strokes) {
+        if (!box.meets(Box2::of(a, b).grown(reach)))
+            continue;
+        const double u0 = frame.along(a);
+        const double v0 = frame.across(a);
+        const double u1 = frame.along(b);
+        const double v1 = frame.across(b);
+        const double length = std::sqrt((u1 - u0) * (u1 - u0) + (v1 - v0) * (v1 - v0));
+        const double du = length > 0 ? -(v1 - v0) / length * reach : 0; // to the left
+        const double dv = length > 0 ? (u1 - u0) / length * reach : 0;
+        const double first = (std::min(v0, v1) - reach) / distance - static_cast<double>(lines.first());
+        const double last = (std::max(v0, v1) + reach) / distance - static_cast<double>(lines.first());
+        const auto end = static_cast<std::size_t>(
+            std::clamp(std::floor(last) + 1, 0.0, static_cast<double>(lines.size())));
+        for (auto i = static_cast<std::size_t>(std::max(0.0, std::ceil(first))); i < end; ++i) {
+            const std::span<const double> ends = lines.ends(i);
+            if (ends.empty())
+                continue;
+            const double v = lines.v(i);
+            Within within;
+            within.add_circle(u0, v - v0, reach);
+            within.add_circle(u1, v - v1, reach);
+            within.add_side(u0 + du, v0 + dv, u1 + du, v1 + dv, v);
+            within.add_side(u0 - du, v0 - dv, u1 - du, v1 - dv, v);
+            const auto next = std::upper_bound(ends.begin(), ends.end(), within.from());
+            const bool inside = (next - ends.begin()) % 2 == 1;
+            if (inside || (next != ends.end() && *next < within.to()))
+                reached.push_back({i, within.from(), within.to()});
+        }
+    }
+    std::sort(reached.begin(), reached.end());
+    double all = 0;
+    double left = 0;
+    auto next = reached.begin();
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        const auto begin = next;
+        while (next != reached.end() && next->line == i)
+            ++next;
+        const std::span<const double> ends = lines.ends(i);
+        for (std::size_t k = 0; k < ends.size(); k += 2) {
+            all += ends[k + 1] - ends[k];
+            double at = ends[k];
+            for (auto one = begin; one != next && one->from < ends[k + 1]; ++one) {
+                left += std::max(0.0, one->from - at);
+                at = std::max(at, one->to);
+            }
+            left += std::max(0.0, ends[k + 1] - at);
+        }
+    }
+    return all > 0 ? std::max(0.0, area) * (left / all) : 0;
+}
+
+} // namespace lamella
