@@ -97,6 +97,8 @@ class VectorVerification:
     height_overlaps: int  #: layers that begin within the height of another one
     gaps: int  #: between layers, where the mesh has material; 0 without one
     cover: Optional[float]  #: what lines cover by what they are to fill, where a strategy is given
+    unreached_layers: int  #: planes with more material that no vector reaches than the strategy accepts
+    unreached_mm2: float  #: all such material; 0 without a strategy
     unbounded: int  #: vectors of which nothing tells where the material is
     findings: List[str]  #: one line for each kind of finding, with the first layer and place
 

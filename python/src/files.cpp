@@ -308,6 +308,8 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
     fields["too_short"] = found.too_short;
     fields["misplaced"] = found.misplaced;
     fields["miscovered"] = found.miscovered;
+    fields["unreached_layers"] = found.unreached_layers;
+    fields["unreached_mm2"] = found.unreached_mm2;
     fields["wrong_contours"] = found.wrong_contours;
     fields["height_overlaps"] = found.height_overlaps;
     fields["gaps"] = found.heights ? found.heights->gaps : 0;
