@@ -228,14 +228,14 @@ def listener(progress: Any) -> Optional[Progress]:
 def words(name: str, value: Any) -> str:
     """Those of a string or of several, with commas between them."""
     if isinstance(value, str):
-        return value
+        return text(name, value)
     try:
         several = list(value)
     except TypeError:
         several = [None]
     if not all(isinstance(word, str) for word in several):
         refuse_type(name, "a word or several", value)
-    return ",".join(several)
+    return ",".join(text(name, word) for word in several)
 
 
 def reading(

@@ -511,7 +511,7 @@ def test_supports_are_read_where_they_are_asked_for(tmp_path):
     assert len(lamella.read(path, include=["modifier", "support"])) == 8
     with pytest.raises(lamella.UsageError, match="expected one of support, negative"):
         lamella.read(path, include="thing")
-    with pytest.raises(lamella.UsageError, match="include: expected a word or several"):
+    with pytest.raises(TypeError, match="include: expected a word or several"):
         lamella.read(path, include=3)
 
 
