@@ -8,6 +8,7 @@
 #include "polygon/box2.hpp"
 #include "polygon/subtract_common.hpp"
 #include "scan/alongside.hpp"
+#include "scan/occupied.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,48 +21,6 @@
 namespace lamella {
 
 namespace {
-
-/// Which cells of a coarse grid over a layer something lies in, so that what is far from it is known for
-/// that. What is beyond the layer counts as at its edge.
-class Occupied {
-  public:
-    explicit Occupied(const Layer& layer) : whole_(box_of(layer.points.span())) {}
-
-    void add(const Box2& box) {
-        for_rows(box, [](std::uint64_t& row, std::uint64_t columns) {
-            row |= columns;
-            return true;
-        });
-    }
-    /// Whether there may be something within a box.
-    [[nodiscard]] bool any_within(const Box2& box) {
-        return !for_rows(box, [](std::uint64_t& row, std::uint64_t columns) { return (row & columns) == 0; });
-    }
-
-  private:
-    static constexpr unsigned side = 64;
-
-    static unsigned cell(double along, double extent) noexcept {
-        const double cells = along / extent * side;
-        return !(cells > 0) ? 0 : cells >= side ? side - 1 : static_cast<unsigned>(cells);
-    }
-    /// Calls `visit` for all rows of a box, with bits for its columns, until that is false.
-    template <class Visit>
-    bool for_rows(const Box2& box, const Visit& visit) {
-        const unsigned first = cell(box.x0 - whole_.x0, whole_.width());
-        const unsigned last = cell(box.x1 - whole_.x0, whole_.width());
-        assert(first <= last);
-        const std::uint64_t columns = (~std::uint64_t{0} >> (side - 1 - (last - first))) << first;
-        const unsigned last_row = cell(box.y1 - whole_.y0, whole_.height());
-        for (unsigned row = cell(box.y0 - whole_.y0, whole_.height()); row <= last_row; ++row)
-            if (!visit(rows_[row], columns))
-                return false;
-        return true;
-    }
-
-    Box2 whole_;
-    std::array<std::uint64_t, side> rows_{};
-};
 
 /// Some rings of a layer, in their order.
 template <class Chosen>

@@ -8,6 +8,7 @@
 #include "polygon/box2.hpp"
 #include "scan/hatch.hpp"
 #include "scan/hatch_lines.hpp"
+#include "scan/occupied.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -215,12 +216,16 @@ double unreached_area(const Layer& places, std::span<const Stroke> strokes) {
     constexpr double angle = 27.18;
     constexpr double most_lines = 1 << 15;
     const double distance =
-        std::max({least / 4, (box.width() + box.height()) / most_lines, box.largest_coordinate() * 0x1p-40});
+        std::max({least / 2, (box.width() + box.height()) / most_lines, box.largest_coordinate() * 0x1p-40});
     const HatchLines lines(places, cos_sin_degrees(angle), distance);
     const LineFrame& frame = lines.frame();
+    Occupied occupied(places); // most strokes are far from all of them
+    for (std::size_t i = 0; i < places.rings; ++i)
+        occupied.add(box_of(places.contour(i)));
     std::vector<Reached> reached;
     for (const auto& [a, b, reach] : strokes) {
-        if (!box.meets(Box2::of(a, b).grown(reach)))
+        const Box2 around = Box2::of(a, b).grown(reach);
+        if (!box.meets(around) || !occupied.any_within(around))
             continue;
         const double u0 = frame.along(a);
         const double v0 = frame.across(a);

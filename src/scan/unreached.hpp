@@ -34,7 +34,7 @@ struct Stroke {
 /// Adds the vectors of a layer.
 void add_strokes(const Layer& vectors, double reach, std::vector<Stroke>& strokes);
 
-/// The area of these places that no stroke reaches, in mm^2: along lines a quarter of the shortest reach
+/// The area of these places that no stroke reaches, in mm^2: along lines half of the shortest reach
 /// apart; exact where nothing is reached, and where all is. O(points + lines), and for each stroke the lines
 /// that it comes near to.
 [[nodiscard]] double unreached_area(const Layer& places, std::span<const Stroke> strokes);
