@@ -2,6 +2,7 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
+#include "failure.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
@@ -34,6 +35,8 @@ int run_merge(const MergeArguments& arguments, const Context& context) {
     check_stamps(arguments.shards, execution);
     const MergeResult result = merge_layer_files(arguments.shards, arguments.output, format.name, options,
                                                  arguments.limits.of_layers(), execution);
+    for (const std::string& warning : result.file_warnings)
+        context.messages.warn(with_options(warning));
     context.messages.warn_of(output_name(arguments.output), result.warnings);
     const std::string text =
         fmt::format("{}: {} from z = {} to {} mm, from {}, {}\n", one_line(output_name(arguments.output)),

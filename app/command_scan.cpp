@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "config_file.hpp"
 #include "failure.hpp"
+#include "figures.hpp"
 #include "layer_file.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
@@ -68,21 +69,8 @@ void check_layers(const LayerFile& file) {
                                     file.path, one_line(part.label)));
 }
 
-/// What layers have that no vectors are made of.
-std::vector<std::string> losses(const LayerFile& file) {
-    ScanLosses lost;
-    std::vector<Layer> plane;
-    for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i) {
-        plane.clear();
-        for (const LayerPart& part : file.parts)
-            plane.push_back(part.layers[i]);
-        lost.add(plane);
-    }
-    return lost.texts();
-}
-
 Json stats_of(const Command& command, const std::string& path, const LayerFile& file,
-              const ScanStrategy& strategy, const ScanResult& result) {
+              const ScanStrategy& strategy, const ScanLosses& losses, const ScanResult& result) {
     Json layers = Json::array();
     double volume_mm3 = 0;
     for (std::size_t i = 0; i < result.layers.size(); ++i) {
@@ -108,6 +96,7 @@ Json stats_of(const Command& command, const std::string& path, const LayerFile& 
         {"volume_mm3", volume_mm3},
         {"scan", with_unreached(with_density(scan_json(result.exposures), volume_mm3), result.unreached)}};
     stats["scan"]["strategy"] = strategy_json(strategy);
+    stats.update(inverted_json(losses.inverted));
     stats["layers"] = std::move(layers);
     return stats;
 }
@@ -126,12 +115,13 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         check_writable(arguments.stats);
     const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     check_layers(file);
-    for (const std::vector<std::string>& warnings : {file.warnings, losses(file)})
-        tell(file, warnings, arguments.strict, context.messages);
-    const LayerFileInfo info = info_of(file);
     std::vector<LayerStack> stacks;
     for (const LayerPart& part : file.parts)
         stacks.push_back(part.layers);
+    const ScanLosses losses = scan_losses(stacks, file.rounding, execution);
+    for (const std::vector<std::string>& warnings : {file.warnings, losses.texts()})
+        tell(file, warnings, arguments.strict, context.messages);
+    const LayerFileInfo info = info_of(file);
     const ScanResult result =
         scan_layers(arguments.output, format, stacks, file.rounding, info, strategy, options, execution);
     if (result.unreached.layers > 0)
@@ -141,7 +131,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         if (arguments.stats.empty())
             return;
         const std::string text =
-            json_text(stats_of(context.command, arguments.input, file, strategy, result));
+            json_text(stats_of(context.command, arguments.input, file, strategy, losses, result));
         if (arguments.stats == "-")
             context.messages.result(text);
         else

@@ -308,9 +308,10 @@ std::string summary(const FileJob& job, const FileResult& result) {
                             result.shard.begin, result.shard.end - 1, result.planned_layers);
     if (result.inspection)
         text +=
-            fmt::format("mesh     {}\n", result.inspection->sound()
-                                             ? "closed, consistently oriented, no defects"
-                                             : "has defects" + ask_info(one_line(job.inputs.front().path)));
+            fmt::format("mesh     {}\n",
+                        result.unsound.empty()
+                            ? "closed, consistently oriented, no defects"
+                            : "has defects" + ask_info(one_line(result.files[result.unsound.front()].path)));
     for (const FileResult::MeshRepair& repair : result.repairs)
         text += repairs_text(repair.repairs);
     if (job.repair.close_gaps_mm)
@@ -460,8 +461,8 @@ int run_slice(SliceArguments& arguments, const Context& context) {
             remove_stamp_without_output(job.output);
         return slice_file(job, run, processes);
     };
-    Deadline deadline(arguments.timeout, one_line(input_name(arguments.inputs.front().path)),
-                      context.messages, execution);
+    Deadline deadline(arguments.timeout, one_line(inputs_name(arguments.inputs)), context.messages,
+                      execution);
     const std::optional<FileResult> outcome = deadline.run(slice);
     deadline.note_output(job.output);
     if (!outcome) {

@@ -123,6 +123,8 @@ Json vectors_json(bool strategy, const VectorVerification& found) {
             {"misplaced", found.misplaced},
             {"miscovered", found.miscovered},
             {"wrong_contours", found.wrong_contours},
+            {"inverted_rings", found.inverted_rings},
+            {"inverted_mm3", found.inverted_mm3},
             {"height_overlaps", found.height_overlaps},
             {"unbounded", found.unbounded},
             {"cover", found.cover ? Json(*found.cover) : Json()},

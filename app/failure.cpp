@@ -29,6 +29,7 @@ constexpr std::array field_options{
     FieldOption{"`adaptive`", "--adaptive"},
     FieldOption{"`close_gaps_mm`", "--close-gaps"},
     FieldOption{"`drop_duplicates`", "--drop-duplicates"},
+    FieldOption{"`fill`", "--fill"},
     FieldOption{"`format`", "--format"},
     FieldOption{"`inspect`", "--inspect"},
     FieldOption{"`max_memory`", "--max-memory"},

@@ -112,6 +112,9 @@ Json layers_json(const FileResult& result) {
                           {"hash", fmt::format("{:016x}", layer.hash)}});
         if (layer.open_gaps.count > 0)
             layers.back().update(open_gaps_json(layer.open_gaps));
+        if (layer.inverted.rings > 0)
+            layers.back().update(
+                {{"inverted_rings", layer.inverted.rings}, {"inverted_mm2", layer.inverted.area_mm2}});
         if (!layer.joins.empty())
             layers.back()["gaps"] = joins_json(layer.joins);
         if (result.changes)
@@ -143,6 +146,7 @@ Json parts_json(const FileResult& result) {
                          {"bbox", box_json(part.box)},
                          {"contours", part.contours},
                          {"open_chains", part.open_chains},
+                         {"inverted_rings", part.inverted_rings},
                          {"points", part.points}});
     return parts;
 }
@@ -320,6 +324,12 @@ Json open_gaps_json(const OpenGaps& gaps) {
         {"open_gaps", gaps.count}, {"longest_open_gap_mm", gaps.longest_mm}, {"open_gaps_mm", gaps.total_mm}};
 }
 
+Json inverted_json(const InvertedLayers& inverted) {
+    if (inverted.rings == 0)
+        return Json::object();
+    return {{"inverted_rings", inverted.rings}, {"inverted_mm3", inverted.volume_mm3}};
+}
+
 Json processes_json(const std::vector<ProcessFigures>& figures) {
     Json processes = Json::array();
     for (const ProcessFigures& one : figures)
@@ -382,8 +392,16 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
             repairs.back()["path"] = result.files[repair.file].path;
         }
     }
-    if (result.doubts.open_gaps.count > 0)
-        stats.update(open_gaps_json(result.doubts.open_gaps));
+    OpenGaps open_gaps;
+    InvertedLayers inverted;
+    for (const MeshDoubts& of_file : result.doubts) {
+        open_gaps += of_file.open_gaps;
+        inverted.rings += of_file.inverted.rings;
+        inverted.volume_mm3 += of_file.inverted.volume_mm3;
+    }
+    if (open_gaps.count > 0)
+        stats.update(open_gaps_json(open_gaps));
+    stats.update(inverted_json(inverted));
     if (Json near = near_faces_json(result); !near.empty())
         stats["near_faces"] = std::move(near);
     if (job.repair.close_gaps_mm)

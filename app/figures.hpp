@@ -60,6 +60,8 @@ template <class Places, class Tell>
 
 /// What is missing where contours stay open.
 [[nodiscard]] Json open_gaps_json(const OpenGaps& gaps);
+/// Rings that bound no material, and what they enclose; empty where there are none.
+[[nodiscard]] Json inverted_json(const InvertedLayers& inverted);
 /// What `lamella slice --stats` writes; docs/program.md lists the keys.
 [[nodiscard]] Json stats_json(const Command& command, const FileJob& job, const FileResult& result);
 /// What each of several processes did.

@@ -1,7 +1,10 @@
 #include "layer_file.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/polygon/inverted_rings.hpp"
 
+#include "failure.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "standard_streams.hpp"
@@ -27,6 +30,22 @@ Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
     return box;
 }
 
+/// Steps leave out what is no material, but for a rule that says what is.
+void tell_inverted(const LayerSteps& steps, const LayerFile& file, bool strict, Messages& messages,
+                   const Execution& execution) {
+    if (steps.fill != FillRule::none)
+        return;
+    std::vector<LayerStack> contours;
+    for (const LayerPart& part : file.parts)
+        if (!part.exposure)
+            contours.push_back(part.layers);
+    const InvertedLayers inverted =
+        inverted_layers(contours, file.rounding,
+                        steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick, execution);
+    if (inverted.rings > 0)
+        tell(file, {inverted.text_of_file(contours.front().size())}, strict, messages);
+}
+
 } // namespace
 
 LayerFileInfo info_of(const LayerFile& file) {
@@ -45,7 +64,8 @@ LayerFileInfo info_of(const LayerFile& file) {
 void tell(const LayerFile& file, const std::vector<std::string>& warnings, bool strict, Messages& messages) {
     if (strict && !warnings.empty())
         throw Error(ErrorKind::defect, fmt::format("{}: {}", file.path, warnings.front()));
-    messages.warn_of(input_name(file.path), warnings);
+    for (const std::string& warning : warnings)
+        messages.warn(with_options(fmt::format("{}: {}", input_name(file.path), warning)));
 }
 
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
@@ -57,6 +77,7 @@ StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Me
                                     "--min-area and --simplify are for contours: take these steps before "
                                     "lamella scan",
                                     file.path, one_line(part.label)));
+    tell_inverted(steps, file, strict, messages, execution);
     std::vector<LayerStack> parts;
     for (LayerPart& part : file.parts)
         parts.push_back(std::move(part.layers));

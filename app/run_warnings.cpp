@@ -1,6 +1,7 @@
 #include "run_warnings.hpp"
 
 #include "failure.hpp"
+#include "numbers.hpp"
 #include "options.hpp"
 #include "standard_streams.hpp"
 
@@ -12,6 +13,12 @@ std::string ask_info(const std::string& path) {
     return path == "-" ? "" : fmt::format("; see lamella info {}", path);
 }
 
+std::string inputs_name(std::span<const PlateInput> inputs) {
+    const std::size_t others = inputs.size() - 1;
+    return input_name(inputs.front().path) +
+           (others == 0 ? "" : fmt::format(" and {}", counted(others, "more file")));
+}
+
 std::vector<std::string> run_warnings(const FileJob& job, const FileResult& result) {
     std::vector<std::string> warnings;
     const auto add = [&](const std::string& name, const std::string& text) {
@@ -20,9 +27,9 @@ std::vector<std::string> run_warnings(const FileJob& job, const FileResult& resu
     for (const PlateFile& file : result.files)
         for (const std::string& warning : file.warnings)
             add(input_name(file.path), warning);
-    const std::string& first = job.inputs.front().path;
-    for (const std::string& doubt : result.doubts.texts())
-        add(input_name(first), doubt + ask_info(first));
+    for (std::size_t i = 0; i < result.doubts.size(); ++i)
+        for (const std::string& doubt : result.doubts[i].texts())
+            add(input_name(result.files[i].path), doubt + ask_info(result.files[i].path));
     for (std::size_t file = 0; file < result.files.size(); ++file)
         if (const std::string text = result.near_faces[file].text(result.report.layers); !text.empty())
             add(input_name(result.files[file].path), text);
@@ -30,9 +37,9 @@ std::vector<std::string> run_warnings(const FileJob& job, const FileResult& resu
         if (const std::string nothing =
                 nothing_left(result.report.layers, result.report.contours, *result.changes);
             !nothing.empty())
-            add(input_name(first), nothing);
+            add(inputs_name(job.inputs), nothing);
     if (result.unreached.layers > 0)
-        add(input_name(first), result.unreached.text());
+        add(inputs_name(job.inputs), result.unreached.text());
     for (const std::string& warning : result.warnings)
         add(output_name(job.output), warning);
     for (const std::string& warning : result.report_warnings)

@@ -4,6 +4,7 @@
 
 #include "lamella/pipeline/slice_file.hpp"
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,9 @@ namespace lamella::app {
 /// Where to look for more: "; see lamella info FILE", or "" where the mesh came from standard input, which
 /// cannot be read again.
 [[nodiscard]] std::string ask_info(const std::string& path);
+
+/// All files of a plate: "a.stl", "a.stl and 2 more files".
+[[nodiscard]] std::string inputs_name(std::span<const PlateInput> inputs);
 
 /// What was odd about the files, what the layers say about the mesh, and what of them a format has no place
 /// for. Each names its file.

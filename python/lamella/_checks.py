@@ -94,6 +94,8 @@ class VectorVerification:
     misplaced: int  #: hatch lines beside those of the strategy, turned otherwise or of another exposure
     miscovered: int  #: planes of a part whose lines cover more or less than they are to fill
     wrong_contours: int  #: that are missing on a plane, or of another area than the material has at their depth
+    inverted_rings: int  #: of the mesh's sections, that bound no material and have no vectors; 0 without a mesh
+    inverted_volume: float  #: mm^3, what these enclose
     height_overlaps: int  #: layers that begin within the height of another one
     gaps: int  #: between layers, where the mesh has material; 0 without one
     cover: Optional[float]  #: what lines cover by what they are to fill, where a strategy is given

@@ -18,7 +18,7 @@ from ._arguments import Mirror, Orientation, PathLike, Progress
 from ._errors import CancelledError, DefectError, InputError, UsageError
 from ._lamella import Exposure, Layer, LayerStream, Mesh, Stack
 from ._scanning import ScanLayer, ScanStream
-from ._warning import warn
+from ._warning import warn, with_arguments
 
 MESH_EXTENSIONS = (".stl", ".ply", ".obj")
 
@@ -445,13 +445,19 @@ def convert(
     source, target: str or os.PathLike.
     For the rest see `write`.
 
-    Raises InputError, OutputError, UsageError and TypeError.
+    Raises InputError, OutputError, UsageError and TypeError. Issues a DefectWarning where the file is odd, and where
+    rings of it bound no material; with `strict` it raises DefectError.
     """
     if _same_file(check.path("source", source), check.path("target", target)):
         raise UsageError(f"{os.fsdecode(target)}: the output would overwrite the input")
     stack = read_layers(source, strict=check.flag("strict", strict), threads=threads, progress=progress)
     if len(stack) == 0:
         raise InputError(f"{os.fsdecode(source)}: holds no layers")
+    if all(part.exposure is None for part in stack.parts):
+        inverted = [f"{stack.path}: {text}" for text in _lamella.inverted_layers(stack, threads, progress)]
+        if strict and inverted:
+            raise DefectError(with_arguments(inverted[0]))
+        warn(inverted)
     write(
         target, stack, format=format, units_mm=units_mm, short_form=short_form, pixel_mm=pixel_mm, pixels=pixels,
         display_mm=display_mm, orientation=orientation, mirror=mirror, antialias=antialias, gamma=gamma,

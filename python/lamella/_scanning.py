@@ -124,8 +124,8 @@ def scan(
 
     Raises UsageError for a strategy that is not right and for layers that do not ascend, InputError for a Stack that
     holds scan vectors already, LimitError for layers that would have too many vectors. Issues a DefectWarning where
-    layers have what no vectors are made of: hatch lines, open chains, contours that run the wrong way because the mesh
-    is inside out. It comes at once for a Stack, for other layers when the last one has been taken. So it does where skins
+    layers have what no vectors are made of: hatch lines, open chains, rings that bound no material as the mesh is
+    inside out. It comes at once for a Stack, for other layers when the last one has been taken. So it does where skins
     ask for layers of the part that are not in a Stack.
     """
     try:
@@ -135,12 +135,14 @@ def scan(
     known = as_strategy("strategy", strategy)
     label = check.label("part", part) or b"part"
     support = check.flag("support", support)
-    each = _told((isinstance(layers, Stack) and layers.path) or "layers", each)
     if isinstance(layers, Stack):
         _check_stack(layers)
-        each = iter(list(each))  # told at once: all of them are there
+        each = iter(list(each))
+        warn(f"{layers.path or 'layers'}: {loss}" for loss in _lamella.scan_losses(layers))
         if not support:
             _warn_of_skins(layers, known)
+    else:
+        each = _told(each)
     scanned = (_scan_support if support else _scan)(each, known, label, layers)
     return ScanStream(scanned, layers) if isinstance(layers, (Stack, LayerStream)) else scanned
 
@@ -180,13 +182,13 @@ def _warn_of_skins(stack: Stack, strategy: ScanStrategy) -> None:
         ])  # fmt: skip
 
 
-def _told(name: str, layers: Iterable[Layer]) -> Iterator[Layer]:
+def _told(layers: Iterable[Layer]) -> Iterator[Layer]:
     """Warns at the end of what they have that no vectors are made of."""
     losses = _lamella.ScanLosses()
     for layer in layers:
         losses.add(layer)
         yield layer
-    warn(f"{name}: {loss}" for loss in losses.texts())
+    warn(f"layers: {loss}" for loss in losses.texts())
 
 
 def _scan_support(

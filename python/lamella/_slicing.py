@@ -92,7 +92,7 @@ def slice(
     Other Python threads run meanwhile. Ctrl-C stops within a second.
 
     Raises UsageError, InputError, DefectError, LimitError. Issues a DefectWarning where the file is odd, where
-    contours do not close because the mesh has holes, where they run the wrong way because it is inside out, and where
+    contours do not close because the mesh has holes, where rings bound no material because triangles face inwards, and where
     level faces lie within rounding of a plane, so that rounding decides what their layers are.
     """
     mesh, plan = _prepared(
@@ -100,12 +100,10 @@ def slice(
         direction, transform, unit_mm, engine, strict, threads, progress,
     )  # fmt: skip
     stack = _lamella.slice_stack(mesh, plan, engine, threads, progress)
-    name = mesh.path or "the mesh"
-    chains = stack.open_chains
-    if strict and chains.any():
-        lowest = stack.z[np.flatnonzero(chains)[0]]
-        raise DefectError(f"{name}: {chains.sum()} contours do not close, the lowest at z = {lowest:.6g} mm")
-    warn(f"{name}: {doubt}" for doubt in _lamella.mesh_doubts(stack))
+    doubts = [f"{mesh.path or 'the mesh'}: {doubt}" for doubt in _lamella.mesh_doubts(stack)]
+    if strict and doubts:
+        raise DefectError(with_arguments(doubts[0]))
+    warn(doubts)
     return stack
 
 
@@ -137,8 +135,8 @@ def iter_layers(
     Takes what `slice` takes and gives the same layers. The mesh is read before this returns; what goes wrong later
     is raised by the iterator. Leaving the loop early, close(), or `with` stops the work.
 
-    strict: looks at the mesh first; without it open chains (see Layer.open_chains) and layers inside out pass without a
-        warning.
+    strict: looks at the mesh first; without it open chains (see Layer.open_chains) and rings that bound no material
+        pass without a warning.
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,

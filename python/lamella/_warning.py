@@ -10,7 +10,12 @@ from ._errors import DefectWarning
 
 
 #: What Python has in the place of fields that texts of the library name.
-ARGUMENTS = {"`snap_mm` ": "snap=", "`close_gaps_mm` ": "lamella slice --close-gaps "}
+ARGUMENTS = {
+    "`snap_mm` ": "snap=",
+    "`close_gaps_mm` ": "lamella slice --close-gaps ",
+    "`orient`": "lamella slice --orient",
+    "converting them with `fill` nonzero": 'filled("nonzero")',
+}
 
 
 def with_arguments(text: str) -> str:

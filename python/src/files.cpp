@@ -311,6 +311,8 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
     fields["unreached_layers"] = found.unreached_layers;
     fields["unreached_mm2"] = found.unreached_mm2;
     fields["wrong_contours"] = found.wrong_contours;
+    fields["inverted_rings"] = found.inverted_rings;
+    fields["inverted_volume"] = found.inverted_mm3;
     fields["height_overlaps"] = found.height_overlaps;
     fields["gaps"] = found.heights ? found.heights->gaps : 0;
     fields["cover"] = found.cover;

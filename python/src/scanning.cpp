@@ -117,6 +117,13 @@ std::vector<ScanLayer> layers_of(const std::vector<LayerPointer>& shared, const 
     return layers;
 }
 
+LayerStack layers_of(const Stack& stack) {
+    LayerStack layers;
+    for (const LayerPointer& layer : stack.layers)
+        layers.push_back(layer->get());
+    return layers;
+}
+
 /// Of the file that the layers come from, where they do.
 Rounding rounding_of(const Stack* stack) {
     return stack != nullptr ? stack->rounding : Rounding{};
@@ -170,9 +177,26 @@ void bind_losses(py::module_& module) {
         .def(py::init())
         .def("add",
              [](ScanLosses& self, const SharedLayer& layer) {
-                 self.add({&layer.get(), 1});
+                 const Unlocked released;
+                 self.add({&layer.get(), 1}, inverted_rings(layer.get(), {}, InversionSearch::full));
              })
         .def("texts", &ScanLosses::texts);
+    module.def("scan_losses", [](const Stack& stack) {
+        return result_of(0, py::none(), [&](const Execution& execution) {
+            const LayerStack layers = layers_of(stack);
+            return scan_losses({&layers, 1}, stack.rounding, execution).texts();
+        });
+    });
+    module.def("inverted_layers", [](const Stack& stack, unsigned threads, const py::object& progress) {
+        return result_of(threads, progress, [&](const Execution& execution) -> std::vector<std::string> {
+            const LayerStack layers = layers_of(stack);
+            const InvertedLayers inverted =
+                inverted_layers({&layers, 1}, stack.rounding, InversionSearch::quick, execution);
+            if (inverted.rings == 0)
+                return {};
+            return {inverted.text_of_file(layers.size())};
+        });
+    });
 }
 
 void bind_rules(py::module_& module) {

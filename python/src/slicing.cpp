@@ -1,6 +1,5 @@
 #include "slicing.hpp"
 
-#include "lamella/contour/measure.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/pipeline/slice_file.hpp"
@@ -81,10 +80,10 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const CutPlan& cuts,
 /// What the layers tell about the mesh.
 std::vector<std::string> doubts_of(const Stack& stack) {
     const Unlocked released;
-    MeshDoubts doubts;
+    MeshDoubts doubts{.layers = stack.layers.size()};
     for (const LayerPointer& shared : stack.layers) {
         const Layer& layer = shared->get();
-        doubts.add(layer.z, open_gaps(layer), begins_clockwise(layer));
+        doubts.add(layer.z, layer.thickness(), open_gaps(layer), inverted_rings(layer));
     }
     return doubts.texts();
 }

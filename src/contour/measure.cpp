@@ -6,6 +6,8 @@
 
 #include <array>
 #include <cassert>
+#include <cmath>
+#include <limits>
 
 namespace lamella {
 
@@ -19,10 +21,6 @@ LAMELLA_VECTOR_CLONES double ring_area(std::span<const Point2> ring) noexcept {
     return area.end(ring, i);
 }
 
-bool begins_clockwise(const Layer& layer) noexcept {
-    return layer.rings > 0 && ring_area(layer.contour(0)) < 0;
-}
-
 double contour_length(std::span<const Point2> contour, bool closed) noexcept {
     if (contour.size() < 2)
         return 0;
@@ -32,6 +30,13 @@ double contour_length(std::span<const Point2> contour, bool closed) noexcept {
     if (closed)
         sums[0] += quick_distance(contour.back(), contour.front());
     return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
+
+bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) noexcept {
+    const double largest = largest_coordinate(ring);
+    const double moved =
+        std::sqrt(0.5) * rounding.step_at(largest) + 4 * std::numeric_limits<double>::epsilon() * largest;
+    return std::abs(ring_area(ring)) <= contour_length(ring, true) * moved;
 }
 
 void LayerMeasure::add(const LayerMeasure& other) noexcept {

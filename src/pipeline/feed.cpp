@@ -11,6 +11,7 @@
 #include "pipeline/agreement.hpp"
 #include "pipeline/packed.hpp"
 #include "pipeline/plate_builder.hpp"
+#include "pipeline/plate_names.hpp"
 #include "pipeline/stream_sums.hpp"
 #include "read/stl_binary.hpp"
 
@@ -181,7 +182,7 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
             ErrorKind::limit,
             fmt::format("{}: to be sliced whole takes up to {} of memory, above the {} of "
                         "`max_memory`; it would be sliced in pieces, but for {}",
-                        job.inputs.front().path, byte_amount(bytes), byte_amount(memory_.limit),
+                        name_of(job.inputs), byte_amount(bytes), byte_amount(memory_.limit),
                         !needs_all.empty()
                             ? fmt::format("{}, which needs the whole mesh", needs_all)
                             : fmt::format("{}, which has to be read whole: only STL files that are not "
@@ -289,6 +290,10 @@ MeshFile Feed::stream(const File& file, const TriangleSink& sink, const Executio
 
 std::uint64_t Feed::triangles(std::size_t shape) const {
     return files_.empty() ? plate_.shapes[shape].mesh.size() : files_[plate_.shapes[shape].input].triangles;
+}
+
+const std::string& Feed::path_of(std::size_t shape) const {
+    return plate_.files[plate_.shapes[shape].input].path;
 }
 
 const Transform& Feed::placement(std::size_t shape) const {
@@ -485,16 +490,16 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
             ErrorKind::limit,
             fmt::format("{}: {} layers on {} take {} of memory, above the {} of `max_memory`; allow more, "
                         "choose higher layers, or use fewer `threads`",
-                        plate_.files.front().path, plan.layers.size(), counted(threads, "thread"),
+                        name_of(plate_), plan.layers.size(), counted(threads, "thread"),
                         byte_amount(overhead), byte_amount(memory_.limit)));
     if (overhead + largest > memory_.limit)
         throw Error(ErrorKind::limit,
                     fmt::format("{}: the layer at z = {:.6g} mm alone is cut from {} triangles, which on {} "
                                 "takes {} of memory, above the {} of `max_memory`; allow more, or use fewer "
                                 "`threads`",
-                                plate_.files.front().path, plan.layers[mine.begin + where].z,
-                                survey.points(where), counted(threads, "thread"),
-                                byte_amount(overhead + largest), byte_amount(memory_.limit)));
+                                name_of(plate_), plan.layers[mine.begin + where].z, survey.points(where),
+                                counted(threads, "thread"), byte_amount(overhead + largest),
+                                byte_amount(memory_.limit)));
     std::vector<PlaneRange> shares =
         divide_to_fit(survey, part_of(plan, mine), slab, memory_.limit - overhead);
     for (PlaneRange& share : shares)
@@ -523,8 +528,8 @@ void Feed::bring_own(PlaneRange planes, ShareStore& store, const Execution& exec
         if (!fits)
             throw changed_while_read(file.input.path());
     }
-    if (!store.full()) // which one is not known
-        throw changed_while_read(plate_.files.front().path);
+    if (const std::optional<std::size_t> shape = store.incomplete())
+        throw changed_while_read(path_of(*shape));
 }
 
 /// The third pass, where each process reads a part: in rounds, so that triangles on their way take little
@@ -575,8 +580,8 @@ void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, cons
         }
     }
     in_agreement(*among_, [&] {
-        if (!store_->full())
-            throw changed_while_read(plate_.files.front().path);
+        if (const std::optional<std::size_t> shape = store_->incomplete())
+            throw changed_while_read(path_of(*shape));
     });
 }
 
@@ -614,7 +619,7 @@ void Feed::store(std::size_t shape, const TriangleSoup& triangles, const Executi
     const TriangleSoup placed = triangles.transformed(placement(shape));
     executor.for_chunks(placed.size(), at_once, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         if (!store_->add(shape, placed.part(begin, end)))
-            throw changed_while_read(plate_.files.front().path);
+            throw changed_while_read(path_of(shape));
     });
     executor.check_cancelled();
 }

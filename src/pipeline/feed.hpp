@@ -20,6 +20,7 @@
 #include <deque>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace lamella {
@@ -111,6 +112,7 @@ class Feed {
     MeshFile stream(const File& file, const TriangleSink& sink, const Execution& execution,
                     const std::optional<RecordRange>& part);
     [[nodiscard]] const Transform& placement(std::size_t shape) const;
+    [[nodiscard]] const std::string& path_of(std::size_t shape) const;
 
     void count_streams(const Plan& plan, const Execution& execution);
     [[nodiscard]] PlaneCounts counts_of_parts(std::size_t planes) const;

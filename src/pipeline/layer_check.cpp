@@ -5,23 +5,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
+#include <vector>
 
 namespace lamella {
-
-namespace {
-
-/// Whether a ring is so thin that rounding its points may have turned it over.
-bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) {
-    const double largest = largest_coordinate(ring);
-    const double moved =
-        std::sqrt(0.5) * rounding.step_at(largest) + 4 * std::numeric_limits<double>::epsilon() * largest;
-    return std::abs(ring_area(ring)) <= contour_length(ring, true) * moved;
-}
-
-} // namespace
 
 LayerCheck check_layer(const Layer& layer, const Rounding& rounding) {
     LayerCheck result;

@@ -14,13 +14,15 @@
 namespace lamella {
 
 LayerTotals::LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes,
-                         const std::vector<bool>& supports)
+                         const std::vector<bool>& supports, std::vector<std::uint32_t> files)
     : closed_(job.repair.close_gaps_mm ? planes.size() : 0), changes_(job.steps.any() ? planes.size() : 0),
       statistics_(job.layer_statistics ? planes.size() : 0), parts_(supports.size()),
-      has_changes_(job.steps.any()) {
+      files_(std::move(files)), has_changes_(job.steps.any()) {
+    files_.resize(std::max(files_.size(), parts_.size()));
+    assert(std::is_sorted(files_.begin(), files_.begin() + static_cast<std::ptrdiff_t>(parts_.size())));
     rows_.reserve(planes.size());
     for (const PlannedLayer& plane : planes)
-        rows_.push_back({.index = plane.index, .z = plane.z, .open_gaps = {}});
+        rows_.push_back({.index = plane.index, .z = plane.z, .thickness = plane.top - plane.bottom});
     if (job.scan)
         for (Exposure& exposure : plane_exposures(supports, *job.scan))
             exposures_.push_back({std::move(exposure), {}});
@@ -28,12 +30,11 @@ LayerTotals::LayerTotals(const FileJob& job, std::span<const PlannedLayer> plane
 }
 
 void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes,
-                      std::span<const Layer> bodies) {
+                      std::span<const InvertedRings> inverted, std::span<const Layer> bodies) {
     const Layer& first = parts.front();
     assert(parts.size() == parts_.size());
     const auto place = static_cast<std::size_t>(first.index - rows_.front().index);
-    Row& row = rows_.at(place);
-    assert(row.index == first.index);
+    assert(rows_.at(place).index == first.index);
     if (!closed_.empty())
         for (const GapJoin& join : joins) {
             FileResult::Gaps& closed = closed_[place];
@@ -43,10 +44,14 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
         }
     if (!changes_.empty())
         changes_[place] = changes;
-    for (const Layer& body : bodies.empty() ? parts : bodies) {
-        row.open_gaps += open_gaps(body);
-        row.inside_out |= begins_clockwise(body);
-    }
+    if (bodies.empty())
+        bodies = parts;
+    std::vector<OpenGaps> gaps; // of each body, where there are any
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        if (bodies[i].open_chains() > 0) {
+            gaps.resize(bodies.size());
+            gaps[i] = open_gaps(bodies[i]);
+        }
     LayerMeasure together;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         const Layer& layer = parts[i];
@@ -56,17 +61,23 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
         if (!statistics_.empty())
             together.add(measure(layer));
     }
-    if (!statistics_.empty())
-        statistics_[place] = {.index = first.index,
-                              .z = first.z,
-                              .thickness = first.thickness(),
-                              .measure = together,
-                              .open_gaps = row.open_gaps,
-                              .joins = std::move(joins),
-                              .hash = content_hash(parts.size() == 1 ? first : merged(parts)),
-                              .changes = changes,
-                              .scan = {},
-                              .scan_hash = 0};
+    if (!statistics_.empty()) {
+        LayerStatistics& statistics = statistics_[place];
+        statistics = {.index = first.index,
+                      .z = first.z,
+                      .thickness = first.thickness(),
+                      .measure = together,
+                      .open_gaps = {},
+                      .inverted = {},
+                      .joins = std::move(joins),
+                      .hash = content_hash(parts.size() == 1 ? first : merged(parts)),
+                      .changes = changes,
+                      .scan = {},
+                      .scan_hash = 0};
+        for (const OpenGaps& of_part : gaps)
+            statistics.open_gaps += of_part;
+    }
+    add_doubts(place, gaps, inverted);
 }
 
 void LayerTotals::add(std::uint64_t index, const PlaneVectors& vectors) {
@@ -77,6 +88,37 @@ void LayerTotals::add(std::uint64_t index, const PlaneVectors& vectors) {
     rows_[place].scan_hash = vectors.hash;
     std::copy(vectors.figures.begin(), vectors.figures.end(),
               vectors_.begin() + static_cast<std::ptrdiff_t>(place * exposures_.size()));
+    add_doubts(place, {}, vectors.inverted);
+}
+
+/// Of the bodies on a plane, the parts first; where there are none of a kind, no body has any.
+void LayerTotals::add_doubts(std::size_t plane, std::span<const OpenGaps> gaps,
+                             std::span<const InvertedRings> inverted) {
+    std::vector<Doubt> found; // of one file each
+    for (std::size_t i = 0; i < std::max(gaps.size(), inverted.size()); ++i) {
+        const bool open = i < gaps.size() && gaps[i].count > 0;
+        const bool turned = i < inverted.size() && inverted[i].rings > 0;
+        if (!open && !turned)
+            continue;
+        auto doubt = std::find_if(found.begin(), found.end(),
+                                  [&](const Doubt& of_file) { return of_file.file == files_[i]; });
+        if (doubt == found.end())
+            doubt = found.insert(
+                doubt, {.file = files_[i], .plane = rows_[plane].index, .open_gaps = {}, .inverted = {}});
+        if (open)
+            doubt->open_gaps += gaps[i];
+        if (!turned)
+            continue;
+        doubt->inverted += inverted[i];
+        if (i < parts_.size())
+            parts_[i].inverted_rings.fetch_add(inverted[i].rings, std::memory_order_relaxed);
+        if (!statistics_.empty())
+            statistics_[plane].inverted += inverted[i];
+    }
+    if (found.empty())
+        return;
+    const std::lock_guard lock(mutex_);
+    doubts_.insert(doubts_.end(), found.begin(), found.end());
 }
 
 std::uint64_t LayerTotals::points() const noexcept {
@@ -91,17 +133,22 @@ void LayerTotals::gather(Communicator& processes) {
         return;
     Packer mine;
     for (const Counts& part : parts_)
-        mine.put(part.contours.load()).put(part.open_chains.load()).put(part.points.load());
+        mine.put(part.contours.load())
+            .put(part.open_chains.load())
+            .put(part.inverted_rings.load())
+            .put(part.points.load());
     mine.put_all(std::span<const Row>(rows_))
         .put_all(std::span<const FileResult::Gaps>(closed_))
         .put_all(std::span<const LayerChanges>(changes_))
-        .put_all(std::span<const ScanFigures>(vectors_));
+        .put_all(std::span<const ScanFigures>(vectors_))
+        .put_all(std::span<const Doubt>(doubts_));
     for (const LayerStatistics& layer : statistics_)
         mine.put(layer.index)
             .put(layer.z)
             .put(layer.thickness)
             .put(layer.measure)
             .put(layer.open_gaps)
+            .put(layer.inverted)
             .put_all(std::span(layer.joins))
             .put(layer.hash)
             .put(layer.changes);
@@ -109,6 +156,7 @@ void LayerTotals::gather(Communicator& processes) {
     closed_.clear();
     changes_.clear();
     vectors_.clear();
+    doubts_.clear();
     statistics_.clear();
     parts_ = std::vector<Counts>(parts_.size());
     const auto append = [](auto& to, const auto& more) {
@@ -119,18 +167,21 @@ void LayerTotals::gather(Communicator& processes) {
         for (Counts& part : parts_) {
             part.contours += from.get<std::uint64_t>();
             part.open_chains += from.get<std::uint64_t>();
+            part.inverted_rings += from.get<std::uint64_t>();
             part.points += from.get<std::uint64_t>();
         }
         append(rows_, from.get_all<Row>());
         append(closed_, from.get_all<FileResult::Gaps>());
         append(changes_, from.get_all<LayerChanges>());
         append(vectors_, from.get_all<ScanFigures>());
+        append(doubts_, from.get_all<Doubt>());
         while (!from.empty()) // in the order in which they were put
             statistics_.push_back({.index = from.get<std::uint64_t>(),
                                    .z = from.get<double>(),
                                    .thickness = from.get<double>(),
                                    .measure = from.get<LayerMeasure>(),
                                    .open_gaps = from.get<OpenGaps>(),
+                                   .inverted = from.get<InvertedRings>(),
                                    .joins = from.get_all<GapJoin>(),
                                    .hash = from.get<std::uint64_t>(),
                                    .changes = from.get<LayerChanges>(),
@@ -139,11 +190,39 @@ void LayerTotals::gather(Communicator& processes) {
     }
 }
 
-void LayerTotals::tell(FileResult& result) const {
-    for (const Row& row : rows_) {
-        result.doubts.add(row.z, row.open_gaps, row.inside_out);
-        result.unreached.add(row.unreached_mm2, row.z);
+/// In the order of the planes, so that sums have the same bits whoever came first.
+void LayerTotals::tell_doubts(FileResult& result) const {
+    result.doubts.assign(*std::max_element(files_.begin(), files_.end()) + std::size_t{1},
+                         MeshDoubts{.layers = rows_.size()});
+    std::vector<Doubt> doubts = doubts_;
+    std::sort(doubts.begin(), doubts.end(), [](const Doubt& a, const Doubt& b) {
+        return a.plane != b.plane ? a.plane < b.plane : a.file < b.file;
+    });
+    for (const Doubt& doubt : doubts) {
+        const Row& row = rows_[static_cast<std::size_t>(doubt.plane - rows_.front().index)];
+        result.doubts[doubt.file].add(row.z, row.thickness, doubt.open_gaps, doubt.inverted);
     }
+    for (std::size_t begin = 0, end = 0; begin < parts_.size(); begin = end) {
+        while (end < parts_.size() && files_[end] == files_[begin])
+            ++end;
+        // Where all parts of the file have something it goes without saying.
+        const auto labels = [&](std::atomic<std::uint64_t> Counts::*count) {
+            std::vector<std::string> found;
+            for (std::size_t i = begin; i < end; ++i)
+                if (parts_[i].*count > 0)
+                    found.push_back(result.parts[i].label);
+            return found.size() < end - begin ? found : std::vector<std::string>();
+        };
+        MeshDoubts& of_file = result.doubts[files_[begin]];
+        of_file.open_parts = labels(&Counts::open_chains);
+        of_file.inverted_parts = labels(&Counts::inverted_rings);
+    }
+}
+
+void LayerTotals::tell(FileResult& result) const {
+    for (const Row& row : rows_)
+        result.unreached.add(row.unreached_mm2, row.z);
+    tell_doubts(result);
     for (std::size_t i = 0; i < closed_.size(); ++i) {
         if (closed_[i].closed > 0)
             result.gaps.add(rows_[i].z);
@@ -174,6 +253,7 @@ void LayerTotals::tell(FileResult& result) const {
         PartResult& part = result.parts[i];
         report.contours += part.contours = parts_[i].contours;
         report.open_chains += part.open_chains = parts_[i].open_chains;
+        part.inverted_rings = parts_[i].inverted_rings;
         report.points += part.points = parts_[i].points;
     }
 }

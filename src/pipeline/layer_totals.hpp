@@ -11,6 +11,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -20,15 +21,19 @@ namespace lamella {
 /// processes give the same figures, bit for bit.
 class LayerTotals {
   public:
-    /// Of the planes that this process slices; none, perhaps. `supports`: for each part whether it is one.
-    LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, const std::vector<bool>& supports);
+    /// Of the planes that this process slices; none, perhaps. `supports`: for each part whether it is one;
+    /// `files`: of each part the number of its file, ascending, then of other bodies; where empty, all are of
+    /// the first.
+    LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, const std::vector<bool>& supports,
+                std::vector<std::uint32_t> files = {});
 
-    /// The layers of all parts on one plane, as they are written, and what was done to them. `bodies`: what
-    /// is looked at for doubts about the mesh where it is not the parts: they and negative volumes before
-    /// these were subtracted. From any thread, once for each plane.
+    /// The layers of all parts on one plane, as they are written, and what was done to them; `inverted`: the
+    /// inverted rings of each body, where these are known by now. `bodies`: what is looked at for doubts
+    /// about the mesh where it is not the parts: they and negative volumes before these were subtracted. From
+    /// any thread, once for each plane.
     void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes,
-             std::span<const Layer> bodies = {});
-    /// Of the scan vectors of a plane. From any thread, once for each plane.
+             std::span<const InvertedRings> inverted = {}, std::span<const Layer> bodies = {});
+    /// Of the scan vectors of a plane, and what has none. From any thread, once for each plane.
     void add(std::uint64_t index, const PlaneVectors& vectors);
 
     /// Points of the layers that were added.
@@ -44,16 +49,27 @@ class LayerTotals {
     struct Row {
         std::uint64_t index = 0;
         double z = 0;
-        OpenGaps open_gaps;
-        bool inside_out = false;
+        double thickness = 0;
         double unreached_mm2 = 0; ///< see PlaneVectors
         std::uint64_t scan_hash = 0;
+    };
+    /// What a plane tells about the mesh of a file.
+    struct Doubt {
+        std::uint32_t file = 0;
+        std::uint64_t plane = 0; ///< its index
+        OpenGaps open_gaps;
+        InvertedRings inverted;
     };
     struct Counts {
         std::atomic<std::uint64_t> contours{0};
         std::atomic<std::uint64_t> open_chains{0};
+        std::atomic<std::uint64_t> inverted_rings{0};
         std::atomic<std::uint64_t> points{0};
     };
+
+    void add_doubts(std::size_t plane, std::span<const OpenGaps> gaps,
+                    std::span<const InvertedRings> inverted);
+    void tell_doubts(FileResult& result) const;
 
     // Of each plane. There may be millions, and memory is touched for what the job asks of them only.
     std::vector<Row> rows_;
@@ -63,6 +79,9 @@ class LayerTotals {
     std::vector<ExposureResult> exposures_;   ///< where there are scan vectors; without figures
     std::vector<ScanFigures> vectors_;        ///< then of each plane: of each exposure
     std::vector<Counts> parts_;
+    std::vector<std::uint32_t> files_; ///< of each body
+    std::mutex mutex_;
+    std::vector<Doubt> doubts_; ///< of planes that tell something, in any order
     bool has_changes_;
 };
 

@@ -1,23 +1,62 @@
 #include "lamella/pipeline/layer_warnings.hpp"
 
-#include "lamella/contour/measure.hpp"
-
 #include "core/counted.hpp"
+#include "core/executor.hpp"
 #include "slicing/near_faces.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 namespace lamella {
 namespace {
 
+/// " of the part "ring"", " of the parts "a", "b" and 5 more"; "" for none, which means all.
+std::string of_parts(std::span<const std::string> labels) {
+    constexpr std::size_t few = 3;
+    if (labels.empty())
+        return {};
+    const std::size_t named = std::min(few, labels.size());
+    std::string text = fmt::format(" of the part{} \"{}\"", labels.size() == 1 ? "" : "s",
+                                   fmt::join(labels.first(named), "\", \""));
+    if (labels.size() > named)
+        text += fmt::format(" and {} more", labels.size() - named);
+    return text;
+}
+
 /// "in 3 of 20 layers, first at z = 0.25 mm".
-std::string where(const AffectedLayers& affected, std::uint64_t layers) {
+std::string where(const AffectedLayers& affected, std::uint64_t layers,
+                  std::span<const std::string> parts = {}) {
     constexpr double nearly_0 = 1e-7; // what single precision leaves where 0 is meant
     const double z = std::abs(affected.first_z) < nearly_0 ? 0 : affected.first_z;
-    return fmt::format("in {} of {}, first at z = {:.6g} mm", affected.layers, counted(layers, "layer"), z);
+    return fmt::format("in {} of {}{}, first at z = {:.6g} mm", affected.layers, counted(layers, "layer"),
+                       of_parts(parts), z);
+}
+
+/// "20 rings bound no material in 3 of 20 layers, first at z = 0.25 mm (360 mm3 lost): they run clockwise
+/// outside of material".
+std::string inverted_text(const InvertedLayers& inverted, std::uint64_t layers,
+                          std::span<const std::string> parts = {}) {
+    const bool one = inverted.rings == 1;
+    return fmt::format("{} no material {} ({:.4g} mm3 lost): {} clockwise outside of material",
+                       counted(inverted.rings, "ring bounds", "rings bound"), where(inverted, layers, parts),
+                       inverted.volume_mm3, one ? "it runs" : "they run");
+}
+
+/// What the planes of parts have.
+std::vector<InvertedRings> inverted_on_planes(std::span<const LayerStack> parts, const Rounding& rounding,
+                                              InversionSearch search, const Execution& execution) {
+    std::vector<InvertedRings> planes(parts.empty() ? 0 : parts.front().size());
+    Executor executor(execution);
+    executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        for (const LayerStack& part : parts)
+            planes[i] += inverted_rings(part[i], rounding, search);
+    });
+    executor.check_cancelled();
+    return planes;
 }
 
 std::string power_of_ten_above(double length_mm);
@@ -78,43 +117,59 @@ NearFaceLayers near_faces(const Mesh& mesh, const Plan& plan, const Execution& e
     return found;
 }
 
-void MeshDoubts::add(double z, const OpenGaps& gaps, bool clockwise) noexcept {
-    ++layers;
+void InvertedLayers::add(double z, double thickness, const InvertedRings& found) noexcept {
+    if (found.rings == 0)
+        return;
+    AffectedLayers::add(z);
+    rings += found.rings;
+    volume_mm3 += found.area_mm2 * thickness;
+}
+
+std::string InvertedLayers::text(std::uint64_t of_layers) const {
+    return inverted_text(*this, of_layers);
+}
+
+std::string InvertedLayers::text_of_file(std::uint64_t of_layers) const {
+    return text(of_layers) + "; converting them with `fill` nonzero turns them round";
+}
+
+InvertedLayers inverted_layers(std::span<const LayerStack> parts, const Rounding& rounding,
+                               InversionSearch search, const Execution& execution) {
+    InvertedLayers inverted;
+    const std::vector<InvertedRings> planes = inverted_on_planes(parts, rounding, search, execution);
+    for (std::size_t i = 0; i < planes.size(); ++i)
+        inverted.add(parts.front()[i].z, parts.front()[i].thickness(), planes[i]);
+    return inverted;
+}
+
+void MeshDoubts::add(double z, double thickness, const OpenGaps& gaps, const InvertedRings& found) noexcept {
     if (gaps.count > 0)
         open.add(z);
     open_gaps += gaps;
-    if (clockwise)
-        inside_out.add(z);
+    inverted.add(z, thickness, found);
 }
 
 std::vector<std::string> MeshDoubts::texts() const {
     std::vector<std::string> texts;
     if (open_gaps.count > 0)
-        texts.push_back(fmt::format("{} {}: {}", counted(open_gaps.count, "open chain"), where(open, layers),
-                                    open_gaps_text(open_gaps.longest_mm)));
-    // A ring that goes first is an outer one only where all contours are closed: of a mesh with holes it may
-    // be that of a hollow, and what lies around it an open chain.
-    if (inside_out.layers > 0 && open_gaps.count > 0)
-        texts.push_back(fmt::format("closed contours with none around them run clockwise {}, as around "
-                                    "holes: those around them stay open, or triangles face inwards",
-                                    where(inside_out, layers)));
-    else if (inside_out.layers > 0)
-        texts.push_back(fmt::format("inside out {}: outer contours run clockwise, as around holes, because "
-                                    "triangles face inwards",
-                                    where(inside_out, layers)));
+        texts.push_back(fmt::format("{} {}: {}", counted(open_gaps.count, "open chain"),
+                                    where(open, layers, open_parts), open_gaps_text(open_gaps.longest_mm)));
+    // Of a mesh with holes a closed contour may be that of a hollow, and what lies around it an open chain.
+    if (inverted.rings > 0)
+        texts.push_back(inverted_text(inverted, layers, inverted_parts) +
+                        (open_gaps.count > 0
+                             ? "; contours around them stay open, or triangles face inwards"
+                             : " because triangles face inwards; `orient` turns these round"));
     return texts;
 }
 
-void ScanLosses::add(std::span<const Layer> parts) {
+void ScanLosses::add(std::span<const Layer> parts, const InvertedRings& found) {
     ++layers;
-    bool turned = false;
     for (const Layer& layer : parts) {
         hatches += layer.hatches.size() / 2;
         open_chains += layer.open_chains();
-        turned |= layer.open_chains() == 0 && begins_clockwise(layer);
     }
-    if (turned)
-        inside_out.add(parts.front().z);
+    inverted.add(parts.front().z, parts.front().thickness(), found);
 }
 
 std::vector<std::string> ScanLosses::texts() const {
@@ -124,11 +179,24 @@ std::vector<std::string> ScanLosses::texts() const {
     if (open_chains > 0)
         texts.push_back(fmt::format("{} left out: only closed contours bound material",
                                     counted(open_chains, "open contour")));
-    if (inside_out.layers > 0)
-        texts.push_back(fmt::format("inside out {}: outer contours run clockwise, as around holes, and bound "
-                                    "no material; to fill them by the rule nonzero turns them round",
-                                    where(inside_out, layers)));
+    if (inverted.rings > 0)
+        texts.push_back(inverted.text_of_file(layers));
     return texts;
+}
+
+ScanLosses scan_losses(std::span<const LayerStack> parts, const Rounding& rounding,
+                       const Execution& execution) {
+    ScanLosses losses;
+    const std::vector<InvertedRings> planes =
+        inverted_on_planes(parts, rounding, InversionSearch::full, execution);
+    std::vector<Layer> plane;
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        plane.clear();
+        for (const LayerStack& part : parts)
+            plane.push_back(part[i]);
+        losses.add(plane, planes[i]);
+    }
+    return losses;
 }
 
 } // namespace lamella

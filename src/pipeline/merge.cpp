@@ -2,6 +2,7 @@
 
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy_fields.hpp"
 
@@ -47,6 +48,7 @@ struct ShardFile {
     double thinnest_mm = 0;     ///< of its lowest and its highest layer
     double rounded_heights = 0; ///< by how much the format may have moved top and bottom, together
     std::vector<std::string> warnings = {};
+    InvertedLayers inverted = {};
 };
 
 ShardFile look_at(const std::string& path, const LayerReadOptions& reading, const Execution& execution) {
@@ -73,8 +75,13 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .rounded_heights =
                         moved_cut(layers.front(), file.rounding) + moved_cut(layers.back(), file.rounding),
                     .warnings = file.warnings};
-    for (const LayerPart& part : file.parts)
+    std::vector<LayerStack> contours;
+    for (const LayerPart& part : file.parts) {
         shard.parts.push_back({part.label, part_box(part.layers), part.exposure, part.support});
+        if (!part.exposure)
+            contours.push_back(part.layers);
+    }
+    shard.inverted = inverted_layers(contours, file.rounding, InversionSearch::quick, execution);
     return shard;
 }
 
@@ -448,9 +455,8 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
     result.bytes = writer->bytes();
     for (const ShardFile& shard : shards)
         for (const std::string& warning : shard.warnings)
-            result.warnings.push_back(fmt::format("{}: {}", shard.path, warning));
-    for (std::string& warning : writer->warnings())
-        result.warnings.push_back(std::move(warning));
+            result.file_warnings.push_back(fmt::format("{}: {}", shard.path, warning));
+    result.warnings = writer->warnings();
 }
 
 } // namespace
@@ -466,6 +472,7 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
                        .bottom = shards.front().bottom,
                        .top = shards.back().top,
                        .bytes = 0,
+                       .file_warnings = {},
                        .warnings = {}};
     for (const ShardFile& shard : shards)
         result.layers += shard.layers;
@@ -475,6 +482,10 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
         result.bytes = join_common_layers(shards, result.layers, output, options, reading, execution);
     else
         write_anew(shards, output, to, options, reading, result, execution);
+    for (const ShardFile& shard : shards)
+        if (shard.inverted.rings > 0)
+            result.file_warnings.push_back(
+                fmt::format("{}: {}", shard.path, shard.inverted.text_of_file(shard.layers)));
     return result;
 }
 

@@ -7,6 +7,7 @@
 #include "core/counted.hpp"
 #include "core/memory_size.hpp"
 #include "pipeline/plate_builder.hpp"
+#include "pipeline/plate_names.hpp"
 
 #include <fmt/format.h>
 
@@ -51,17 +52,18 @@ void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uin
 }
 
 void check_build_volume(const Plate& plate, const Point3& size) {
-    for (const PlatePart& part : plate.parts) {
-        const Box3& box = part.box;
+    for (std::size_t i = 0; i < plate.parts.size(); ++i) {
+        const Box3& box = plate.parts[i].box;
         if (box.min.x >= 0 && box.min.y >= 0 && box.min.z >= 0 && box.max.x <= size.x &&
             box.max.y <= size.y && box.max.z <= size.z)
             continue;
-        throw Error(ErrorKind::usage,
-                    fmt::format("the part \"{}\" reaches from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, "
-                                "{:.6g}) mm, out of the build volume from (0, 0, 0) to ({:.6g}, {:.6g}, "
-                                "{:.6g}); move it with `placement`",
-                                excerpt(part.label), box.min.x, box.min.y, box.min.z, box.max.x, box.max.y,
-                                box.max.z, size.x, size.y, size.z));
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("{}: reaches from ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) mm, out "
+                        "of the build volume from (0, 0, 0) to ({:.6g}, {:.6g}, {:.6g}); move it with "
+                        "`placement`",
+                        name_of_part(plate, i), box.min.x, box.min.y, box.min.z, box.max.x, box.max.y,
+                        box.max.z, size.x, size.y, size.z));
     }
 }
 

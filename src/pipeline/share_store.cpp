@@ -86,9 +86,12 @@ bool ShareStore::put(Stretch& stretch, std::span<const Triangle3f> triangles) {
     return true;
 }
 
-bool ShareStore::full() const noexcept {
-    return std::all_of(stretches_.begin(), stretches_.end(),
-                       [](const Stretch& one) { return one.next == one.end; });
+std::optional<std::size_t> ShareStore::incomplete() const noexcept {
+    const auto found = std::find_if(stretches_.begin(), stretches_.end(),
+                                    [](const Stretch& one) { return one.next != one.end; });
+    if (found == stretches_.end())
+        return std::nullopt;
+    return static_cast<std::size_t>(found - stretches_.begin()) % shapes_;
 }
 
 TriangleSoup ShareStore::take(std::size_t share, std::size_t shape, const Execution& execution) {

@@ -15,6 +15,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -32,8 +33,8 @@ class ShareStore {
     /// Triangles of a shape, placed; what no share asks for is passed over. From any number of threads. False
     /// when there are more than were counted.
     [[nodiscard]] bool add(std::size_t shape, const TriangleSoup& batch);
-    /// Whether all came that were counted.
-    [[nodiscard]] bool full() const noexcept;
+    /// The first shape of which not all triangles came that were counted.
+    [[nodiscard]] std::optional<std::size_t> incomplete() const noexcept;
     /// Those of a share, as stored: without the placement of their batches. Each once: its room on the disk
     /// is given back.
     [[nodiscard]] TriangleSoup take(std::size_t share, std::size_t shape, const Execution& execution);

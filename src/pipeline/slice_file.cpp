@@ -17,6 +17,7 @@
 #include "pipeline/packed.hpp"
 #include "pipeline/plane_scan.hpp"
 #include "pipeline/plate_builder.hpp"
+#include "pipeline/plate_names.hpp"
 #include "pipeline/plate_slicing.hpp"
 
 #include <fmt/format.h>
@@ -40,7 +41,8 @@ namespace lamella {
 namespace {
 
 void check_heights(const Plate& plate) {
-    for (const PlatePart& part : plate.parts) {
+    for (std::size_t i = 0; i < plate.parts.size(); ++i) {
+        const PlatePart& part = plate.parts[i];
         if (part.box.min.z != part.box.max.z)
             continue;
         const PlateFile& file = plate.files[plate.shapes[part.shape].input];
@@ -49,7 +51,7 @@ void check_heights(const Plate& plate) {
         throw Error(ErrorKind::input,
                     fmt::format("{}: the mesh is flat: all of it lies at z = {:.6g}, so there is nothing to "
                                 "slice; rotate it or choose another direction{}",
-                                file.path, part.box.min.z, cause));
+                                name_of_part(plate, i), part.box.min.z, cause));
     }
 }
 
@@ -229,15 +231,19 @@ std::string describe_defects(const Inspection& found) {
 
 /// Inspects every shape, and leaves it welded for an engine that would weld it once more. Counts are those of
 /// all parts, each of which is a solid of its own.
-Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, const Execution& execution) {
+Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, std::vector<std::size_t>& unsound,
+                         const Execution& execution) {
     std::vector<Inspection> found;
-    for (PlateShape& shape : plate.shapes) {
+    for (std::size_t i = 0; i < plate.shapes.size(); ++i) {
+        PlateShape& shape = plate.shapes[i];
         IndexedMesh welded = weld(shape.mesh, execution);
         found.push_back(inspect(welded, execution));
         if (strict && !found.back().sound())
             throw Error(ErrorKind::defect,
-                        fmt::format("{}: the mesh has defects: {}", plate.files[shape.input].path,
+                        fmt::format("{}: the mesh has defects: {}", name_of_shape(plate, i),
                                     describe_defects(found.back())));
+        if (!found.back().sound() && (unsound.empty() || unsound.back() != shape.input))
+            unsound.push_back(shape.input);
         if (keep_welded)
             shape.mesh = Mesh(std::move(welded));
     }
@@ -256,6 +262,7 @@ Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, const Exec
 /// What was found in the meshes and done to them before they were sliced.
 struct Prepared {
     std::optional<Inspection> inspection;
+    std::vector<std::size_t> unsound; ///< files
     std::vector<FileResult::MeshRepair> repairs;
     double volume_mm3 = 0;
     double seconds = 0; ///< but for the volume
@@ -271,7 +278,7 @@ Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const E
     for (PlateShape& shape : plate.shapes)
         shape.mesh = shape.mesh.with_joined_vertices(execution);
     if (inspected)
-        done.inspection = inspect_plate(plate, engine.welds, job.strict, execution);
+        done.inspection = inspect_plate(plate, engine.welds, job.strict, done.unsound, execution);
     if (indexed || inspected)
         done.seconds = welding.seconds();
     if (job.layer_statistics) {
@@ -283,13 +290,14 @@ Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const E
     }
     if (job.repair.change_the_mesh()) {
         const Stopwatch repairing;
-        for (PlateShape& shape : plate.shapes) {
+        for (std::size_t i = 0; i < plate.shapes.size(); ++i) {
+            PlateShape& shape = plate.shapes[i];
             FileResult::MeshRepair& repair = done.repairs.emplace_back();
             repair.file = shape.input;
             shape.mesh = repaired(shape.mesh, job.repair, repair.repairs, execution);
             if (shape.mesh.empty())
                 throw Error(ErrorKind::input, fmt::format("{}: nothing of the mesh is left after its repair",
-                                                          plate.files[shape.input].path));
+                                                          name_of_shape(plate, i)));
         }
         done.seconds += repairing.seconds();
     }
@@ -345,6 +353,7 @@ class LayerWay {
             closed = without_gaps(parts, *job_.repair.close_gaps_mm, joins);
             parts = closed;
         }
+        const std::vector<InvertedRings> inverted = inverted_of(parts);
         std::vector<Layer> made;
         LayerChanges changes;
         std::vector<Layer> filled; // parts and negative volumes
@@ -370,7 +379,7 @@ class LayerWay {
         }
         const auto plane = static_cast<std::uint32_t>(parts.front().index - first_index_);
         if (mine_.begin <= plane && plane < mine_.end)
-            totals_.add(parts, std::move(joins), changes, filled);
+            totals_.add(parts, std::move(joins), changes, inverted, filled);
         std::function<void()> write = job_.scan ? window_(plane, parts) : output_.prepare(parts);
         if (!write)
             return {};
@@ -395,10 +404,26 @@ class LayerWay {
         nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * watch.seconds()), std::memory_order_relaxed);
     }
 
+    /// Of each part, before steps leave out what is no material; none where these say what is. What only
+    /// crossings reveal is looked for where it would be lost; scan vectors find it themselves.
+    [[nodiscard]] std::vector<InvertedRings> inverted_of(std::span<const Layer> parts) const {
+        std::vector<InvertedRings> inverted;
+        const bool as_cut = !job_.steps.any() && plate_.negatives.empty();
+        if ((job_.scan && as_cut) || job_.steps.fill != FillRule::none)
+            return inverted;
+        const bool loses = job_.scan || job_.steps.offset_mm != 0 || !plate_.negatives.empty();
+        for (const Layer& layer : parts)
+            inverted.push_back(
+                inverted_rings(layer, {}, loses ? InversionSearch::full : InversionSearch::quick));
+        return inverted;
+    }
+
     std::vector<Layer> vectors_of(const PlaneLayers& plane) {
         const Stopwatch scanning;
         PlaneVectors vectors = scan_plane(plane, supports_, names_, *job_.scan, memories_);
         count(scanning, scan_nanoseconds_);
+        if (job_.steps.any() || !plate_.negatives.empty())
+            vectors.inverted.clear(); // as counted before
         totals_.add(plane.parts.front().layer().index, vectors);
         return std::move(vectors.layers);
     }
@@ -516,9 +541,14 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     JobOutput output(job, file_info(job, plate, plan, all), {mine.begin - all.begin, mine.end - all.begin},
                      processes, feed.memory().of_output());
     std::vector<bool> supports;
-    for (const PlatePart& part : plate.parts)
+    std::vector<std::uint32_t> files;
+    for (const PlatePart& part : plate.parts) {
         supports.push_back(part.support);
-    LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), supports);
+        files.push_back(static_cast<std::uint32_t>(plate.shapes[part.shape].input));
+    }
+    for (const PlateNegative& negative : plate.negatives)
+        files.push_back(static_cast<std::uint32_t>(plate.shapes[negative.shape].input));
+    LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), supports, files);
     LayerWay way(job, plate, plan, sliced_here, mine, supports, totals, output);
     ShapeVisitor visitor;
     if (feed.meshes() != nullptr) {
@@ -553,12 +583,15 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     result.files = plate.files;
     result.box = plate.box;
     for (const PlatePart& part : plate.parts) {
-        result.parts.push_back(
-            {.label = part.label, .triangles = feed.triangles(part.shape), .box = part.box});
+        result.parts.push_back({.label = part.label,
+                                .file = plate.shapes[part.shape].input,
+                                .triangles = feed.triangles(part.shape),
+                                .box = part.box});
         result.triangles += result.parts.back().triangles;
     }
     result.mesh_volume_mm3 = feed.meshes() != nullptr ? prepared.volume_mm3 : feed.volume_mm3();
     result.inspection = prepared.inspection;
+    result.unsound = prepared.unsound;
     result.repairs = std::move(prepared.repairs);
     result.planned_layers = planes.written.size();
     result.shard = {all.begin - planes.written.begin, all.end - planes.written.begin};
@@ -588,19 +621,17 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
         if (result.near_faces[file].layers > 0)
             throw Error(ErrorKind::defect, fmt::format("{}: {}", result.files[file].path,
                                                        result.near_faces[file].text(result.report.layers)));
-    const std::uint64_t open_chains = std::max(result.report.open_chains, result.doubts.open_gaps.count);
-    if (job.strict && open_chains > 0)
-        throw Error(ErrorKind::defect,
-                    fmt::format("{}: {} contours do not close, the lowest at z = {:.6g} mm",
-                                job.inputs.front().path, open_chains, result.doubts.open.first_z));
+    if (job.strict)
+        for (std::size_t file = 0; file < result.doubts.size(); ++file)
+            if (const std::vector<std::string> doubts = result.doubts[file].texts(); !doubts.empty())
+                throw Error(ErrorKind::defect, fmt::format("{}: {}", job.inputs[file].path, doubts.front()));
     // Of a shard the others may have some.
     if (job.strict && !job.shard && result.changes && result.changes->changed_layers > 0 &&
         result.report.contours == 0)
         throw Error(ErrorKind::defect, fmt::format("{}: nothing is left of any of {} layers after the steps",
-                                                   job.inputs.front().path, result.report.layers));
+                                                   name_of(job.inputs), result.report.layers));
     if (job.strict && result.unreached.layers > 0)
-        throw Error(ErrorKind::defect,
-                    fmt::format("{}: {}", job.inputs.front().path, result.unreached.text()));
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", name_of(job.inputs), result.unreached.text()));
 
     const Stopwatch writing;
     JobOutput::Written file = output.finish_file();

@@ -2,6 +2,7 @@
 #include "lamella/pipeline/verify.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/fill.hpp"
+#include "lamella/polygon/inverted_rings.hpp"
 #include "lamella/polygon/offset.hpp"
 
 #include "contour/distance.hpp"
@@ -109,6 +110,7 @@ struct PlaneCheck : ContourFindings {
     Finding misplaced;
     Finding miscovered;
     Finding unreached;
+    Finding inverted;
     std::map<std::uint32_t, ContourRow> rows; ///< by the numbers of contours, of those with findings
     std::uint64_t contour_vectors = 0;
     std::uint64_t hatch_vectors = 0;
@@ -116,6 +118,7 @@ struct PlaneCheck : ContourFindings {
     double covered_mm2 = 0;
     double filled_mm2 = 0; ///< what was to be covered
     double unreached_mm2 = 0;
+    double inverted_mm3 = 0;
 };
 
 /// Where the material of a plane is known to be, and where it may be: a format may have moved the cut.
@@ -544,7 +547,7 @@ struct KindOfFinding {
     FindingWords words;
 };
 
-std::array<KindOfFinding, 8> kinds_of_findings(bool strategy) {
+std::array<KindOfFinding, 9> kinds_of_findings(bool strategy) {
     return {
         {{&PlaneCheck::open_chains, &VectorVerification::open_chains, open_chains_words},
          {&PlaneCheck::crossings, &VectorVerification::crossings, crossings_words},
@@ -570,7 +573,11 @@ std::array<KindOfFinding, 8> kinds_of_findings(bool strategy) {
          {&PlaneCheck::unreached,
           &VectorVerification::unreached_layers,
           {"layer has more material that no vector reaches than the strategy accepts;",
-           "layers have more material that no vector reaches than the strategy accepts;"}}}};
+           "layers have more material that no vector reaches than the strategy accepts;"}},
+         {&PlaneCheck::inverted,
+          &VectorVerification::inverted_rings,
+          {"ring of the mesh bounds no material and has no vectors, as triangles face inwards;",
+           "rings of the mesh bound no material and have no vectors, as triangles face inwards;"}}}};
 }
 
 void tell_row(std::uint32_t number, const ContourRow& row, std::vector<std::string>& findings) {
@@ -641,6 +648,13 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         };
         for (const Group& group : groups)
             vectors.check(group, i, bounds_of(group, options.mesh.has_value()), checks[i]);
+        if (options.mesh) {
+            const InvertedRings inverted =
+                inverted_rings(sections[i].front(), options.granted(), InversionSearch::full);
+            if (inverted.rings > 0)
+                checks[i].inverted.add(planes[i], inverted.at, inverted.rings);
+            checks[i].inverted_mm3 = inverted.area_mm2 * planes[i].thickness();
+        }
         for (const Group& group : of_parts)
             vectors.check_rows(group, i, bounds_of(group, options.mesh && of_parts.size() == 1), checks[i]);
         progress.add(1);
@@ -663,6 +677,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         result.contour_vectors += check.contour_vectors;
         result.hatch_vectors += check.hatch_vectors;
         result.unbounded += check.unbounded;
+        result.inverted_mm3 += check.inverted_mm3;
         covered_mm2 += check.covered_mm2;
         filled_mm2 += check.filled_mm2;
         result.unreached_mm2 += check.unreached_mm2;

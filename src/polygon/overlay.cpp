@@ -204,7 +204,10 @@ Overlaid Overlay::filled(const Material& material, Walls walls) const {
 }
 
 Layer united(const Layer& layer) {
-    const Overlay overlay(layer);
+    return united(layer, Overlay(layer));
+}
+
+Layer united(const Layer& layer, const Overlay& overlay) {
     return overlay.clean() ? layer
                            : overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
 }

@@ -64,5 +64,7 @@ class Overlay {
 /// The material of a layer (FillRule::positive), walls dissolved. A layer that is that already is passed
 /// through.
 [[nodiscard]] Layer united(const Layer& layer);
+/// The same for who has its overlay.
+[[nodiscard]] Layer united(const Layer& layer, const Overlay& overlay);
 
 } // namespace lamella

@@ -180,10 +180,13 @@ Layer in_region(const Layer& places, ScanRegion region, const Skin& downskin, co
 
 // A point may have moved by so much, and the way between its neighbours by as much to the other side. Bodies
 // that fit in one another are united first: of each ring other points may be straight.
-ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding)
-    : layer_(normal_form(
-          without_straight_points(united(layer), std::max(ClippingGrid(layer.points.span()).unit(),
-                                                          2 * moved_point(layer.points.span(), rounding))))) {
+ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding) {
+    const Overlay overlay(layer);
+    if (!overlay.clean())
+        inverted_ = inverted_rings(layer, rounding, InversionSearch::full);
+    layer_ = normal_form(without_straight_points(
+        united(layer, overlay),
+        std::max(ClippingGrid(layer.points.span()).unit(), 2 * moved_point(layer.points.span(), rounding))));
 }
 
 void ScanLayer::share_points(const ScanLayer& other) {

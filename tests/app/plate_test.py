@@ -2,7 +2,27 @@
 
 import re
 
-from program import ProgramTest, binary_stl, box_triangles, main
+from program import ProgramTest, binary_stl, box_triangles, main, open_box
+
+
+def amf(objects):
+    """A file of objects with these names and triangles."""
+    text = '<?xml version="1.0"?><amf unit="millimeter">'
+    for number, (name, triangles) in enumerate(objects):
+        corners = [corner for triangle in triangles for corner in triangle]
+        vertices = "".join("<vertex><coordinates><x>%g</x><y>%g</y><z>%g</z></coordinates></vertex>" % c for c in corners)
+        volume = "".join(f"<triangle><v1>{i}</v1><v2>{i + 1}</v2><v3>{i + 2}</v3></triangle>" for i in range(0, len(corners), 3))
+        text += (f'<object id="{number}"><metadata type="name">{name}</metadata><mesh><vertices>{vertices}</vertices>'
+                 f"<volume>{volume}</volume></mesh></object>")
+    return text + "</amf>"
+
+
+def moved(triangles, x):
+    return [tuple((px + x, py, pz) for px, py, pz in t) for t in triangles]
+
+
+def turned(triangles):
+    return [t[::-1] for t in triangles]
 
 
 class Plate(ProgramTest):
@@ -90,8 +110,44 @@ class Plate(ProgramTest):
         words = ["-o", "a.cli", "--build-volume", "100,100,50"]
         self.succeed("slice", "box.stl", "--translate", "50,50,10", *words)
         self.path("a.cli").unlink()
-        self.fail_with(2, '"ball".*build volume', "slice", "box.stl", "--translate", "50,50,10", "ball.stl",
+        self.fail_with(2, r"ball\.stl: reaches from .* build volume", "slice", "box.stl", "--translate", "50,50,10", "ball.stl",
                        "--translate", "99,50,20", *words)
+        self.fail_with(2, r'box\.stl, part "box 2": reaches from .* build volume', "slice", "box.stl", "--translate", "50,50,10",
+                       "--copies", "3", "--spacing", "40", *words)
+        self.fail_with(2, r"^lamella: error: ball\.stl: reaches from", "slice", "ball.stl", *words)
+
+    def test_warnings_name_the_file_and_the_part_that_have_the_defect(self):
+        self.write("torn.stl", binary_stl(moved(open_box(5, 5, 5), 40)))
+        self.write("turned.stl", binary_stl(turned(moved(box_triangles(5, 5, 5), 60))))
+        cut = ["--layer-height", "1", "-o", "x.cli"]
+        open_chains = "5 open chains in 5 of 5 layers, first at z = 0\\.5 mm: "
+        rings = "5 rings bound no material in 5 of 5 layers, first at z = 0\\.5 mm "
+        for words in [cut, [*cut, "--threads", "1"], [*cut, "--max-memory", "50M"], [*cut, "--scan"]]:
+            warnings = self.succeed("slice", "box.stl", "torn.stl", "turned.stl", *words).err.splitlines()
+            warnings = [warning for warning in warnings if "x.cli: " not in warning]  # of the format
+            self.assertEqual(len(warnings), 2, warnings)
+            self.assertRegex(warnings[0], rf"^lamella: warning: torn\.stl: {open_chains}.*; see lamella info torn\.stl$")
+            self.assertRegex(warnings[1], rf"^lamella: warning: turned\.stl: {rings}.*; see lamella info turned\.stl$")
+        self.path("x.cli").unlink()
+        self.fail_with(4, r"torn\.stl: the mesh has defects", "slice", "box.stl", "torn.stl", *cut, "--strict")
+        inspected = self.succeed("slice", "box.stl", "torn.stl", *cut, "--inspect")
+        self.assertIn("has defects; see lamella info torn.stl", inspected.text)
+        # All copies of a part have what it has.
+        warning = self.succeed("slice", "box.stl", "turned.stl", "--copies", "3", *cut).err
+        self.assertIn("turned.stl: 15 rings bound no material in 5 of 5 layers, first", warning)
+
+        good = ("good", box_triangles(5, 5, 5))
+        self.write("plate.amf", amf([good, ("bad", turned(moved(box_triangles(5, 5, 5), 20)))]))
+        warning = self.succeed("slice", "box.stl", "plate.amf", *cut).err
+        self.assertIn('plate.amf: 5 rings bound no material in 5 of 5 layers of the part "bad", first at z = 0.5 mm', warning)
+        self.assertEqual(warning.count("warning"), 1)
+        parts = self.stats("box.stl", "plate.amf")["parts"]
+        self.assertEqual({part["label"]: part["inverted_rings"] for part in parts}, {"box": 0, "good": 0, "bad": 5})
+        self.path("x.cli").unlink()
+        self.fail_with(4, r'plate\.amf, part "bad": the mesh has defects: 1 inverted shell', "slice", "box.stl", "plate.amf", *cut,
+                       "--strict")
+        self.write("flat.amf", amf([good, ("sheet", [((0, 0, 1), (9, 0, 1), (0, 9, 1))])]))
+        self.fail_with(3, r'flat\.amf, part "sheet": the mesh is flat', "slice", "box.stl", "flat.amf", *cut)
 
     def test_what_cannot_be(self):
         self.fail_with(2, "one at least", "slice", "box.stl", "--copies", "0", "-o", "a.cli")

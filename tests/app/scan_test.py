@@ -390,12 +390,39 @@ class Scan(ProgramTest):
         for name in ("x.cli", "x.json", "x.npz"):
             self.fail_with(4, "power and speed, were left out", *slicing, "--scan", "-o", name)
 
-    def test_layers_that_are_inside_out_are_told(self):
+    def test_rings_that_bound_no_material_are_told(self):
         self.write("inverted.stl", binary_stl([t[::-1] for t in box_triangles(5, 5, 3)]))
         self.succeed("slice", "inverted.stl", "-o", "layers.npz", "--layer-height", "1")
-        result = self.succeed("scan", "layers.npz", "-o", "job.json")
-        self.assertRegex(result.err, r"layers\.npz: inside out in 3 of 3 layers, first at z = 0\.5 mm")
-        self.fail_with(4, "inside out", "scan", "layers.npz", "-o", "x.json", "--strict")
+        lost = r"3 rings bound no material in 3 of 3 layers, first at z = 0\.5 mm \(75 mm3 lost\): .*; converting them with --fill nonzero "
+        result = self.succeed("scan", "layers.npz", "-o", "job.json", "--stats", "stats.json")
+        self.assertRegex(result.err, rf"layers\.npz: {lost}")
+        stats = json.loads(self.bytes_of("stats.json"))
+        self.assertEqual([stats["inverted_rings"], stats["inverted_mm3"]], [3, 75])
+        self.fail_with(4, lost, "scan", "layers.npz", "-o", "x.json", "--strict")
+        self.succeed("convert", "layers.npz", "turned.npz", "--fill", "nonzero")
+        self.assertNotIn("turned.npz", self.succeed("scan", "turned.npz", "-o", "job.json").err)
+
+    def test_halves_of_rings_that_cross_themselves_are_told(self):
+        self.write("bow_tie.json", '{"format":"lamella layers","version":1,"units":"mm","parts":[{"label":"part"}],"layers":'
+                                   '[{"index":0,"z":0.05,"bottom":0,"top":0.1,"parts":[{"rings":[[0,0,10,10,10,0,0,10]]}]}]}')
+        lost = r"bow_tie\.json: 1 ring bounds no material in 1 of 1 layer, first at z = 0\.05 mm \(2\.5 mm3 lost\)"
+        for words in [["scan", "bow_tie.json", "-o", "x.json"], ["convert", "bow_tie.json", "x.cli", "--offset=-0.1"]]:
+            self.assertRegex(self.succeed(*words).err, rf"^lamella: warning: {lost}")
+            self.fail_with(4, lost, *words, "--strict")
+
+    def test_bodies_without_vectors_are_found_by_the_mesh(self):
+        inverted = [tuple((x + 9, y, z) for x, y, z in t[::-1]) for t in box_triangles(6, 6, 3)]
+        self.write("two.stl", binary_stl(box_triangles(6, 6, 3) + inverted))
+        for job in ["job.ovf", "job.cli", "job.ilt"]:
+            self.succeed("slice", "two.stl", "-o", job, "--layer-height", "1", "--scan")
+            for words in [[], ["--scan"]]:
+                result = self.run_program("verify", job, "--mesh", "two.stl", *words, "--json")
+                self.assertEqual(result.code, 4)
+                vectors = result.json()["vectors"]
+                self.assertEqual([vectors["inverted_rings"], round(vectors["inverted_mm3"], 6)], [3, 108])
+                self.assertRegex(vectors["findings"][0], r"^3 rings of the mesh bound no material and have no vectors.* the first in layer 0 ")
+            self.succeed("slice", "two.stl", "-o", job, "--layer-height", "1", "--scan", "--fill", "nonzero")
+            self.succeed("verify", job, "--mesh", "two.stl", "--fill", "nonzero")
 
     def test_what_a_file_of_vectors_holds_is_told(self):
         stats = self.stats("--scan", *HATCHED)["scan"]

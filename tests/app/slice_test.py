@@ -293,10 +293,27 @@ class Slice(ProgramTest):
         self.assertRegex(result.err, r"^lamella: warning: open\.stl: 10 open chains in 10 of 10 layers")
         self.assertIn("lamella info open.stl", result.err)
 
-    def test_a_part_that_is_inside_out_is_warned_about(self):
+    def test_bodies_that_are_inside_out_are_warned_about_wherever_they_stand(self):
+        whole = r"10 rings bound no material in 10 of 10 layers, first at z = 0\.5 mm \(6000 mm3 lost\): .*triangles face inwards"
         self.write("inverted.stl", binary_stl([(a, c, b) for a, b, c in box_triangles(20, 30, 10)]))
         result = self.succeed("slice", "inverted.stl", "-o", "inverted.cli", "--layer-height", "1")
-        self.assertRegex(result.err, r"^lamella: warning: inverted\.stl: inside out in 10 of 10 layers")
+        self.assertRegex(result.err, rf"^lamella: warning: inverted\.stl: {whole}; --orient turns .*; see lamella info inverted\.stl\n$")
+        for name, x in [("left", -30), ("right", 40)]:
+            inverted = [tuple((px + x, py, pz) for px, py, pz in (a, c, b)) for a, b, c in box_triangles(20, 30, 10)]
+            self.write(f"{name}.stl", binary_stl(box_triangles(20, 30, 10) + inverted))
+            for words in [["-o", "x.cli"], ["-o", "x.slc"], ["-o", "x.3mf"], ["-o", "x.html"], ["-o", "x.ovf", "--scan"],
+                          ["-o", "x.cli", "--offset=-0.1"], ["-o", "x.cli", "--max-memory", "50M"], ["-o", "x.json", "--scan", "--simplify", "0.01"]]:
+                result = self.succeed("slice", f"{name}.stl", "--layer-height", "1", *words)
+                self.assertRegex(result.err, rf"^lamella: warning: {name}\.stl: {whole}", words)
+                self.assertNotIn(name, self.succeed("slice", f"{name}.stl", "--layer-height", "1", *words, "--orient").err, words)
+            stats = self.stats(f"{name}.stl", "--layer-height", "1", "--threads", "1")
+            self.assertEqual([stats["inverted_rings"], stats["inverted_mm3"], stats["volume_mm3"]], [10, 6000, 0])
+            self.assertEqual({(layer["inverted_rings"], layer["inverted_mm2"]) for layer in stats["layers"]}, {(1, 600)})
+            self.fail_with(4, "1 inverted shell", "slice", f"{name}.stl", "-o", "strict.cli", "--strict")
+            # Who says by a rule what is material has said what becomes of them.
+            for rule in ["nonzero", "positive"]:
+                self.assertEqual(self.succeed("slice", f"{name}.stl", "-o", "x.cli", "--layer-height", "1", "--fill", rule).err, "")
+        self.assertNotIn("inverted_rings", self.stats(self.box(), "--layer-height", "1"))
         # A hole is no reason to worry, nor is a part that was mirrored.
         self.succeed("make", "torus")
         self.assertEqual(self.succeed("slice", "torus.stl", "-o", "torus.cli", "--scale", "-1,1,1").err, "")
@@ -431,14 +448,14 @@ class Slice(ProgramTest):
         # What leaves some contours, or found none, is as it was asked for.
         self.assertEqual(self.succeed("slice", "box.stl", "-o", "box.cli", "--offset=-1").err, "")
 
-    def test_closed_contours_within_open_ones_are_not_called_inside_out(self):
+    def test_closed_contours_within_open_ones_need_not_be_inside_out(self):
         # A box with a hollow; the outer wall has a hole.
         hollow = [tuple((x + 5, y + 5, z) for x, y, z in t) for t in box_triangles(10, 10, 10)]
         self.write("open.stl", binary_stl(open_box(20, 30, 10) + [(a, c, b) for a, b, c in hollow]))
         result = self.succeed("slice", "open.stl", "-o", "open.cli", "--layer-height", "1")
         self.assertIn("10 open chains", result.err)
-        self.assertIn("those around them stay open", result.err)
-        self.assertNotIn("inside out", result.err)
+        self.assertIn("10 rings bound no material", result.err)
+        self.assertIn("contours around them stay open, or triangles face inwards", result.err)
 
     def test_a_list_of_heights_may_begin_with_a_byte_order_mark(self):
         self.box()

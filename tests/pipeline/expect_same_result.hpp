@@ -45,6 +45,7 @@ inline void expect_same(const LayerStatistics& one, const LayerStatistics& other
     EXPECT_EQ(one.measure.area_mm2, other.measure.area_mm2);
     EXPECT_EQ(one.measure.perimeter_mm, other.measure.perimeter_mm);
     expect_same(one.open_gaps, other.open_gaps);
+    EXPECT_EQ(one.inverted, other.inverted);
     expect_same(one.changes, other.changes);
     ASSERT_EQ(one.scan.size(), other.scan.size());
     for (std::size_t i = 0; i < one.scan.size(); ++i)
@@ -72,11 +73,20 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
     for (std::uint64_t SliceReport::*count :
          {&SliceReport::layers, &SliceReport::contours, &SliceReport::open_chains, &SliceReport::points})
         EXPECT_EQ(one.report.*count, other.report.*count);
-    for (AffectedLayers MeshDoubts::*kind : {&MeshDoubts::open, &MeshDoubts::inside_out}) {
-        EXPECT_EQ((one.doubts.*kind).layers, (other.doubts.*kind).layers);
-        EXPECT_EQ((one.doubts.*kind).first_z, (other.doubts.*kind).first_z);
+    ASSERT_EQ(one.doubts.size(), other.doubts.size());
+    for (std::size_t i = 0; i < one.doubts.size(); ++i) {
+        const MeshDoubts& doubts = one.doubts[i];
+        const MeshDoubts& same = other.doubts[i];
+        EXPECT_EQ(doubts.texts(), same.texts());
+        EXPECT_EQ(doubts.layers, same.layers);
+        EXPECT_EQ(doubts.open.layers, same.open.layers);
+        EXPECT_EQ(doubts.open.first_z, same.open.first_z);
+        expect_same(doubts.open_gaps, same.open_gaps);
+        EXPECT_EQ(doubts.inverted.layers, same.inverted.layers);
+        EXPECT_EQ(doubts.inverted.first_z, same.inverted.first_z);
+        EXPECT_EQ(doubts.inverted.rings, same.inverted.rings);
+        EXPECT_EQ(doubts.inverted.volume_mm3, same.inverted.volume_mm3);
     }
-    EXPECT_EQ(one.doubts.layers, other.doubts.layers);
     ASSERT_EQ(one.near_faces.size(), other.near_faces.size());
     for (std::size_t i = 0; i < one.near_faces.size(); ++i) {
         EXPECT_EQ(one.near_faces[i].layers, other.near_faces[i].layers);
@@ -87,7 +97,6 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
     EXPECT_EQ(one.unreached.area_mm2, other.unreached.area_mm2);
     EXPECT_EQ(one.unreached.layers, other.unreached.layers);
     EXPECT_EQ(one.unreached.first_z, other.unreached.first_z);
-    expect_same(one.doubts.open_gaps, other.doubts.open_gaps);
     EXPECT_EQ(one.gaps.closed, other.gaps.closed);
     EXPECT_EQ(one.gaps.longest_mm, other.gaps.longest_mm);
     EXPECT_EQ(one.gaps.total_mm, other.gaps.total_mm);

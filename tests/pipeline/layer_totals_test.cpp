@@ -16,7 +16,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -87,9 +89,10 @@ TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
     totals.add(std::span(&empty, 1), {GapJoin{{}, {}, 0.5}, GapJoin{{}, {}, 0.25}}, {});
     totals.add(std::span(&open, 1), {}, {});
     const FileResult result = told(totals, 1);
-    EXPECT_EQ(result.doubts.open.layers, 1U);
-    EXPECT_EQ(result.doubts.open.first_z, above.z);
-    EXPECT_EQ(result.doubts.open_gaps.longest_mm, 5);
+    ASSERT_EQ(result.doubts.size(), 1U);
+    EXPECT_EQ(result.doubts[0].open.layers, 1U);
+    EXPECT_EQ(result.doubts[0].open.first_z, above.z);
+    EXPECT_EQ(result.doubts[0].open_gaps.longest_mm, 5);
     EXPECT_EQ(result.report.open_chains, 1U);
     EXPECT_EQ(result.gaps.closed, 2U);
     EXPECT_EQ(result.gaps.layers, 1U);
@@ -102,6 +105,7 @@ TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
 /// What was made of one plane.
 struct Plane {
     std::vector<Layer> parts;
+    std::vector<InvertedRings> inverted;
     std::vector<GapJoin> joins;
     LayerChanges changes;
 };
@@ -131,6 +135,8 @@ std::vector<Plane> random_planes(test::Random& random, const Plan& plan, std::si
         Plane& plane = planes.emplace_back();
         for (std::size_t part = 0; part < parts; ++part)
             plane.parts.push_back(random_layer(random, planned));
+        for (const Layer& layer : plane.parts)
+            plane.inverted.push_back(inverted_rings(layer));
         for (std::int64_t joins = random.integer(-2, 3); joins > 0; --joins)
             plane.joins.push_back({{random.real(0, 1), 0}, {0, random.real(0, 1)}, random.real(0.01, 1)});
         plane.changes = {.changed_layers = random.bits() % 2,
@@ -149,7 +155,7 @@ void add_all(LayerTotals& totals, std::span<const Plane> planes, unsigned thread
         team.emplace_back([&] {
             for (std::size_t i; (i = next++) < planes.size();) {
                 const Plane& plane = planes[planes.size() - 1 - i];
-                totals.add(plane.parts, plane.joins, plane.changes);
+                totals.add(plane.parts, plane.joins, plane.changes, plane.inverted);
             }
         });
     for (std::thread& thread : team)
@@ -171,9 +177,12 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
         const Plan plan =
             plan_uniform(0, 9, {.layer_height = 0.3}, SliceAt::middle, {.index_range = {{7, 29}}});
         const std::vector<Plane> planes = random_planes(random, plan, parts);
-        LayerTotals whole(job, plan.layers, std::vector<bool>(parts));
+        std::vector<std::uint32_t> files; // some of several parts
+        for (std::size_t part = 0; part < parts; ++part)
+            files.push_back(part == 0 ? 0 : files.back() + static_cast<std::uint32_t>(random.bits() % 2));
+        LayerTotals whole(job, plan.layers, std::vector<bool>(parts), files);
         for (const Plane& plane : planes)
-            whole.add(plane.parts, plane.joins, plane.changes);
+            whole.add(plane.parts, plane.joins, plane.changes, plane.inverted);
         const FileResult expected = told(whole, parts);
 
         const auto processes = static_cast<std::size_t>(random.integer(1, 4));
@@ -185,7 +194,8 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
         test::run_processes(processes, [&](Communicator& own) {
             const std::size_t begin = bounds[own.process()];
             const std::size_t count = bounds[own.process() + 1] - begin;
-            LayerTotals mine(job, std::span(plan.layers).subspan(begin, count), std::vector<bool>(parts));
+            LayerTotals mine(job, std::span(plan.layers).subspan(begin, count), std::vector<bool>(parts),
+                             files);
             add_all(mine, std::span(planes).subspan(begin, count), 3);
             mine.gather(own);
             EXPECT_EQ(mine.points(), whole.points());
@@ -194,22 +204,54 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
     }
 }
 
-TEST(LayerTotals, TellHowManyLayersBeginWithARingThatRunsTheWrongWay) {
-    const Plan plan = plan_uniform(0, 4, {.layer_height = 1});
-    const test::Contour outer = test::rectangle(0, 0, 9, 9);
-    const test::Contour inner = test::rectangle(2, 2, 4, 4);
-    LayerTotals totals(measured(), plan.layers, std::vector<bool>(1));
-    const std::vector<std::vector<test::Contour>> rings{
-        {outer, test::reversed(inner)}, {test::reversed(outer), inner}, {}, {test::reversed(outer)}};
-    for (std::size_t i = 0; i < rings.size(); ++i) {
-        Layer layer = test::layer_of(rings[i]);
-        layer.index = plan.layers[i].index;
-        layer.z = plan.layers[i].z;
-        totals.add(std::span(&layer, 1), {}, {});
+/// A plane of parts, of which some have a ring that bounds no material, and some an open chain.
+void add_plane(LayerTotals& totals, const PlannedLayer& plane,
+               const std::vector<std::vector<double>>& inverted, const std::vector<bool>& open) {
+    std::vector<Layer> parts;
+    std::vector<InvertedRings> found;
+    for (std::size_t i = 0; i < inverted.size(); ++i) {
+        std::vector<test::Contour> rings;
+        for (const double side : inverted[i])
+            rings.push_back(test::reversed(test::rectangle(0, 0, side, side)));
+        Layer layer = test::normal_layer(rings, open[i] ? std::vector<test::Contour>{{{0, 0}, {3, 4}}}
+                                                        : std::vector<test::Contour>());
+        layer.index = plane.index;
+        layer.z = plane.z;
+        layer.bottom = plane.bottom;
+        layer.top = plane.top;
+        found.push_back(inverted_rings(layer));
+        parts.push_back(std::move(layer));
     }
-    const FileResult result = told(totals, 1);
-    EXPECT_EQ(result.doubts.inside_out.layers, 2U);
-    EXPECT_EQ(result.doubts.inside_out.first_z, plan.layers[1].z);
+    totals.add(parts, {}, {}, found);
+}
+
+TEST(LayerTotals, NameTheFileAndThePartsThatHaveADefect) {
+    const Plan plan = plan_uniform(0, 2, {.layer_height = 0.5});
+    LayerTotals totals(measured(), plan.layers, std::vector<bool>(4), {0, 1, 1, 2});
+    add_plane(totals, plan.layers[3], {{}, {}, {2}, {}}, {false, false, false, true});
+    add_plane(totals, plan.layers[1], {{}, {}, {2}, {}}, {false, false, false, true});
+    add_plane(totals, plan.layers[0], {{}, {}, {}, {}}, {false, false, false, true});
+    FileResult result;
+    result.parts.resize(4);
+    result.parts[2].label = "bracket";
+    totals.tell(result);
+    ASSERT_EQ(result.doubts.size(), 3U);
+    EXPECT_TRUE(result.doubts[0].texts().empty());
+    EXPECT_EQ(result.doubts[1].texts(),
+              std::vector<std::string>(
+                  {"2 rings bound no material in 2 of 4 layers of the part \"bracket\", first at z = 0.75 mm "
+                   "(4 mm3 "
+                   "lost): they run clockwise outside of material because triangles face inwards; `orient` "
+                   "turns these round"}));
+    EXPECT_EQ(
+        result.doubts[2].texts(),
+        std::vector<std::string>(
+            {"3 open chains in 3 of 4 layers, first at z = 0.25 mm: contours do not close where the mesh "
+             "has holes or flipped triangles, the longest gap is 5 mm"}));
+    EXPECT_EQ(result.parts[2].inverted_rings, 2U);
+    EXPECT_EQ(result.layers[1].inverted.rings, 1U);
+    EXPECT_EQ(result.layers[1].inverted.area_mm2, 4);
+    EXPECT_EQ(result.layers[0].inverted.rings, 0U);
 }
 
 } // namespace

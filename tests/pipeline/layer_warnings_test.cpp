@@ -14,30 +14,34 @@ namespace {
 using Texts = std::vector<std::string>;
 
 TEST(MeshDoubts, AreToldWithCountsAndTheLowestPlace) {
-    MeshDoubts doubts;
+    MeshDoubts doubts{.layers = 4};
     EXPECT_EQ(doubts.texts(), Texts());
-    doubts.add(0.5, {}, false);
-    EXPECT_EQ(doubts.texts(), Texts());
-    doubts.add(1.5, {}, true);
-    doubts.add(2.5, {}, true);
-    EXPECT_EQ(doubts.texts(),
-              Texts({"inside out in 2 of 3 layers, first at z = 1.5 mm: outer contours run clockwise, as "
-                     "around holes, because triangles face inwards"}));
-    doubts.add(3.5, {.count = 2, .longest_mm = 4, .total_mm = 5, .from = {}, .to = {}}, false);
+    doubts.add(1.5, 0.5, {}, {.rings = 3, .area_mm2 = 8, .at = {}});
+    doubts.add(2.5, 0.25, {}, {.rings = 1, .area_mm2 = 2, .at = {}});
+    EXPECT_EQ(
+        doubts.texts(),
+        Texts({"4 rings bound no material in 2 of 4 layers, first at z = 1.5 mm (4.5 mm3 lost): they run "
+               "clockwise outside of material because triangles face inwards; `orient` turns these round"}));
+    doubts.add(3.5, 0.5, {.count = 2, .longest_mm = 4, .total_mm = 5, .from = {}, .to = {}}, {});
     EXPECT_EQ(
         doubts.texts(),
         Texts(
             {"2 open chains in 1 of 4 layers, first at z = 3.5 mm: contours do not close where the mesh has "
              "holes or flipped triangles, the longest gap is 4 mm",
-             "closed contours with none around them run clockwise in 2 of 4 layers, first at z = 1.5 mm, as "
-             "around holes: those around them stay open, or triangles face inwards"}));
+             "4 rings bound no material in 2 of 4 layers, first at z = 1.5 mm (4.5 mm3 lost): they run "
+             "clockwise outside of material; contours around them stay open, or triangles face inwards"}));
+    doubts.open_parts = {"a"};
+    doubts.inverted_parts = {"a", "b", "c", "d", "e"};
+    EXPECT_NE(doubts.texts()[0].find("layers of the part \"a\", first"), std::string::npos);
+    EXPECT_NE(doubts.texts()[1].find("layers of the parts \"a\", \"b\", \"c\" and 2 more, first"),
+              std::string::npos);
 }
 
 TEST(MeshDoubts, NameWhatClosesGapsThatRoundingLeaves) {
     const auto text_of = [](double longest) {
-        MeshDoubts doubts;
-        doubts.add(0.5, {.count = 1, .longest_mm = longest, .total_mm = longest, .from = {}, .to = {}},
-                   false);
+        MeshDoubts doubts{.layers = 1};
+        doubts.add(0.5, 1, {.count = 1, .longest_mm = longest, .total_mm = longest, .from = {}, .to = {}},
+                   {});
         return doubts.texts().front();
     };
     const std::string slit =
@@ -63,21 +67,26 @@ TEST(NearFaceLayers, AreToldWithTheirAreaAndADistanceThatIsEnough) {
               "counts them as on the plane");
 }
 
-TEST(ScanLosses, CountALayerOnceWhicheverOfItsPartsAreInsideOut) {
-    ScanLosses losses;
-    Layer square = test::layer_of({test::rectangle(0, 0, 9, 9)});
-    losses.add(std::array{square, square});
-    EXPECT_EQ(losses.texts(), Texts());
-    Layer turned = test::layer_of({test::reversed(test::rectangle(0, 0, 9, 9))});
+TEST(ScanLosses, CountALayerOnceWhicheverOfItsPartsHaveInvertedRings) {
+    Layer square = test::normal_layer({test::rectangle(0, 0, 9, 9)});
+    Layer turned = test::normal_layer({test::reversed(test::rectangle(0, 0, 9, 9))});
     turned.z = 2;
-    losses.add(std::array{turned, turned});
-    square.hatches = PointArray({{1, 1}, {2, 1}});
-    losses.add(std::array{square, square});
-    EXPECT_EQ(losses.texts(),
-              Texts({"2 hatch lines left out: layers are hatched anew",
-                     "inside out in 1 of 3 layers, first at z = 2 mm: outer contours run clockwise, as "
-                     "around holes, and "
-                     "bound no material; to fill them by the rule nonzero turns them round"}));
+    turned.bottom = 1.5;
+    turned.top = 2.5;
+    Layer hatched = square;
+    hatched.z = 3;
+    hatched.hatches = PointArray({{1, 1}, {2, 1}});
+    const std::array parts{LayerStack{square, turned, hatched}, LayerStack{square, turned, square}};
+    EXPECT_EQ(scan_losses(std::array{LayerStack{square}, LayerStack{square}}, {}).texts(), Texts());
+    EXPECT_EQ(scan_losses(parts, {}).texts(),
+              Texts({"1 hatch line left out: layers are hatched anew",
+                     "2 rings bound no material in 1 of 3 layers, first at z = 2 mm (162 mm3 lost): they run "
+                     "clockwise outside of material; converting them with `fill` nonzero turns them round"}));
+    const InvertedLayers inverted = inverted_layers(parts, {}, InversionSearch::quick);
+    EXPECT_EQ(inverted.rings, 2U);
+    EXPECT_EQ(inverted.layers, 1U);
+    EXPECT_EQ(inverted.first_z, 2);
+    EXPECT_EQ(inverted.volume_mm3, 162);
 }
 
 } // namespace

@@ -135,7 +135,7 @@ TEST_F(Merge, TakesOpenContoursWithAWarning) {
     EXPECT_EQ(result.layers, 2U);
     EXPECT_EQ(read_layers(path("merged.svg")).parts.front().layers[1].open_chains(), 1U);
     std::string all;
-    for (const std::string& warning : result.warnings)
+    for (const std::string& warning : result.file_warnings)
         all += warning + '\n';
     EXPECT_NE(all.find(path("low.svg") + ": "), std::string::npos) << all;
 }

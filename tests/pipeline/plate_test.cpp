@@ -58,7 +58,7 @@ TEST_F(PlateOfFiles, FitsABuildVolumeToTheLastBitAndElseNamesThePartThatReachesO
         EXPECT_THROW(check_build_volume(plate, smaller), Error);
         Plate moved = plate; // below zero
         moved.parts[2].box.min.*coordinate = -1;
-        test::expect_error(ErrorKind::usage, {"the part \"box\"", "-1", "`placement`"},
+        test::expect_error(ErrorKind::usage, {"box", "reaches from", "-1", "`placement`"},
                            [&] { check_build_volume(moved, size); });
     }
 }

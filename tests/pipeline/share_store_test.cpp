@@ -47,7 +47,7 @@ TEST(ShareStore, GivesEachShareTheTrianglesOfItsLayers) {
                 const TriangleSoup& mesh = shape == 0 ? rook : moved;
                 ASSERT_TRUE(store.add(shape, mesh.part(end - std::min(end, piece), end)));
             }
-        EXPECT_TRUE(store.full());
+        EXPECT_FALSE(store.incomplete());
         for (std::size_t s = 0; s < shares.size(); ++s) {
             EXPECT_EQ(hashes_of(store.take(s, 0, {}), shares[s]), hashes_of(rook, shares[s])) << s;
             EXPECT_EQ(hashes_of(store.take(s, 1, {}).transformed(moved.placement()), shares[s]),
@@ -63,9 +63,9 @@ TEST(ShareStore, SaysWhenTrianglesAreMissingOrTooMany) {
     const std::array<PlaneRange, 2> shares{{{0, 7}, {7, static_cast<std::uint32_t>(plan().layers.size())}}};
     ShareStore store(plan(), shares, counts);
     EXPECT_TRUE(store.add(0, rook.part(0, rook.size() / 2)));
-    EXPECT_FALSE(store.full());
+    EXPECT_TRUE(store.incomplete());
     EXPECT_TRUE(store.add(0, rook.part(rook.size() / 2, rook.size())));
-    EXPECT_TRUE(store.full());
+    EXPECT_FALSE(store.incomplete());
     EXPECT_FALSE(store.add(0, rook));
 }
 
@@ -155,7 +155,7 @@ TEST(ShareStore, GivesBackEachTriangleOnceToEachShareWithAPlaneThatCutsIt) {
         for (std::thread& thread : threads)
             thread.join();
         EXPECT_TRUE(fits);
-        EXPECT_TRUE(store.full());
+        EXPECT_FALSE(store.incomplete());
         for (std::size_t share = 0; share < shares.size(); ++share)
             for (std::size_t shape = 0; shape < shapes.size(); ++shape)
                 EXPECT_EQ(sorted(store.take(share, shape, {.threads = 2})),
@@ -174,7 +174,7 @@ TEST(ShareStore, TakesAndGivesMoreThanIsSortedOrReadAtATime) {
     const std::array counts{count_planes(batch, planes)};
     ShareStore store(planes, shares, counts);
     EXPECT_TRUE(store.add(0, batch));
-    EXPECT_TRUE(store.full());
+    EXPECT_FALSE(store.incomplete());
     for (std::size_t share = 0; share < shares.size(); ++share)
         EXPECT_TRUE(sorted(store.take(share, 0, {.threads = 2})) == sorted(batch)) << share;
 }

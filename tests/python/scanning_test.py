@@ -56,10 +56,11 @@ def test_hashes_of_vectors_see_their_order():
 def test_what_no_vectors_are_made_of_is_told(tmp_path):
     """At once of a stack, and of other layers at their end; in the words of the program."""
     inward = lamella.Mesh(*box_arrays(inward=True))
-    with pytest.warns(lamella.DefectWarning, match="^the mesh: inside out in 10 of 10 layers, first at z = 0.5 mm") as told:
+    with pytest.warns(lamella.DefectWarning, match="^the mesh: 10 rings bound no material in 10 of 10 layers, first at z = 0.5 mm") as told:
         stack = lamella.slice(inward, 1)
     assert len(told) == 1
-    inside_out = "^layers: inside out in 10 of 10 layers, first at z = 0.5 mm: .* bound no material"
+    assert "lamella slice --orient turns" in str(told[0].message)
+    inside_out = "^layers: 10 rings bound no material in 10 of 10 layers, first at z = 0.5 mm .* filled\\(\"nonzero\"\\) turns"
     with pytest.warns(lamella.DefectWarning, match=inside_out):
         lamella.scan(stack)
     for layers in [lamella.iter_layers(inward, 1), iter(stack)]:

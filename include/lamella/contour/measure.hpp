@@ -3,6 +3,7 @@
 // Areas and lengths of contours.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/rounding.hpp"
 
 #include <cstddef>
 #include <span>
@@ -14,9 +15,9 @@ namespace lamella {
 /// a ring far from the origin loses no digits. O(n).
 [[nodiscard]] double ring_area(std::span<const Point2> ring) noexcept;
 
-/// Whether a layer in normal form is inside out: its first ring has the smallest point of all rings, so that
-/// nothing but an open chain lies around it, and runs clockwise. O(points of that ring).
-[[nodiscard]] bool begins_clockwise(const Layer& layer) noexcept;
+/// Whether a ring is so thin that rounding its points, or the last digits of numbers in memory, may have
+/// turned it over. O(n).
+[[nodiscard]] bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) noexcept;
 
 /// Length in mm, for a ring including the way back to the first point.
 [[nodiscard]] double contour_length(std::span<const Point2> contour, bool closed) noexcept;

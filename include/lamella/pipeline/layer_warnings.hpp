@@ -4,8 +4,10 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/open_gaps.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/mesh.hpp"
+#include "lamella/polygon/inverted_rings.hpp"
 #include "lamella/slicing/plan.hpp"
 
 #include <cstdint>
@@ -40,16 +42,37 @@ struct NearFaceLayers : AffectedLayers {
 /// Of a mesh, cut by a plan. O(triangles + planes).
 [[nodiscard]] NearFaceLayers near_faces(const Mesh& mesh, const Plan& plan, const Execution& execution = {});
 
-/// What the layers of a mesh tell about it.
+/// Layers with rings that bound no material, and what these enclose.
+struct InvertedLayers : AffectedLayers {
+    std::uint64_t rings = 0;
+    double volume_mm3 = 0; ///< areas times the thickness of their layers
+
+    /// What the next layer above has, if anything.
+    void add(double z, double thickness, const InvertedRings& found) noexcept;
+    /// Of so many layers in all: "20 rings bound no material in 3 of 20 layers, first at z = 0.25 mm (360 mm3
+    /// lost): they run clockwise outside of material".
+    [[nodiscard]] std::string text(std::uint64_t of_layers) const;
+    /// The same with a cure for layers that were read: `fill`.
+    [[nodiscard]] std::string text_of_file(std::uint64_t of_layers) const;
+};
+
+/// Those of parts on the same planes. Parallel over planes.
+[[nodiscard]] InvertedLayers inverted_layers(std::span<const LayerStack> parts, const Rounding& rounding,
+                                             InversionSearch search, const Execution& execution = {});
+
+/// What the layers of a mesh file tell about it.
 struct MeshDoubts {
     std::uint64_t layers = 0; ///< in all
-    AffectedLayers open;      ///< with open chains
-    OpenGaps open_gaps;       ///< of these, in all
-    /// Whose first ring runs clockwise: an outer one unless open chains lie around it.
-    AffectedLayers inside_out;
+    AffectedLayers open = {}; ///< with open chains
+    OpenGaps open_gaps = {};  ///< of these, in all
+    InvertedLayers inverted = {};
+    /// The labels of the parts that have open chains, and inverted rings, where not all parts of the file
+    /// have.
+    std::vector<std::string> open_parts = {};
+    std::vector<std::string> inverted_parts = {};
 
-    /// The next plane above, at z: what gaps its layers have, and whether any of these begins clockwise.
-    void add(double z, const OpenGaps& gaps, bool clockwise) noexcept;
+    /// The next plane above that has any, at z.
+    void add(double z, double thickness, const OpenGaps& gaps, const InvertedRings& found) noexcept;
     /// A line for each kind, such as "10 open chains in 5 of 20 layers, first at z = 0.5 mm: contours do not
     /// close where the mesh has holes or flipped triangles, the longest gap is 3 mm".
     [[nodiscard]] std::vector<std::string> texts() const;
@@ -60,13 +83,17 @@ struct ScanLosses {
     std::uint64_t layers = 0; ///< in all
     std::uint64_t hatches = 0;
     std::uint64_t open_chains = 0;
-    AffectedLayers inside_out; ///< closed, and nothing but holes: they bound no material
+    InvertedLayers inverted;
 
-    /// The layers of all parts on the next plane above, of one at least. O(points).
-    void add(std::span<const Layer> parts);
+    /// The layers of all parts on the next plane above, of one at least, and the inverted rings of these.
+    void add(std::span<const Layer> parts, const InvertedRings& found);
     /// A line for each kind.
     [[nodiscard]] std::vector<std::string> texts() const;
 };
+
+/// Those of parts on the same planes, one part at least. Parallel over planes.
+[[nodiscard]] ScanLosses scan_losses(std::span<const LayerStack> parts, const Rounding& rounding,
+                                     const Execution& execution = {});
 
 } // namespace lamella
 LAMELLA_API_END

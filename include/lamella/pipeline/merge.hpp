@@ -21,8 +21,10 @@ struct MergeResult {
     double bottom = 0;       ///< of the first layer
     double top = 0;          ///< of the last one
     std::uint64_t bytes = 0; ///< written
-    /// What was odd about the files where they are written anew, and what the format has no place for.
-    std::vector<std::string> warnings;
+    /// What was odd about the files where they are written anew, and rings of them that bound no material.
+    /// Each line begins with the path of the file.
+    std::vector<std::string> file_warnings;
+    std::vector<std::string> warnings; ///< what the format has no place for
 };
 
 /// Merges slice files of one format whose layers lie on one another, such as the shards of one job; they may

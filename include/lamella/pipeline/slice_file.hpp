@@ -78,9 +78,9 @@ struct FileJob {
     std::string engine; ///< by name; "" is the default engine
     /// Weld the mesh and count its defects first.
     bool inspect = false;
-    /// Inspect, and make an Error{defect} of any defect, of level faces within rounding of a plane, of
-    /// material that no scan vectors reach, and of steps that leave no contour in any layer, before anything
-    /// is written.
+    /// Inspect, and make an Error{defect} of any defect, of level faces within rounding of a plane, of rings
+    /// that bound no material, of material that no scan vectors reach, and of steps that leave no contour in
+    /// any layer, before anything is written.
     bool strict = false;
     /// Measure and hash every layer.
     bool layer_statistics = false;
@@ -103,6 +103,7 @@ struct LayerStatistics {
     double thickness = 0;
     LayerMeasure measure;       ///< of all parts together
     OpenGaps open_gaps;         ///< of all parts together, after contour gaps were closed
+    InvertedRings inverted;     ///< of all parts together; see FileResult::doubts
     std::vector<GapJoin> joins; ///< with RepairPolicies::close_gaps_mm
     std::uint64_t hash = 0; ///< content_hash of all contours, whichever part they belong to (see `merged`)
     LayerChanges changes;   ///< by FileJob::steps
@@ -115,10 +116,12 @@ struct LayerStatistics {
 /// What became of one part.
 struct PartResult {
     std::string label;
+    std::size_t file = 0; ///< in FileResult::files
     std::uint64_t triangles = 0;
     Box3 box; ///< as it stands on the plate
     std::uint64_t contours = 0;
     std::uint64_t open_chains = 0;
+    std::uint64_t inverted_rings = 0; ///< see FileResult::doubts
     std::uint64_t points = 0;
 };
 
@@ -131,6 +134,7 @@ struct FileResult {
     double mesh_volume_mm3 = 0;  ///< signed, of all parts; meaningful when they are closed
     /// Counts of all parts together.
     std::optional<Inspection> inspection;
+    std::vector<std::size_t> unsound; ///< those of `files` whose meshes have defects, where inspected
 
     /// What the policies did to the meshes: one entry for each mesh that is sliced.
     struct MeshRepair {
@@ -156,7 +160,10 @@ struct FileResult {
     /// With FileJob::scan; the other figures are those of the layers that vectors are made of.
     std::vector<ExposureResult> exposures;
     UnreachedMaterial unreached; ///< with FileJob::scan
-    MeshDoubts doubts;           ///< what the layers tell
+    /// What the layers tell, of each of the files. Inverted rings are those of the layers that `steps` are
+    /// taken with, found where rings that cross are searched for anyway: for `scan` and offsets. With a
+    /// FillRule, which says what of them is material, none are counted.
+    std::vector<MeshDoubts> doubts;
     std::vector<NearFaceLayers>
         near_faces;                   ///< of each of `files`, where rounding decides what its layers are
     std::uint64_t planned_layers = 0; ///< by all shards

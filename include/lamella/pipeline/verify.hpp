@@ -159,6 +159,10 @@ struct VectorVerification {
     /// depth: by more than both perimeters times four times what rounding and `simplify_mm` move. Of a mesh
     /// of several parts these are held against the outermost contours of each.
     std::uint64_t wrong_contours = 0;
+    /// With a mesh: rings of its sections that bound no material (see `inverted_rings`), and so have no
+    /// vectors; and what they enclose.
+    std::uint64_t inverted_rings = 0;
+    double inverted_mm3 = 0;
     std::uint64_t height_overlaps = 0; ///< see Verification
     /// With a mesh, where there are layers; see Verification::heights.
     std::optional<CoveredHeights> heights = {};
@@ -172,7 +176,8 @@ struct VectorVerification {
     [[nodiscard]] bool ok() const noexcept {
         return !none && open_chains == 0 && crossings == 0 && misoriented == 0 && outside == 0 &&
                too_short == 0 && misplaced == 0 && unreached_layers == 0 && miscovered == 0 &&
-               wrong_contours == 0 && height_overlaps == 0 && (!heights || heights->gaps == 0);
+               wrong_contours == 0 && inverted_rings == 0 && height_overlaps == 0 &&
+               (!heights || heights->gaps == 0);
     }
 };
 

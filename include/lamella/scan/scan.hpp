@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
+#include "lamella/polygon/inverted_rings.hpp"
 #include "lamella/scan/strategy.hpp"
 
 #include <cstdint>
@@ -25,12 +26,15 @@ class ScanLayer {
     ScanLayer(const Layer& layer, const Rounding& rounding = {});
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
+    /// What the layer that was given lost: see `inverted_rings`, in a full search.
+    [[nodiscard]] const InvertedRings& inverted() const noexcept { return inverted_; }
 
     /// Shares the points of another one, if these are the same: then it takes no time to see that. Upright
     /// walls are the same on many layers. O(points).
     void share_points(const ScanLayer& other);
 
   private:
+    InvertedRings inverted_; // found on the way to the layer
     Layer layer_;
 };
 

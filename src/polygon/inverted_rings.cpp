@@ -1,0 +1,44 @@
+#include "lamella/polygon/inverted_rings.hpp"
+
+#include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/polygon/fill.hpp"
+
+#include "polygon/holes_in_material.hpp"
+
+#include <cassert>
+#include <cstddef>
+#include <span>
+
+namespace lamella {
+
+namespace {
+
+Layer with_rings_reversed(const Layer& layer) {
+    LayerBuilder builder;
+    for (std::size_t i = 0; i < layer.rings; ++i) {
+        const std::span<const Point2> ring = layer.contour(i);
+        for (auto p = ring.rbegin(); p != ring.rend(); ++p)
+            builder.add_point(*p);
+        builder.end_contour(true);
+    }
+    return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
+}
+
+} // namespace
+
+// Where rings wind a negative number of times, the same rings reversed have their material.
+InvertedRings inverted_rings(const Layer& layer, const Rounding& rounding, InversionSearch search) {
+    const Rounding at_least{.step_mm = rounding.step_mm, .single_precision = true};
+    InvertedRings inverted;
+    assert(search == InversionSearch::full || in_normal_form(layer));
+    if (search == InversionSearch::quick && holes_lie_in_material(layer, at_least))
+        return inverted;
+    const Layer places = fill(with_rings_reversed(layer), FillRule::positive).layer;
+    for (std::size_t i = 0; i < places.rings; ++i)
+        if (const std::span<const Point2> ring = places.contour(i); !orientation_is_lost(ring, at_least))
+            inverted += {.rings = 1, .area_mm2 = ring_area(ring), .at = ring.front()};
+    return inverted;
+}
+
+} // namespace lamella
