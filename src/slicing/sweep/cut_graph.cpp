@@ -343,7 +343,7 @@ class Builder {
         // At most three nodes for each triangle, and one partly used block for each worker.
         const auto block = static_cast<std::uint32_t>(
             std::clamp<std::uint64_t>(3 * triangles_ / workers_ + 3, 3, partitions_.block_size()));
-        const std::uint64_t capacity = 3 * triangles_ + block * workers_;
+        const std::uint64_t capacity = 3 * triangles_ + std::uint64_t{block} * workers_;
         if (capacity >= no_node)
             throw Error(ErrorKind::limit,
                         fmt::format("{} triangles are more than can be sliced at once in 32-bit "

@@ -9,10 +9,10 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
+#include <list>
 #include <memory>
 #include <mutex>
 #include <utility>
-#include <vector>
 
 namespace lamella {
 
@@ -31,55 +31,58 @@ class PointArena {
     };
 
     [[nodiscard]] Piece take(std::uint64_t size) {
-        if (!block_ || block_->memory.size() - used_ < size) {
+        if (!block_ || block_->memory.front().size() - used_ < size) {
             block_.reset();
             block_ = std::make_shared<Block>(find_memory(size), returned_);
             used_ = 0;
         }
-        Point2* points = block_->memory.data() + used_;
+        Point2* points = block_->memory.front().data() + used_;
         used_ += size;
-        assert(used_ <= block_->memory.size());
+        assert(used_ <= block_->memory.front().size());
         return {block_, points};
     }
 
   private:
     static constexpr std::uint64_t largest_usual = (std::uint64_t{8} << 20) / sizeof(Point2);
 
+    /// Moved from list to list, which takes no memory: a destructor gives it back.
+    using Memory = std::list<PageArray<Point2>>;
+
     struct Returned {
         std::mutex mutex;
-        std::vector<PageArray<Point2>> memory;
+        Memory memory;
     };
 
     struct Block {
-        Block(PageArray<Point2> points, const std::shared_ptr<Returned>& to)
-            : memory(std::move(points)), returned(to) {}
+        Block(Memory one, const std::shared_ptr<Returned>& to) : memory(std::move(one)), returned(to) {}
         ~Block() {
             if (const std::shared_ptr<Returned> to = returned.lock()) {
                 const std::lock_guard lock(to->mutex);
-                to->memory.push_back(std::move(memory));
+                to->memory.splice(to->memory.end(), memory);
             }
         }
         Block(const Block&) = delete;
         Block& operator=(const Block&) = delete;
 
-        PageArray<Point2> memory;
+        Memory memory;                    ///< one array
         std::weak_ptr<Returned> returned; ///< gone when slicing is over: then the memory goes too
     };
 
-    PageArray<Point2> find_memory(std::uint64_t size) {
+    Memory find_memory(std::uint64_t size) {
+        Memory found;
         {
             const std::lock_guard lock(returned_->mutex);
-            for (PageArray<Point2>& memory : returned_->memory) {
-                if (memory.size() < size)
-                    continue;
-                PageArray<Point2> found = std::move(memory);
-                memory = std::move(returned_->memory.back());
-                returned_->memory.pop_back();
+            Memory& returned = returned_->memory;
+            const auto large = std::find_if(returned.begin(), returned.end(),
+                                            [&](const auto& memory) { return memory.size() >= size; });
+            if (large != returned.end()) {
+                found.splice(found.end(), returned, large);
                 return found;
             }
-            returned_->memory.clear(); // all too small by now
+            returned.clear(); // all too small by now
         }
-        return PageArray<Point2>(std::max(size + size / 8, usual_));
+        found.emplace_back(std::max(size + size / 8, usual_));
+        return found;
     }
 
     std::uint64_t usual_;
