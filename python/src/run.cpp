@@ -34,6 +34,12 @@ class Bell {
     bool rung_ = false;
 };
 
+/// Others go on meanwhile: the end of what the thread did may take a while, as to free gigabytes does.
+void join(std::thread& worker) {
+    const Unlocked released;
+    worker.join();
+}
+
 } // namespace
 
 void ProgressBox::put(const Progress& progress) {
@@ -88,10 +94,10 @@ void run(unsigned threads, const py::object& listener, const std::function<void(
         }
     } catch (...) {
         cancel.request();
-        worker.join();
+        join(worker);
         throw;
     }
-    worker.join();
+    join(worker);
     if (failure)
         std::rethrow_exception(failure);
 }

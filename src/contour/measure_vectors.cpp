@@ -39,6 +39,8 @@ ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters
     };
     for (std::size_t i = 0; i < vectors.contours(); ++i) {
         const std::span<const Point2> contour = vectors.contour(i);
+        if (contour.empty())
+            continue;
         jump(contour.front());
         for (const Point2& p : contour.subspan(1))
             mark(p);

@@ -236,8 +236,12 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
         Box3 box;
         std::uint64_t unusable = 0;
         std::uint64_t first_unusable = read.stored_triangles;
-        for (const std::string& message : among_->gather(Packer().put(mine).take())) {
-            const Seen seen = Unpacker(message).get<Seen>();
+        const std::string packed =
+            Packer().put(mine.box).put(mine.unusable).put(mine.first_unusable).put(mine.first_corner).take();
+        for (const std::string& message : among_->gather(packed)) {
+            Unpacker from(message);
+            const Seen seen{from.get<Box3>(), from.get<std::uint64_t>(), from.get<std::uint64_t>(),
+                            from.get<Point3f>()}; // in the order in which they were put
             if (seen.unusable > 0)
                 first_unusable = std::min(first_unusable, seen.first_unusable);
             unusable += seen.unusable;

@@ -56,7 +56,8 @@ class LayerTotals {
     /// What a plane tells about the mesh of a file.
     struct Doubt {
         std::uint32_t file = 0;
-        std::uint64_t plane = 0; ///< its index
+        std::uint32_t unused = 0; ///< fills the gap: between processes nothing uninitialised is sent
+        std::uint64_t plane = 0;  ///< its index
         OpenGaps open_gaps;
         InvertedRings inverted;
     };

@@ -4,6 +4,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -15,15 +17,29 @@
 
 namespace lamella {
 
+/// Holds for types without gaps between their members; for others it does not compile. What is in a gap was
+/// never written: no message is to have it.
+template <class T>
+constexpr bool without_gaps_between_members() noexcept {
+    if constexpr (!std::has_unique_object_representations_v<T> && !std::is_floating_point_v<T>) {
+        static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
+        [[maybe_unused]] constexpr auto words =
+            std::bit_cast<std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)>>(T{});
+    }
+    return true;
+}
+
 class Packer {
   public:
     template <class T>
     requires std::is_trivially_copyable_v<T> Packer& put(const T& value) {
+        static_assert(without_gaps_between_members<T>());
         bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
         return *this;
     }
     template <class T>
     requires std::is_trivially_copyable_v<T> Packer& put_all(std::span<const T> values) {
+        static_assert(without_gaps_between_members<T>());
         put(std::uint64_t{values.size()});
         bytes_.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
         return *this;

@@ -102,7 +102,7 @@ void farthest_between_corners(const Layer& from, const EdgeTree& to, double& lar
         const auto contour = from.contour(i);
         for (std::size_t k = 1; k < contour.size(); ++k)
             farthest(contour[k - 1], contour[k], to, largest, where);
-        if (from.closed(i))
+        if (from.closed(i) && !contour.empty())
             farthest(contour.back(), contour.front(), to, largest, where);
     }
 }

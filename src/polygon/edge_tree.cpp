@@ -34,6 +34,8 @@ EdgeTree::EdgeTree(const Layer& layer) {
     edges_.reserve(layer.points.size());
     for (std::size_t i = 0; i < layer.contours(); ++i) {
         const auto contour = layer.contour(i);
+        if (contour.empty())
+            continue;
         for (std::size_t k = 1; k < contour.size(); ++k)
             edges_.push_back({contour[k - 1], contour[k]});
         if (layer.closed(i) || contour.size() == 1)

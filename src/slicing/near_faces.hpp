@@ -20,8 +20,9 @@ namespace lamella {
 /// Triangles that are level but for rounding, near one plane.
 struct NearFaces {
     std::uint32_t plane = 0;
-    std::uint64_t area = 0; ///< in the units of a NearFaceFinder
-    double farthest_mm = 0; ///< the largest distance of a corner from the plane
+    std::uint32_t unused = 0; ///< fills the gap: between processes nothing uninitialised is sent
+    std::uint64_t area = 0;   ///< in the units of a NearFaceFinder
+    double farthest_mm = 0;   ///< the largest distance of a corner from the plane
 
     void add(const NearFaces& other) noexcept;
 };
