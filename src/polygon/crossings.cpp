@@ -120,11 +120,11 @@ std::vector<bool> one_of_each_crossing(std::span<const Segment> segments) {
 ///
 /// Two segments can meet in several cells: a crossing counts in the one cell, half open, that holds its
 /// computed place.
-class InversionSearch {
+class CrossingSearch {
   public:
     /// Only contours for which chosen(c) is true.
     template <class Chosen>
-    InversionSearch(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough)
+    CrossingSearch(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough)
         : layer_(layer), keep_(keep), enough_(enough), frame_(box_of(layer.points.span())) {
         segments_.resize(layer.points.size());
         ids_.reserve(layer.points.size());
@@ -338,13 +338,13 @@ Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
             const auto in_contact = [&contacts](std::size_t ring) {
                 return contacts.group[ring] != Contacts::none;
             };
-            return InversionSearch(layer, in_contact, keep, enough).run();
+            return CrossingSearch(layer, in_contact, keep, enough).run();
         }
     }
     const auto all = [](std::size_t) {
         return true;
     };
-    return InversionSearch(layer, all, keep, enough).run();
+    return CrossingSearch(layer, all, keep, enough).run();
 }
 
 } // namespace
