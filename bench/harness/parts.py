@@ -67,7 +67,7 @@ def make(part, lamella, folder):
     path = part.path(folder)
     if not path.exists() or path.stat().st_mtime < Path(lamella).stat().st_mtime:
         Path(folder).mkdir(parents=True, exist_ok=True)
-        half_made = path.with_suffix(".part")
+        half_made = path.with_suffix(".part.stl")
         subprocess.run([str(lamella), "make", *part.make, "-o", str(half_made)], check=True, capture_output=True)
         half_made.rename(path)
     return path

@@ -176,9 +176,11 @@ void bind_losses(py::module_& module) {
     py::class_<ScanLosses>(module, "ScanLosses")
         .def(py::init())
         .def("add",
-             [](ScanLosses& self, const SharedLayer& layer) {
-                 const Unlocked released;
-                 self.add({&layer.get(), 1}, inverted_rings(layer.get(), {}, InversionSearch::full));
+             [](ScanLosses& self, const LayerPointer& layer) {
+                 self.add({&layer->get(), 1},
+                          result_of_points(layer->get().points.size(), [layer](const Execution& /*execution*/) {
+                              return inverted_rings(layer->get(), {}, InversionSearch::full);
+                          }));
              })
         .def("texts", &ScanLosses::texts);
     module.def("scan_losses", [](const Stack& stack) {

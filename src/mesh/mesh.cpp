@@ -62,7 +62,14 @@ Mesh Mesh::with_joined_vertices(const Execution& execution) const {
 Mesh Mesh::transformed(const Transform& map) const {
     if (map == Transform{})
         return *this;
-    return indexed_ ? Mesh(lamella::transformed(*indexed_, map)) : Mesh(soup_.transformed(map));
+    if (!indexed_)
+        return Mesh(soup_.transformed(map));
+    IndexedMesh moved = lamella::transformed(*indexed_, map);
+    if (std::any_of(moved.vertices.begin(), moved.vertices.end(),
+                    [](const Point3& p) { return is_too_far(p); }))
+        throw Error(ErrorKind::usage,
+                    fmt::format("the mesh: reaches beyond {} mm once it is transformed", farthest_mm));
+    return Mesh(std::move(moved));
 }
 
 Box3 bounding_box(const Mesh& mesh, const Execution& execution) {

@@ -380,7 +380,8 @@ TEST(ScanFormats, KeepExposuresOfPartsOfOneLabelApart) {
     }
 }
 
-TEST(ScanFormats, LeaveChainsOpenWhoseEndsRoundingMakesEqual) {
+// ILT holds CLI files, whose readers take a line that ends where it began for a ring, and say so.
+TEST(ScanFormats, LeaveChainsOpenWhoseEndsRoundingMakesEqualWhereTheyCan) {
     for (const double apart : {1e-12, 0.0}) {
         for (const double x : {0.0, 1.0, -1.0}) {
             const Exposure exposure{.contour = 1, .parameters = {}};
@@ -391,7 +392,14 @@ TEST(ScanFormats, LeaveChainsOpenWhoseEndsRoundingMakesEqual) {
                 builder.end_contour(false);
             });
             for (const ScanFormat& format : scan_formats()) {
-                const Layer layer = read(written(format.name, job)).parts.at(0).layers.at(0);
+                const LayerFile file = read(written(format.name, job));
+                const Layer layer = file.parts.at(0).layers.at(0);
+                if (std::string_view(format.name) == "ilt") {
+                    EXPECT_EQ(layer.rings, 1U);
+                    EXPECT_EQ(layer.points.size(), 4U);
+                    EXPECT_FALSE(file.warnings.empty());
+                    continue;
+                }
                 EXPECT_EQ(layer.rings, 0U) << format.name;
                 ASSERT_EQ(layer.points.size(), 5U) << format.name;
                 EXPECT_NEAR(layer.points[4].x, x, 1e-6) << format.name;

@@ -164,7 +164,9 @@ TEST(SliceFormats, ComeBackAtTheirResolution) {
                 ASSERT_EQ(back.parts[part].layers.size(), expected.size()) << format.format;
                 for (std::size_t i = 0; i < expected.size(); ++i) {
                     const Layer& found = back.parts[part].layers[i];
-                    EXPECT_EQ(content_hash(found), content_hash(kept(expected[i], format)))
+                    Layer contours = found; // hatches may be rounded; they are compared below
+                    contours.hatches = {};
+                    EXPECT_EQ(content_hash(contours), content_hash(kept(expected[i], format)))
                         << format.format << ", part " << part << ", layer " << i;
                     const double tolerance = format.exact ? 0 : format.height;
                     EXPECT_NEAR(found.z, expected[i].z, tolerance) << format.format;

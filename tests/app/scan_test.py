@@ -344,7 +344,7 @@ class Scan(ProgramTest):
         leaving = ["--strategy", "none.toml"]
         thin = r"1\.92 mm2 of material on 4 layers, the lowest at z = 0\.5 mm, are reached by no vector: it is too narrow .*; accepted_mm2 of the strategy says"
         result = self.succeed(*slicing, *leaving, "-o", "job.json", "--stats", "stats.json")
-        self.assertRegex(result.err, f"lamella: warning: part.stl: {thin}")
+        self.assertRegex(result.err, f"lamella: warning: part.stl and 1 more file: {thin}")
         self.assertRegex(result.text, r"(?m)^scan .*, 1\.92 mm2 not reached$")
         stats = json.loads(self.bytes_of("stats.json"))
         self.assertAlmostEqual(stats["scan"]["unreached_mm2"], 1.92, places=4)

@@ -248,7 +248,7 @@ class Verify(ProgramTest):
                     self.assertIn(where, self.run_program("verify", name, "--mesh", "rook.stl", "--json").json()["hint"])
                     self.succeed("verify", name, "--mesh", "rook.stl", "--slice-at", where)
         for name in ["a.json", "a.npz", "a.svg"]:
-            self.assertEqual(self.succeed("slice", "rook.stl", "--slice-at", "top", "--strict", "-o", name).err, "")
+            self.assertEqual(self.succeed("slice", "rook.stl", "--slice-at", "top", "--snap", "1e-6", "--strict", "-o", name).err, "")
 
     def test_listed_cuts_that_a_format_does_not_keep_are_told(self):
         self.succeed("make", "rook", "-o", "rook.stl")

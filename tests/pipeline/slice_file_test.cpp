@@ -168,7 +168,7 @@ TEST_F(Processes, SnapAndWarnOfLevelFacesNearPlanesAlike) {
     const PlateInput input{.path = path("tilted.stl"), .placement = rotation('x', -30)};
     FileJob job = job_of({input}, 0.5);
     job.layering.at = SliceAt::bottom;
-    job.output = path("out.cli");
+    job.output = path("out.json");
     const FileResult bent = slice_file(job);
     ASSERT_EQ(bent.near_faces.size(), 1U);
     const NearFaceLayers& near = bent.near_faces.front();
@@ -185,7 +185,7 @@ TEST_F(Processes, SnapAndWarnOfLevelFacesNearPlanesAlike) {
     EXPECT_EQ(snapped.near_faces.front().layers, 0U);
     EXPECT_NEAR(snapped.layers.front().measure.area_mm2, 100, 1e-3);
     EXPECT_NEAR(snapped.layers[5].measure.area_mm2, 40, 1e-3);
-    const std::string bytes = content("out.cli");
+    const std::string bytes = content("out.json");
     for (const std::size_t processes : {2, 5})
         for (const FileResult& one : expected) {
             SCOPED_TRACE(testing::Message() << "by " << processes);
@@ -193,7 +193,7 @@ TEST_F(Processes, SnapAndWarnOfLevelFacesNearPlanesAlike) {
             for (const FileResult& many : test::slice_by(processes, job))
                 test::expect_same(one, many);
         }
-    EXPECT_EQ(content("out.cli"), bytes);
+    EXPECT_EQ(content("out.json"), bytes);
     // Of each shard its own layers; strict refuses them.
     std::uint64_t layers = 0;
     job.layering.snap_mm = 0;

@@ -298,7 +298,7 @@ READERS = {
 def test_files_that_are_not_there_are_errors_of_input(folder, name, path):
     with pytest.raises(lamella.InputError) as caught:
         READERS[name](path)
-    assert str(caught.value).startswith(f"{path}: " if isinstance(path, str) else "missing\udcff.cli: ")
+    assert str(caught.value).startswith(f"{path}: " if isinstance(path, str) else "missing\\xff.cli: ")
     assert not (folder / "out.cli").exists()
 
 

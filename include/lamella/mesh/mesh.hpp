@@ -56,7 +56,8 @@ class Mesh {
     [[nodiscard]] Mesh with_joined_vertices(const Execution& execution = {}) const;
 
     /// The same mesh under a map, still counter-clockwise seen from outside when that mirrors. O(1) for a
-    /// soup and for the identity; an indexed mesh is copied. Throws Error{usage} when the map is not finite.
+    /// soup and for the identity; an indexed mesh is copied. Throws Error{usage} when the map is not finite,
+    /// or moves vertices of an indexed mesh beyond 1e100 mm.
     [[nodiscard]] Mesh transformed(const Transform& map) const;
 
   private:
