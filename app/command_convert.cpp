@@ -53,7 +53,9 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     options.page.title = title_of(arguments.input);
     tell(file, file.warnings, arguments.strict, context.messages);
     const LayerChanges changes =
-        take_steps(arguments.making.steps(), file, arguments.strict, context.messages, execution).all;
+        take_steps(arguments.making.steps(), file, arguments.strict, context.messages, execution,
+                   arguments.limits.max_memory.value_or(0) / 4)
+            .all;
     LayerFileInfo info = info_of(file);
     if (!arguments.label.empty()) {
         if (file.parts.size() > 1)

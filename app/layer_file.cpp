@@ -69,7 +69,7 @@ void tell(const LayerFile& file, const std::vector<std::string>& warnings, bool 
 }
 
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
-                       const Execution& execution) {
+                       const Execution& execution, std::uint64_t memory) {
     for (const LayerPart& part : file.parts)
         if (part.exposure && steps.any())
             throw Error(ErrorKind::usage,
@@ -82,7 +82,7 @@ StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Me
     for (LayerPart& part : file.parts)
         parts.push_back(std::move(part.layers));
     StepChanges changes;
-    parts = lamella::take_steps(steps, std::move(parts), changes.planes, execution);
+    parts = lamella::take_steps(steps, std::move(parts), changes.planes, execution, memory);
     std::uint64_t contours = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         for (const Layer& layer : parts[i])

@@ -2,14 +2,16 @@
 // sizes, each twice the one before; the growth is the power of the number of points that the times follow
 // (n log n is about 1.1, a square 2). Crossings are as many as the layer was made with; simplified contours
 // keep within the tolerance and do not cross; filled layers have no crossings and, filled again, stay as they
-// are.
+// are; of rings in one another the largest is left, and hatched.
 
 #include "experiment.hpp"
 
 #include <fmt/format.h>
 #include <lamella/lamella.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <numbers>
 
@@ -174,6 +176,61 @@ Layer nest(int n) {
     return layer_of(rings);
 }
 
+/// Bodies around one another, counter-clockwise, or every other one a hole.
+Layer concentric(int n, bool holes) {
+    constexpr int corners = 8;
+    const int count = n / corners;
+    std::vector<Contour> rings;
+    for (int i = 0; i < count; ++i) {
+        Contour& ring = rings.emplace_back();
+        const bool hole = holes && (count - i) % 2 == 0;
+        for (int k = 0; k < corners; ++k)
+            ring.push_back(polar(100.0 * (i + 1) / count, (hole ? -turn : turn) * k / corners));
+    }
+    return layer_of(rings);
+}
+
+/// Rectangles around one another whose lower sides lie on one line, which is turned by an angle.
+Layer nested_on_a_line(int n, double angle, bool holes) {
+    const int count = n / 4;
+    std::vector<Contour> rings;
+    for (int i = 1; i <= count; ++i) {
+        const double r = 100.0 * i / count;
+        Contour& ring = rings.emplace_back();
+        for (const Point2& p : {Point2{-r, 0}, Point2{r, 0}, Point2{r, r}, Point2{-r, r}})
+            ring.push_back({p.x * std::cos(angle) - p.y * std::sin(angle),
+                            p.x * std::sin(angle) + p.y * std::cos(angle)});
+        if (holes && (count - i) % 2 != 0)
+            std::reverse(ring.begin(), ring.end());
+    }
+    return layer_of(rings);
+}
+
+/// Kites around one another that share one end.
+Layer nested_at_an_end(int n, bool left) {
+    const int count = n / 4;
+    std::vector<Contour> rings;
+    for (int i = 1; i <= count; ++i) {
+        const double r = (left ? 50.0 : -50.0) * i / count;
+        const double h = r * i / count;
+        rings.push_back({{0, 0}, {r, -h}, {2 * r, 0}, {r, h}});
+    }
+    return layer_of(rings);
+}
+
+/// There and back, above one another in a body, or all from one point on.
+Layer flat_rings(int n, bool in_a_body) {
+    std::vector<Contour> rings;
+    if (in_a_body)
+        rings.push_back({{-10, -10}, {110, -10}, {110, 110}, {-10, 110}});
+    for (int i = 1; i <= n / 3; ++i) {
+        const double y = in_a_body ? 300.0 * i / n : 0;
+        const double x = in_a_body ? 100 : 300.0 * i / n;
+        rings.push_back({{0, y}, {x, y}, {x / 2, y}});
+    }
+    return layer_of(rings);
+}
+
 /// Hooks above one another: all chains begin and end at the same x, and each ends closest to where the next
 /// one begins.
 Layer column_of_hooks(int n) {
@@ -220,6 +277,47 @@ Timed fill_nonzero(const Layer& layer) {
             !has_crossings(filled) && !fill(filled, FillRule::nonzero).changed()};
 }
 
+/// What the steps are to leave.
+struct Expected {
+    std::size_t rings;
+    double area_mm2;
+};
+
+bool is(const Layer& layer, const Expected& expected) {
+    const double area = measure(layer).area_mm2;
+    return layer.rings == expected.rings &&
+           std::abs(area - expected.area_mm2) <= 1e-6 * (1 + expected.area_mm2);
+}
+
+/// Of a layer of which the largest ring is all that is left, and is `largest`.
+Timed fill_to_largest(const Layer& layer, const Expected& largest) {
+    const auto start = Clock::now();
+    const Layer filled = fill(layer, FillRule::nonzero).layer;
+    return {seconds_since(start), layer.points.size(), is(filled, largest)};
+}
+
+/// Outwards by next to nothing.
+Timed grow(const Layer& layer, const Expected& expected) {
+    const auto start = Clock::now();
+    const Layer grown = offset(layer, 1e-9);
+    return {seconds_since(start), layer.points.size(), is(grown, expected)};
+}
+
+/// The vectors of all regions of the default strategy; what is hatched, in mm^2.
+Timed make_vectors(const Layer& layer, double area_mm2) {
+    const ScanStrategy strategy;
+    const auto start = Clock::now();
+    const std::vector<Layer> vectors = scan(layer, {}, {}, strategy);
+    const double seconds = seconds_since(start);
+    double length = 0;
+    for (const Layer& exposed : vectors)
+        for (std::size_t i = 0; i < exposed.hatches.size(); i += 2)
+            length += std::hypot(exposed.hatches[i + 1].x - exposed.hatches[i].x,
+                                 exposed.hatches[i + 1].y - exposed.hatches[i].y);
+    const double hatched = length * strategy.hatch.distance;
+    return {seconds, layer.points.size(), hatched > 0.9 * area_mm2 && hatched <= area_mm2};
+}
+
 /// Inwards by so much that nothing is left.
 Timed shrink_away(const Layer& layer, double by, OffsetCorner shape) {
     const auto start = Clock::now();
@@ -242,6 +340,13 @@ Timed join_hooks(int n) {
     return {seconds_since(start), layer.points.size(),
             closed.layer.open_chains() == 1 && closed.refused == 0};
 }
+
+/// Layers of about so many points.
+struct Family {
+    std::string what;
+    std::function<Layer(int)> layer;
+    Expected expected;
+};
 
 class Report {
   public:
@@ -320,6 +425,40 @@ int report(int argc, char** argv) {
                [](int i) { return shrink_away(slivers(i), 200 * turn / i, OffsetCorner::mitre); });
     report.add("offset: slivers, crossings of all pairs", n / 100,
                [](int i) { return shrink_away(slivers(i), 200 * turn / i, OffsetCorner::bevel); });
+    // Rings in one another, and what is left of them: the largest.
+    constexpr int few = 4000;
+    const Expected octagon{1, 100 * 100 * 2 * std::numbers::sqrt2};
+    const Expected rectangle{1, 200 * 100};
+    const Expected kite{1, 2 * 50 * 50};
+    for (const auto& [what, layer_of_points, expected] :
+         {Family{"rings around one another", [](int i) { return concentric(i, false); }, octagon},
+          Family{"rings on a line", [](int i) { return nested_on_a_line(i, 0, false); }, rectangle},
+          Family{"rings on a line aslant", [](int i) { return nested_on_a_line(i, 0.3, false); }, rectangle},
+          Family{"rings that share their left end", [](int i) { return nested_at_an_end(i, true); }, kite},
+          Family{"rings that share their right end", [](int i) { return nested_at_an_end(i, false); },
+                 kite}}) {
+        const auto& layer = layer_of_points;
+        const Expected& one = expected;
+        report.add("fill: " + what, few, [&](int i) { return fill_to_largest(layer(i), one); });
+        report.add("offset: " + what, few, [&](int i) { return grow(layer(i), one); });
+        report.add("scan: " + what, few, [&](int i) { return make_vectors(layer(i), one.area_mm2); });
+    }
+    const Expected nothing{0, 0};
+    const Expected body{1, 120 * 120};
+    report.add("fill: flat rings from one point", few,
+               [&](int i) { return fill_to_largest(flat_rings(i, false), nothing); });
+    report.add("fill: flat rings in a body", few,
+               [&](int i) { return fill_to_largest(flat_rings(i, true), body); });
+    report.add("scan: flat rings in a body", few,
+               [&](int i) { return make_vectors(flat_rings(i, true), body.area_mm2); });
+    report.add("fill: bodies and holes around one another", few,
+               [](int i) { return fill_nonzero(concentric(i, true)); });
+    report.add("fill: bodies and holes on a line", few,
+               [](int i) { return fill_nonzero(nested_on_a_line(i, 0, true)); });
+    report.add("offset: bodies and holes around one another", few, [](int i) {
+        return grow(concentric(i, true),
+                    {static_cast<std::size_t>(i / 8), measure(concentric(i, true)).area_mm2});
+    });
     report.add("compare: fins side by side", n, compare_fins);
     report.add("gaps: chains in a column", n, join_hooks);
     std::cout << report.text();

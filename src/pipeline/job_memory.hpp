@@ -22,6 +22,12 @@ struct JobMemory {
     /// that they and what is made of them take no more than a quarter of the limit.
     [[nodiscard]] std::uint64_t points_in_flight(unsigned threads) const noexcept;
 
+    /// What steps and scan vectors of one layer may take: a quarter of the limit, which threads share where
+    /// it was asked for. It is not set apart: few layers come near to it.
+    [[nodiscard]] std::uint64_t of_layer(unsigned threads) const noexcept {
+        return asked ? limit / 4 / threads : limit / 4;
+    }
+
     /// What the program, its threads and its notes about each plane take; on a plate, there are some for each
     /// shape. `statistics`: of layers.
     [[nodiscard]] static std::uint64_t overhead(unsigned threads, std::uint64_t planes,

@@ -184,7 +184,7 @@ PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t pl
 /// move farther than the sides, and open chains stay where they are.
 Box3 box_after(const LayerSteps& steps, Box3 box) {
     const bool mitre = steps.offset_corners.shape == OffsetCorner::mitre;
-    const double reach = std::max(0.0, steps.offset_mm) * (mitre ? steps.offset_corners.mitre_limit : 1);
+    const double reach = std::max(0.0, steps.offset_mm) * (mitre ? steps.offset_corners.longest_mitre() : 1);
     box.min.x -= reach;
     box.min.y -= reach;
     box.max.x += reach;
@@ -334,8 +334,9 @@ class LayerWay {
     /// `sliced`: the planes of the plan that come, of which those of `mine` are written. `supports`: for each
     /// part whether it is one.
     LayerWay(const FileJob& job, const Plate& plate, const Plan& plan, PlaneRange sliced, PlaneRange mine,
-             const std::vector<bool>& supports, LayerTotals& totals, JobOutput& output)
-        : job_(job), plate_(plate), supports_(supports), memories_(supports.size()),
+             const std::vector<bool>& supports, LayerTotals& totals, JobOutput& output,
+             const LayerLimits& limits)
+        : job_(job), plate_(plate), limits_(limits), supports_(supports), memories_(supports.size()),
           first_index_(plan.layers.front().index), mine_(mine), totals_(totals), output_(output),
           window_(sliced, mine, job.scan ? job.scan->downskin.layers : 0,
                   job.scan ? job.scan->upskin.layers : 0,
@@ -363,7 +364,7 @@ class LayerWay {
             const Stopwatch stepping;
             LayerSteps first; // where each body has material
             first.fill = std::exchange(steps.fill, FillRule::none);
-            filled = take_steps_on_plane(first, parts, changes);
+            filled = take_steps_on_plane(first, parts, changes, limits_);
             material = without_negatives(filled, plate_);
             parts = material;
             count(stepping, step_nanoseconds_);
@@ -371,7 +372,7 @@ class LayerWay {
         if (steps.any()) {
             const Stopwatch stepping;
             LayerChanges more;
-            made = take_steps_on_plane(steps, parts, more);
+            made = take_steps_on_plane(steps, parts, more, limits_);
             changes += more;
             changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers);
             count(stepping, step_nanoseconds_);
@@ -430,6 +431,7 @@ class LayerWay {
 
     const FileJob& job_;
     const Plate& plate_;
+    LayerLimits limits_;
     const std::vector<bool>& supports_;
     std::vector<std::string> names_;   ///< of the parts, for errors
     std::vector<ScanMemory> memories_; ///< of each part
@@ -549,7 +551,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     for (const PlateNegative& negative : plate.negatives)
         files.push_back(static_cast<std::uint32_t>(plate.shapes[negative.shape].input));
     LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), supports, files);
-    LayerWay way(job, plate, plan, sliced_here, mine, supports, totals, output);
+    const LayerLimits limits{execution.cancel, feed.memory().of_layer(result.threads)};
+    LayerWay way(job, plate, plan, sliced_here, mine, supports, totals, output, limits);
     ShapeVisitor visitor;
     if (feed.meshes() != nullptr) {
         feed.begin_near_faces(plan);

@@ -1,19 +1,24 @@
 #include "polygon/arrangement.hpp"
 
-#include "lamella/polygon/crossings.hpp"
+#include "lamella/core/error.hpp"
 
 #include "contour/distance.hpp"
 #include "polygon/close_sides.hpp"
+#include "polygon/crossing_pairs.hpp"
 #include "polygon/grid.hpp"
 #include "polygon/open_runs.hpp"
 #include "polygon/orientation.hpp"
 #include "polygon/segment_sweep.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -244,36 +249,137 @@ void add_ends(std::span<const Side> sides, std::vector<Point2>& places) {
         places.insert(places.end(), {side.line.lo, side.line.hi});
 }
 
-void add_crossings(std::span<const Side> sides, std::vector<Point2>& places) {
-    Layer layer; // every side an open chain
-    std::vector<Point2> points;
-    for (const Side& side : sides) {
-        points.insert(points.end(), {side.line.lo, side.line.hi});
-        layer.offsets.push_back(points.size());
-    }
-    layer.points = PointArray(std::move(points));
-    for (const Crossing& crossing : find_crossings(layer, std::numeric_limits<std::size_t>::max()).first)
-        places.push_back(crossing_place(sides[crossing.contour_a].line, sides[crossing.contour_b].line));
+/// And 64 for each side: what takes less than a minute.
+constexpr std::uint64_t most_crossings = std::uint64_t{1} << 22;
+
+/// What a crossing takes: its place on the grid, and the pieces of both sides.
+constexpr std::uint64_t bytes_of_crossing = 4 * sizeof(Side) + 8 * sizeof(Point2);
+
+void add_crossings(std::span<const Side> sides, std::vector<Point2>& places, const LayerBudget& budget) {
+    std::vector<Segment> lines;
+    lines.reserve(sides.size());
+    for (const Side& side : sides)
+        lines.push_back(side.line);
+    const std::uint64_t most = most_crossings + 64 * lines.size();
+    const auto pairs = crossing_pairs(lines, most, bytes_of_crossing, budget);
+    if (pairs.size() > most)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("layer {}: {} sides of contours in contact cross more than {} times, the limit; "
+                        "leave out some of the bodies, or offset by less",
+                        budget.layer(), lines.size(), most));
+    for (const auto& [a, b] : pairs)
+        places.push_back(crossing_place(lines[a], lines[b]));
 }
 
-/// Cuts the sides at those of the places for which `on(segment, place)`. Whether there was anything to cut.
-template <class On>
-bool cut(Arrangement& arrangement, const Places& places, const On& on) {
-    std::vector<Side>& sides = arrangement.sides;
-    std::vector<Side> pieces;
-    std::vector<Point2> cuts;
-    const auto add_piece = [&](const Point2& a, const Point2& b, const SideCount& step) {
-        assert(a != b);
-        if (a < b)
-            pieces.push_back({.line = {a, b}, .step = step});
-        else
-            pieces.push_back({.line = {b, a}, .step = -1 * step}); // turned upright
+/// A line through places of the grid: sides on it have the same one, exactly.
+struct CarryingLine {
+    Vector direction; ///< from left to right, in lowest terms
+    Wide height;      ///< cross product of the direction with any of its places
+
+    explicit CarryingLine(const Segment& s) noexcept : direction(from_to(s.lo, s.hi)) {
+        const std::int64_t divisor = std::gcd(direction.x, direction.y);
+        direction = {direction.x / divisor, direction.y / divisor};
+        height = cross(direction, {whole(s.lo.x), whole(s.lo.y)});
+    }
+    [[nodiscard]] auto key() const noexcept { return std::tie(direction.x, direction.y, height); }
+};
+
+/// Cuts sides that overlap on one line at one another's ends and adds up what lies upon one another there, so
+/// that n of them become 2 n pieces at most. Cut one by one, they would be cut at each end within each.
+void join_collinear(Arrangement& arrangement) {
+    struct End {
+        CarryingLine line;
+        Point2 at;
+        SideCount step;
+        bool begins;
     };
-    for (Side& side : sides) {
+    std::vector<End> ends;
+    ends.reserve(2 * arrangement.sides.size());
+    for (const Side& side : arrangement.sides) {
+        const CarryingLine line(side.line);
+        ends.push_back({line, side.line.lo, side.step, true});
+        ends.push_back({line, side.line.hi, side.step, false});
+    }
+    std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) {
+        return a.line.key() != b.line.key() ? a.line.key() < b.line.key() : a.at < b.at;
+    });
+    std::vector<Side> sides;
+    SideCount here; // of those over the way to the next end
+    std::int64_t forth = 0;
+    std::int64_t back = 0;
+    std::size_t open = 0;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const End& end = ends[i];
+        const std::int64_t sign = end.begins ? 1 : -1;
+        here += sign * end.step;
+        (end.step.left > 0 ? forth : back) += sign * end.step.left;
+        open += static_cast<std::size_t>(sign);
+        if (open == 0 || ends[i + 1].at == end.at)
+            continue;
+        arrangement.walls = arrangement.walls || (forth > 0 && back < 0);
+        if (here != SideCount{})
+            sides.push_back({.line = {end.at, ends[i + 1].at}, .step = here});
+    }
+    arrangement.sides = std::move(sides);
+}
+
+/// Pieces of sides. Those that lie upon one another are mostly made one shortly after the other, and are
+/// added up then: thousands of sides that run along one another take no more memory than what comes of them.
+class Pieces {
+  public:
+    explicit Pieces(std::size_t sides) : last_(std::bit_ceil(4 * sides + 1024), none) {}
+
+    void add(const Point2& a, const Point2& b, const SideCount& step) {
+        assert(a != b);
+        if (b < a)
+            return add(b, a, -1 * step); // turned upright
+        std::uint32_t& last = last_[hash(a, b) & (last_.size() - 1)];
+        std::vector<Side>& sides = all_.sides;
+        if (last != none && sides[last].line.lo == a && sides[last].line.hi == b) {
+            all_.walls = all_.walls || sides[last].step.left * step.left < 0;
+            sides[last].step += step;
+        } else {
+            last = static_cast<std::uint32_t>(sides.size());
+            sides.push_back({.line = {a, b}, .step = step});
+        }
+    }
+    [[nodiscard]] const Arrangement& all() const noexcept { return all_; }
+
+  private:
+    static constexpr std::uint32_t none = 0xffffffff;
+
+    static std::size_t hash(const Point2& a, const Point2& b) noexcept {
+        std::uint64_t bits = 0;
+        for (const double number : {a.x, a.y, b.x, b.y})
+            bits = (bits ^ static_cast<std::uint64_t>(whole(number))) * 0x9e3779b97f4a7c15U;
+        return bits ^ (bits >> 32);
+    }
+
+    Arrangement all_;
+    std::vector<std::uint32_t> last_; ///< by hash: the number of the piece that was added last
+};
+
+/// Cuts the sides at those of the places for which `on(segment, place)`. False where that takes more than
+/// `most` cuts; then nothing is cut.
+template <class On>
+bool try_to_cut(Arrangement& arrangement, const Places& places, const On& on, std::uint64_t most, bool& any,
+                const LayerBudget& budget) {
+    std::vector<Side>& sides = arrangement.sides;
+    Pieces pieces(sides.size());
+    std::vector<std::uint32_t> cut;
+    std::vector<Point2> cuts;
+    std::uint64_t made = 0;
+    for (std::uint32_t i = 0; i < sides.size(); ++i) {
+        const Side& side = sides[i];
+        budget.check();
         cuts.clear();
         places.for_places_on(side.line, on, [&](const Point2& place) { cuts.push_back(place); });
         if (cuts.empty())
             continue;
+        made += cuts.size() + 1;
+        if (made > most)
+            return false;
         // In the order in which it comes into their squares.
         const bool falls = side.line.hi.y < side.line.lo.y;
         std::sort(cuts.begin(), cuts.end(), [&](const Point2& a, const Point2& b) {
@@ -281,21 +387,45 @@ bool cut(Arrangement& arrangement, const Places& places, const On& on) {
         });
         Point2 from = side.line.lo;
         for (const Point2& place : cuts) {
-            add_piece(from, place, side.step);
+            pieces.add(from, place, side.step);
             from = place;
         }
-        add_piece(from, side.line.hi, side.step);
-        side.step = {};
+        pieces.add(from, side.line.hi, side.step);
+        cut.push_back(i);
+        budget.need(pieces.all().sides.size(), 2 * sizeof(Side), "pieces of contours");
     }
-    if (pieces.empty())
-        return false;
-    sides.insert(sides.end(), pieces.begin(), pieces.end());
+    any = !cut.empty();
+    if (!any)
+        return true;
+    for (const std::uint32_t i : cut)
+        sides[i].step = {};
+    sides.insert(sides.end(), pieces.all().sides.begin(), pieces.all().sides.end());
+    arrangement.walls = arrangement.walls || pieces.all().walls;
     merge(arrangement);
     return true;
 }
 
+/// What takes some ten seconds.
+constexpr std::uint64_t most_pieces = std::uint64_t{1} << 27;
+
+/// Whether there was anything to cut.
+template <class On>
+bool cut(Arrangement& arrangement, const Places& places, const On& on, const LayerBudget& budget) {
+    bool any = false;
+    if (try_to_cut(arrangement, places, on, 16 * arrangement.sides.size() + 65536, any, budget))
+        return any;
+    join_collinear(arrangement); // which cuts what would be cut anyway
+    if (!try_to_cut(arrangement, places, on, most_pieces, any, budget))
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("layer {}: many contours run along one another, closer than coordinates are "
+                        "rounded: cut at one another's corners they make more than {} pieces, the limit",
+                        budget.layer(), most_pieces));
+    return true;
+}
+
 /// Finds what is below each side, by a sweep from left to right. The sides meet in their ends only.
-void wind(Arrangement& arrangement) {
+void wind(Arrangement& arrangement, const LayerBudget& budget) {
     std::vector<Side>& sides = arrangement.sides;
     const SideCount around{arrangement.around, 0};
     std::vector<Segment> lines;
@@ -321,6 +451,7 @@ void wind(Arrangement& arrangement) {
             ++event;
             continue;
         }
+        budget.check();
         // Sides that begin in one point are placed together, for each takes its number from the one below.
         const Point2 at = event->at;
         std::uint32_t side = event->segment;
@@ -370,25 +501,29 @@ bool bounds(const Arrangement& arrangement, const Material& material, const Wind
 
 } // namespace
 
-Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, const ClippingGrid& grid) {
+Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, const ClippingGrid& grid,
+                     const LayerBudget& budget) {
     Uncut uncut(rings, grid);
     Arrangement arrangement = std::move(uncut.arrangement);
     if (!arrangement.sides.empty()) {
         std::vector<Point2> hot;
         add_ends(arrangement.sides, hot);
-        add_crossings(arrangement.sides, hot);
-        if (cut(arrangement, distinct(std::move(hot)), comes_into) && !arrangement.sides.empty()) {
+        add_crossings(arrangement.sides, hot, budget);
+        if (cut(arrangement, distinct(std::move(hot)), comes_into, budget) && !arrangement.sides.empty()) {
             // What was bent may run through ends that it did not come near to.
             std::vector<Point2> ends;
             add_ends(arrangement.sides, ends);
-            cut(arrangement, distinct(std::move(ends)), [](const Segment& s, const Point2& place) {
-                return s.lo < place && place < s.hi && side(s, place) == 0;
-            });
+            cut(
+                arrangement, distinct(std::move(ends)),
+                [](const Segment& s, const Point2& place) {
+                    return s.lo < place && place < s.hi && side(s, place) == 0;
+                },
+                budget);
         }
     }
     arrangement.sides.insert(arrangement.sides.end(), uncut.alone.begin(), uncut.alone.end());
     arrangement.around = around;
-    wind(arrangement);
+    wind(arrangement, budget);
     return arrangement;
 }
 

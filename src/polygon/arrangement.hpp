@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include "core/layer_budget.hpp"
 #include "polygon/clipping_grid.hpp"
 #include "polygon/material.hpp"
 #include "polygon/orientation.hpp"
@@ -84,7 +85,8 @@ struct Arrangement {
 /// The rings, in any order and each starting anywhere, cut on the grid where they meet. `around`: the
 /// windings outside of all of them. O(n + (m + k) log m) for n points, m sides that come close to others or
 /// turn, and k crossings, as far as these are found in that.
+/// Throws Error{limit} for more crossings or pieces than the budget has room for, and Error{cancelled}.
 [[nodiscard]] Arrangement arranged(std::span<const WoundRing> rings, const Windings& around,
-                                   const ClippingGrid& grid);
+                                   const ClippingGrid& grid, const LayerBudget& budget = {});
 
 } // namespace lamella

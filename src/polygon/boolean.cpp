@@ -81,7 +81,8 @@ Layer with_head_and_chains_of(const Layer& first, const Rings& rings) {
 }
 
 /// `least`: as of `Material`.
-Layer combined(const Layer& first, const Layer& second, BooleanOperation operation, std::int64_t least) {
+Layer combined(const Layer& first, const Layer& second, BooleanOperation operation, std::int64_t least,
+               const LayerLimits& limits) {
     const Layer a = normal_form(first);
     const Layer b = normal_form(second);
     Shares shares(a, b);
@@ -90,7 +91,7 @@ Layer combined(const Layer& first, const Layer& second, BooleanOperation operati
         if (least == 1)
             drop_far(shares); // what both layers have cancels there, whatever is around it
     } else if (same) {
-        Layer layer = fill(a, FillRule::positive).layer;
+        Layer layer = fill(a, FillRule::positive, limits).layer;
         layer.hatches = {};
         return layer;
     }
@@ -101,19 +102,21 @@ Layer combined(const Layer& first, const Layer& second, BooleanOperation operati
     rings.insert(rings.end(), shares.second.begin(), shares.second.end());
     turns.resize(rings.size(), {0, 1});
     const Layer layer = with_head_and_chains_of(a, rings);
-    return normal_form(Overlay(layer, std::move(turns)).filled(Material(operation, least)).filled.layer);
+    return normal_form(
+        Overlay(layer, std::move(turns), limits).filled(Material(operation, least)).filled.layer);
 }
 
 } // namespace
 
-Layer combine(const Layer& first, const Layer& second, BooleanOperation operation) {
-    return combined(first, second, operation, 1);
+Layer combine(const Layer& first, const Layer& second, BooleanOperation operation,
+              const LayerLimits& limits) {
+    return combined(first, second, operation, 1, limits);
 }
 
-Layer subtract_common(const Layer& layer, std::span<const Layer> others) {
+Layer subtract_common(const Layer& layer, std::span<const Layer> others, const LayerLimits& limits) {
     assert(!others.empty());
     return combined(layer, merged(others), BooleanOperation::subtract,
-                    static_cast<std::int64_t>(others.size()));
+                    static_cast<std::int64_t>(others.size()), limits);
 }
 
 } // namespace lamella

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstddef>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -44,11 +45,86 @@ bool clockwise_before(const Point2& v, const Point2& u, const Point2& a, const P
     return half_a != half_b ? half_a < half_b : orientation(v, a, b) < 0;
 }
 
+/// For each point where sides begin, those that no ring has yet, clockwise about it. Where thousands begin in
+/// one point, the next one is found without a look at all of them.
+class SidesAhead {
+  public:
+    /// Sorted by where they begin. They are to outlive this.
+    explicit SidesAhead(std::span<const Directed> sides)
+        : sides_(sides), clockwise_(sides.size()), position_(sides.size()), left_(sides.size() + 1) {
+        std::iota(clockwise_.begin(), clockwise_.end(), std::size_t{0});
+        std::iota(left_.begin(), left_.end(), std::size_t{0});
+        for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
+            end = end_of(begin);
+            std::sort(place(begin), place(end), [&](std::size_t a, std::size_t b) {
+                return clockwise_before(sides[begin].from, sides[begin].second, sides[a].second,
+                                        sides[b].second);
+            });
+        }
+        for (std::size_t k = 0; k < clockwise_.size(); ++k)
+            position_[clockwise_[k]] = k;
+    }
+
+    void take(std::size_t side) noexcept { left_[position_[side]] = position_[side] + 1; }
+
+    /// The first one, clockwise from the direction back along a side, of those that begin where it ends.
+    [[nodiscard]] std::size_t after(const Directed& side) {
+        const Point2& v = side.to;
+        const auto begin =
+            static_cast<std::size_t>(std::partition_point(sides_.begin(), sides_.end(),
+                                                          [&](const Directed& s) { return s.from < v; }) -
+                                     sides_.begin());
+        const std::size_t end = end_of(begin);
+        assert(begin < end); // as many sides begin in a point as end there
+        const Point2& first = sides_[begin].second;
+        const auto next = std::partition_point(place(begin), place(end), [&](std::size_t i) {
+            return !clockwise_before(v, first, side.last, sides_[i].second);
+        });
+        std::size_t found = next_left(static_cast<std::size_t>(next - clockwise_.begin()));
+        if (found >= end)
+            found = next_left(begin);
+        assert(found < end);
+        return clockwise_[found];
+    }
+
+  private:
+    [[nodiscard]] std::vector<std::size_t>::iterator place(std::size_t i) {
+        return clockwise_.begin() + static_cast<std::ptrdiff_t>(i);
+    }
+    /// Of those that begin in the same point as a side.
+    [[nodiscard]] std::size_t end_of(std::size_t side) const noexcept {
+        std::size_t end = side;
+        std::size_t step = 1;
+        const auto same = [&](std::size_t i) {
+            return i < sides_.size() && sides_[i].from == sides_[side].from;
+        };
+        while (same(end + step)) {
+            end += step;
+            step *= 2;
+        }
+        for (; step > 0; step /= 2)
+            if (same(end + step))
+                end += step;
+        return end + 1;
+    }
+    [[nodiscard]] std::size_t next_left(std::size_t k) noexcept {
+        while (left_[k] != k)
+            k = left_[k] = left_[left_[k]];
+        return k;
+    }
+
+    std::span<const Directed> sides_;
+    std::vector<std::size_t> clockwise_; ///< of each point from where its first side leads to
+    std::vector<std::size_t> position_;  ///< of a side in that order
+    std::vector<std::size_t> left_;      ///< links to the next position of one that is left
+};
+
 /// Joins sides to rings; where several meet, so that each keeps its own wedge of material.
 std::vector<std::vector<Directed>> joined(std::vector<Directed> sides) {
     std::sort(sides.begin(), sides.end(), [](const Directed& a, const Directed& b) {
         return std::tie(a.from, a.second) < std::tie(b.from, b.second);
     });
+    SidesAhead ahead(sides);
     std::vector<bool> used(sides.size(), false);
     std::vector<std::vector<Directed>> rings;
     for (std::size_t start = 0; start < sides.size(); ++start) {
@@ -56,24 +132,14 @@ std::vector<std::vector<Directed>> joined(std::vector<Directed> sides) {
             continue;
         std::vector<Directed>& ring = rings.emplace_back();
         std::size_t at = start;
-        while (true) {
+        do {
             used[at] = true;
+            if (at != start)
+                ahead.take(at);
             ring.push_back(sides[at]);
-            const Point2& v = sides[at].to;
-            std::size_t next = sides.size();
-            const auto first = std::partition_point(sides.begin(), sides.end(),
-                                                    [&](const Directed& s) { return s.from < v; });
-            for (auto i = static_cast<std::size_t>(first - sides.begin());
-                 i < sides.size() && sides[i].from == v; ++i)
-                if ((!used[i] || i == start) &&
-                    (next == sides.size() ||
-                     clockwise_before(v, sides[at].last, sides[i].second, sides[next].second)))
-                    next = i;
-            assert(next != sides.size()); // as many sides begin in a point as end there
-            if (next == start || next == sides.size())
-                break;
-            at = next;
-        }
+            at = ahead.after(sides[at]);
+        } while (at != start);
+        ahead.take(start);
     }
     return rings;
 }
@@ -128,12 +194,12 @@ std::vector<Ring> boundary(const Arrangement& arrangement, const Material& mater
 }
 
 std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRule rule,
-                         const ClippingGrid& grid) {
+                         const ClippingGrid& grid, const LayerBudget& budget) {
     std::vector<WoundRing> wound;
     wound.reserve(rings.size());
     for (const std::span<const Point2> ring : rings)
         wound.push_back({ring});
-    return boundary(arranged(wound, {}, grid), Material(rule), grid);
+    return boundary(arranged(wound, {}, grid, budget), Material(rule), grid);
 }
 
 } // namespace lamella

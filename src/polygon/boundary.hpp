@@ -19,6 +19,6 @@ namespace lamella {
 
 /// The boundary of where the winding number of the rings fulfils the rule; see `boundary`.
 [[nodiscard]] std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRule rule,
-                                       const ClippingGrid& grid);
+                                       const ClippingGrid& grid, const LayerBudget& budget = {});
 
 } // namespace lamella

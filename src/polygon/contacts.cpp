@@ -97,8 +97,8 @@ void group_by_boxes(const MonotoneChains& chains, Groups& groups) {
 
 class ContactSearch {
   public:
-    ContactSearch(const Layer& layer, const MonotoneChains& chains)
-        : layer_(layer), all_(chains), groups_(layer.rings) {}
+    ContactSearch(const Layer& layer, const MonotoneChains& chains, const LayerBudget& budget)
+        : layer_(layer), all_(chains), budget_(budget), groups_(layer.rings) {}
 
     Contacts run(const std::optional<ChainGrid>& grid) && {
         const bool searched = grid && search(*grid);
@@ -299,6 +299,7 @@ class ContactSearch {
         };
         // Beginnings first: what begins where another one ends is in contact with it.
         for (const auto& [at, i, begins] : sweep_events(segments, SweepOrder::begins_first)) {
+            budget_.check();
             if (begins) {
                 status.insert(i);
                 if (neighbours_in_contact(status.below(i), i) || neighbours_in_contact(i, status.above(i)))
@@ -317,6 +318,7 @@ class ContactSearch {
 
     const Layer& layer_;
     const MonotoneChains& all_;
+    const LayerBudget& budget_;
     Groups groups_;
     std::uint64_t patience_ = 0; // steps until the grid is given up
     bool found_ = false;
@@ -324,12 +326,12 @@ class ContactSearch {
 
 } // namespace
 
-Contacts find_contacts(const Layer& layer, const MonotoneChains& chains,
-                       const std::optional<ChainGrid>& grid) {
+Contacts find_contacts(const Layer& layer, const MonotoneChains& chains, const std::optional<ChainGrid>& grid,
+                       const LayerBudget& budget) {
     if (layer.points.size() >= Contacts::none)
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967294 points; contacts are found in smaller ones");
-    return ContactSearch(layer, chains).run(grid);
+    return ContactSearch(layer, chains, budget).run(grid);
 }
 
 } // namespace lamella

@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include "core/layer_budget.hpp"
 #include "polygon/chain_grid.hpp"
 #include "polygon/monotone_chains.hpp"
 
@@ -34,6 +35,6 @@ struct Contacts {
 ///
 /// `grid`: of these chains, where there is one.
 [[nodiscard]] Contacts find_contacts(const Layer& layer, const MonotoneChains& chains,
-                                     const std::optional<ChainGrid>& grid);
+                                     const std::optional<ChainGrid>& grid, const LayerBudget& budget = {});
 
 } // namespace lamella

@@ -4,6 +4,7 @@
 
 #include "polygon/chain_grid.hpp"
 #include "polygon/contacts.hpp"
+#include "polygon/crossing_pairs.hpp"
 #include "polygon/grid.hpp"
 #include "polygon/line_tree.hpp"
 #include "polygon/monotone_chains.hpp"
@@ -15,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -122,55 +124,34 @@ std::vector<bool> one_of_each_crossing(std::span<const Segment> segments) {
 /// computed place.
 class CrossingSearch {
   public:
-    /// Only contours for which chosen(c) is true.
-    template <class Chosen>
-    CrossingSearch(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough)
-        : layer_(layer), keep_(keep), enough_(enough), frame_(box_of(layer.points.span())) {
-        segments_.resize(layer.points.size());
-        ids_.reserve(layer.points.size());
-        for (std::size_t c = 0; c < layer.contours(); ++c) {
-            if (!chosen(c))
-                continue;
-            const std::uint64_t begin = layer.offsets[c];
-            const std::uint64_t end = layer.offsets[c + 1];
-            for (std::uint64_t i = begin; i < end; ++i) {
-                if (i + 1 == end && !layer.closed(c))
-                    break;
-                const Point2& a = layer.points[i];
-                const Point2& b = layer.points[i + 1 == end ? begin : i + 1];
-                segments_[i] = segment_between(a, b);
-                if (a != b)
-                    ids_.push_back(static_cast<SegmentId>(i));
-            }
-        }
-    }
+    using Pair = std::pair<SegmentId, SegmentId>;
 
-    Crossings run() && {
+    /// Of the segments of these numbers, in a box. Counts all crossings, up to `enough` and a few more, and
+    /// keeps the first `keep` of them.
+    CrossingSearch(std::span<const Segment> segments, std::span<const SegmentId> ids, const Box2& box,
+                   std::size_t keep, std::uint64_t enough, const LayerBudget& budget)
+        : segments_(segments), keep_(keep), enough_(enough), budget_(budget), frame_(box) {
         const auto beyond = [](double x) {
             return std::nextafter(x, std::numeric_limits<double>::infinity());
         };
-        search({0, 0, beyond(frame_.corner.x), beyond(frame_.corner.y)}, ids_);
+        search({0, 0, beyond(frame_.corner.x), beyond(frame_.corner.y)}, ids);
         keep_first();
         assert(first_.size() == std::min<std::uint64_t>(keep_, count_));
-        std::sort(first_.begin(), first_.end());
-        Crossings result;
-        result.count = count_;
-        result.first.reserve(first_.size());
-        for (const Pair& pair : first_)
-            result.first.push_back(described(pair));
-        return result;
+    }
+
+    [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
+    /// Those kept, in no order.
+    [[nodiscard]] std::vector<Pair>& pairs() noexcept { return first_; }
+    /// About where a pair crosses.
+    [[nodiscard]] Point2 crossing_at(const Pair& pair) const noexcept {
+        const Point2 at = place(pair);
+        return {(at.x + frame_.origin.x) / frame_.unit, (at.y + frame_.origin.y) / frame_.unit};
     }
 
   private:
-    struct Pair {
-        SegmentId a;
-        SegmentId b;
-
-        friend auto operator<=>(const Pair&, const Pair&) = default;
-    };
-
     /// Finds the crossings in `cell` among the segments that meet it.
     void search(const Box2& cell, std::span<const SegmentId> ids) {
+        budget_.check();
         if (count_ >= enough_)
             return;
         if (ids.size() <= few) {
@@ -218,19 +199,21 @@ class CrossingSearch {
 
     /// In local coordinates.
     [[nodiscard]] Point2 place(const Pair& pair) const noexcept {
-        return place_of_crossing(local(segments_[pair.a]), local(segments_[pair.b]));
+        return place_of_crossing(local(segments_[pair.first]), local(segments_[pair.second]));
     }
 
     void search_all_pairs(const Box2& cell, std::span<const SegmentId> ids) {
-        for (std::size_t i = 0; i < ids.size() && count_ < enough_; ++i)
+        for (std::size_t i = 0; i < ids.size() && count_ < enough_; ++i) {
+            budget_.check();
             for (std::size_t j = i + 1; j < ids.size(); ++j)
                 test(cell, ids[i], ids[j]);
+        }
     }
 
     void test(const Box2& cell, SegmentId a, SegmentId b) {
         if (!cross(segments_[a], segments_[b]))
             return;
-        const Pair pair{std::min(a, b), std::max(a, b)};
+        const Pair pair(std::min(a, b), std::max(a, b));
         const Point2 at = place(pair);
         if (cell.x0 <= at.x && at.x < cell.x1 && cell.y0 <= at.y && at.y < cell.y1)
             found(pair);
@@ -281,6 +264,7 @@ class CrossingSearch {
         for (std::uint32_t i = 0; i < ids.size() && count_ < enough_; ++i) {
             if (!set_aside[i])
                 continue;
+            budget_.check();
             const auto visit = [&](std::uint32_t other) {
                 if (!set_aside[other] || other > i)
                     test(cell, ids[i], ids[other]);
@@ -290,37 +274,61 @@ class CrossingSearch {
         }
     }
 
-    [[nodiscard]] Crossing described(const Pair& pair) const {
-        const auto contour_of = [&](SegmentId id) {
-            const auto& offsets = layer_.offsets;
-            return static_cast<std::uint64_t>(std::upper_bound(offsets.begin(), offsets.end(), id) -
-                                              offsets.begin() - 1);
-        };
-        const std::uint64_t a = contour_of(pair.a);
-        const std::uint64_t b = contour_of(pair.b);
-        const Point2 at = place(pair);
-        return {a,
-                pair.a - layer_.offsets[a],
-                b,
-                pair.b - layer_.offsets[b],
-                {(at.x + frame_.origin.x) / frame_.unit, (at.y + frame_.origin.y) / frame_.unit}};
-    }
-
     static constexpr std::size_t few = 24;
     static constexpr std::size_t few_for_a_sweep = 128;
     /// Below this share of the layer's extent, cells are not divided: positions have 2^-52 of it, and slopes
     /// within a row may magnify that by some 2^20.
     static constexpr double smallest_cell = 0x1p-24;
 
-    const Layer& layer_;
+    std::span<const Segment> segments_;
     std::size_t keep_;
     std::uint64_t enough_; // crossings: the search may stop at so many
+    const LayerBudget& budget_;
     Frame frame_;
-    std::vector<Segment> segments_; // by the number of the first point; not all of them are there
-    std::vector<SegmentId> ids_;    // of those that are
     std::uint64_t count_ = 0;
     std::vector<Pair> first_; // and some more, until they are twice as many as to be kept
 };
+
+/// Of contours of a layer for which chosen(c) is true. Segments have the numbers of their first points.
+template <class Chosen>
+Crossings search(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough) {
+    std::vector<Segment> segments(layer.points.size()); // not all of them are there
+    std::vector<SegmentId> ids;                         // of those that are
+    ids.reserve(layer.points.size());
+    for (std::size_t c = 0; c < layer.contours(); ++c) {
+        if (!chosen(c))
+            continue;
+        const std::uint64_t begin = layer.offsets[c];
+        const std::uint64_t end = layer.offsets[c + 1];
+        for (std::uint64_t i = begin; i < end; ++i) {
+            if (i + 1 == end && !layer.closed(c))
+                break;
+            const Point2& a = layer.points[i];
+            const Point2& b = layer.points[i + 1 == end ? begin : i + 1];
+            segments[i] = segment_between(a, b);
+            if (a != b)
+                ids.push_back(static_cast<SegmentId>(i));
+        }
+    }
+    const LayerBudget unlimited;
+    CrossingSearch found(segments, ids, box_of(layer.points.span()), keep, enough, unlimited);
+    std::sort(found.pairs().begin(), found.pairs().end());
+    Crossings result;
+    result.count = found.count();
+    result.first.reserve(found.pairs().size());
+    const auto contour_of = [&](SegmentId id) {
+        const auto& offsets = layer.offsets;
+        return static_cast<std::uint64_t>(std::upper_bound(offsets.begin(), offsets.end(), id) -
+                                          offsets.begin() - 1);
+    };
+    for (const CrossingSearch::Pair& pair : found.pairs()) {
+        const std::uint64_t a = contour_of(pair.first);
+        const std::uint64_t b = contour_of(pair.second);
+        result.first.push_back(
+            {a, pair.first - layer.offsets[a], b, pair.second - layer.offsets[b], found.crossing_at(pair)});
+    }
+    return result;
+}
 
 Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
     if (layer.points.empty())
@@ -338,13 +346,13 @@ Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
             const auto in_contact = [&contacts](std::size_t ring) {
                 return contacts.group[ring] != Contacts::none;
             };
-            return CrossingSearch(layer, in_contact, keep, enough).run();
+            return search(layer, in_contact, keep, enough);
         }
     }
     const auto all = [](std::size_t) {
         return true;
     };
-    return CrossingSearch(layer, all, keep, enough).run();
+    return search(layer, all, keep, enough);
 }
 
 } // namespace
@@ -355,6 +363,23 @@ Crossings find_crossings(const Layer& layer, std::size_t keep) {
 
 bool has_crossings(const Layer& layer) {
     return found_in(layer, 0, 1).count > 0;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(std::span<const Segment> segments,
+                                                                    std::uint64_t most,
+                                                                    std::uint64_t bytes_each,
+                                                                    const LayerBudget& budget) {
+    if (segments.empty())
+        return {};
+    std::vector<SegmentId> ids(segments.size());
+    std::iota(ids.begin(), ids.end(), SegmentId{0});
+    Box2 box = Box2::of(segments.front().lo, segments.front().hi);
+    for (const Segment& segment : segments)
+        box.add(Box2::of(segment.lo, segment.hi));
+    const std::uint64_t room = std::min(budget.room(bytes_each), most);
+    CrossingSearch found(segments, ids, box, std::numeric_limits<std::size_t>::max(), room + 1, budget);
+    budget.need(found.count(), bytes_each, "crossings of contours, or more,");
+    return std::move(found.pairs());
 }
 
 } // namespace lamella

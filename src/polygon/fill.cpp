@@ -17,10 +17,10 @@ std::string_view fill_rule_name(FillRule rule) noexcept {
     return names[static_cast<std::size_t>(rule)];
 }
 
-Filled fill(const Layer& layer, FillRule rule) {
+Filled fill(const Layer& layer, FillRule rule, const LayerLimits& limits) {
     if (rule == FillRule::none)
         return {.layer = layer};
-    const Overlay overlay(layer);
+    const Overlay overlay(layer, limits);
     if (overlay.clean())
         return {.layer = layer};
     return overlay.filled(Material(rule)).filled;

@@ -31,6 +31,6 @@ struct WoundNesting {
 /// `turns`: what each ring adds to the windings; for a layer of one operand, 1 to the first.
 [[nodiscard]] WoundNesting nesting(const Layer& layer, const MonotoneChains& chains,
                                    const std::optional<ChainGrid>& grid, const Contacts& contacts,
-                                   std::span<const Windings> turns);
+                                   std::span<const Windings> turns, const LayerBudget& budget = {});
 
 } // namespace lamella

@@ -47,7 +47,7 @@ void check_steps(const LayerSteps& steps) {
         static_cast<void>(simplify(none, steps.simplify_mm));
 }
 
-Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
+Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes, const LayerLimits& limits) {
     check_steps(steps);
     changes = {};
     if (!steps.any())
@@ -55,7 +55,7 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
     const Layer before = layer; // shares its points
     bool changed = false;
     if (steps.fill != FillRule::none) {
-        Filled filled = fill(layer, steps.fill);
+        Filled filled = fill(layer, steps.fill, limits);
         changes.groups_united = filled.groups_united;
         changes.rings_united = filled.rings_united;
         changes.rings_reversed = filled.rings_reversed;
@@ -65,7 +65,7 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
             layer = std::move(filled.layer);
     }
     if (steps.offset_mm != 0 && layer.rings > 0) {
-        layer = offset(layer, steps.offset_mm, steps.offset_corners, &changes.rings_vanished);
+        layer = offset(layer, steps.offset_mm, steps.offset_corners, &changes.rings_vanished, limits);
         changed = true;
     }
     const auto select = [&](Layer selected) {
@@ -94,12 +94,12 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes) {
 }
 
 std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
-                                       LayerChanges& changes) {
+                                       LayerChanges& changes, const LayerLimits& limits) {
     changes = {};
     std::vector<Layer> made;
     for (const Layer& layer : parts) {
         LayerChanges one;
-        made.push_back(take_steps(steps, layer, one));
+        made.push_back(take_steps(steps, layer, one, limits));
         changes += one;
     }
     changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers);
@@ -107,19 +107,21 @@ std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const 
 }
 
 std::vector<LayerStack> take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
-                                   std::vector<LayerChanges>& planes, const Execution& execution) {
+                                   std::vector<LayerChanges>& planes, const Execution& execution,
+                                   std::uint64_t memory) {
     check_steps(steps);
     planes.assign(parts.empty() ? 0 : parts.front().size(), {});
     if (!steps.any())
         return parts;
     Executor executor(execution);
+    const LayerLimits limits{execution.cancel, memory / executor.workers()};
     ProgressMeter progress(execution, Stage::polygon, planes.size());
     executor.for_chunks(planes.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i) {
             std::vector<Layer> plane;
             for (LayerStack& part : parts)
                 plane.push_back(std::move(part[i]));
-            plane = take_steps_on_plane(steps, plane, planes[i]);
+            plane = take_steps_on_plane(steps, plane, planes[i], limits);
             for (std::size_t part = 0; part < parts.size(); ++part)
                 parts[part][i] = std::move(plane[part]);
             progress.add(1);

@@ -108,8 +108,10 @@ MovedSide side_between(const Point2& a, const Point2& b) noexcept {
     return {a, {dx / length, dy / length}, length * unit};
 }
 
+/// Chords finer than the grid on which crossings are rounded would only add points. The unit of that grid is
+/// at least 2^-37 of the layer's extent, which is at least twice the distance.
 double arc_tolerance(double reach, const OffsetCorners& corners) noexcept {
-    return std::max(corners.arc_tolerance_mm, reach / 4096);
+    return std::max(corners.arc_tolerance_mm, reach * 0x1p-36);
 }
 
 Point2 with_length(double length, const Point2& p) noexcept {
@@ -120,7 +122,8 @@ Point2 with_length(double length, const Point2& p) noexcept {
 class Wedges {
   public:
     Wedges(double reach, const OffsetCorners& corners)
-        : shape_(corners.shape), reach_(reach), least_mitre_(2 / (corners.mitre_limit * corners.mitre_limit)),
+        : shape_(corners.shape), reach_(reach),
+          least_mitre_(2 / (corners.longest_mitre() * corners.longest_mitre())),
           tolerance_(arc_tolerance(reach, corners)) {}
 
     /// Puts the way from corner + n to corner + m. u and v: the directions of both sides.
@@ -233,9 +236,10 @@ class RingSides {
 class RingMover {
   public:
     /// `rounding`: how far off places may be.
-    RingMover(const RingSides& sides, double distance, const OffsetCorners& corners, double rounding)
-        : sides_(sides), distance_(distance), reach_(std::abs(distance)), shape_(corners.shape),
-          wedges_(reach_, corners), rounding_(rounding) {}
+    RingMover(const RingSides& sides, double distance, const OffsetCorners& corners, double rounding,
+              const LayerBudget& budget)
+        : sides_(sides), budget_(budget), distance_(distance), reach_(std::abs(distance)),
+          shape_(corners.shape), wedges_(reach_, corners), rounding_(rounding) {}
 
     /// The ring of the sides as they are now.
     void move(std::vector<Point2>& out) {
@@ -243,8 +247,10 @@ class RingMover {
             return;
         find_cuts();
         if (all_stay()) {
-            for (std::size_t i = 0; i < sides_.size(); ++i)
+            for (std::size_t i = 0; i < sides_.size(); ++i) {
                 turn_from(i, out);
+                budget_.need(out.size(), bytes_of_point, "points of an offset");
+            }
             return;
         }
         ends_.assign(sides_.size(), SideEnd::at_corner);
@@ -406,6 +412,7 @@ class RingMover {
                 turn_from(i, ends_points_);
             for (const Point2& p : ends_points_)
                 ring_.push_back({p, corner_points_.size()});
+            budget_.need(out.size() + ring_.size(), bytes_of_point, "points of an offset");
             corner_points_.push_back(sides_[after(i)].from);
         }
         put_middle();
@@ -465,7 +472,11 @@ class RingMover {
                 reach_ * -parting(i) <= std::min(sides_[i].length, sides_[after(i)].length));
     }
 
+    /// Of a moved ring, also while its winding is looked at.
+    static constexpr std::uint64_t bytes_of_point = 16 * sizeof(Point2);
+
     const RingSides& sides_;
+    const LayerBudget& budget_;
     double distance_;
     double reach_;
     OffsetCorner shape_;
@@ -505,7 +516,8 @@ double surely_swept(double distance, const OffsetCorners& corners) noexcept {
 }
 
 std::vector<Layer> moved_rings(const Layer& layer, std::span<const double> distances,
-                               const OffsetCorners& corners, std::span<const std::vector<bool>> gone) {
+                               const OffsetCorners& corners, std::span<const std::vector<bool>> gone,
+                               const LayerBudget& budget) {
     assert(gone.size() == distances.size());
     const std::span<const Point2> all = layer.points.span().first(layer.offsets[layer.rings]);
     const Layer head{.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
@@ -515,11 +527,12 @@ std::vector<Layer> moved_rings(const Layer& layer, std::span<const double> dista
     std::vector<RingMover> movers;
     for (std::size_t k = 0; k < distances.size(); ++k) {
         movers.emplace_back(sides, distances[k], corners,
-                            ClippingGrid(all, 2 * std::abs(distances[k])).unit());
+                            ClippingGrid(all, 2 * std::abs(distances[k])).unit(), budget);
         points[k].reserve(layer.points.size() + layer.points.size() / 8);
         moved[k].offsets.reserve(layer.rings + 1);
     }
     for (std::size_t i = 0; i < layer.rings; ++i) {
+        budget.check();
         sides.look_at(layer.contour(i));
         for (std::size_t k = 0; k < distances.size(); ++k) {
             const std::size_t begin = points[k].size();

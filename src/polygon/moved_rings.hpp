@@ -5,6 +5,8 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/polygon/offset.hpp"
 
+#include "core/layer_budget.hpp"
+
 #include <span>
 #include <vector>
 
@@ -19,7 +21,8 @@ namespace lamella {
 /// they are. O(points) for each distance.
 [[nodiscard]] std::vector<Layer> moved_rings(const Layer& layer, std::span<const double> distances,
                                              const OffsetCorners& corners,
-                                             std::span<const std::vector<bool>> gone);
+                                             std::span<const std::vector<bool>> gone,
+                                             const LayerBudget& budget = {});
 
 /// How far from a side or a corner strips and wedges reach at least, in all directions to which it is moved.
 [[nodiscard]] double surely_swept(double distance, const OffsetCorners& corners) noexcept;

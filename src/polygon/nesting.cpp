@@ -34,7 +34,7 @@ class NestingSearch {
                 order_.push_back(i);
     }
 
-    WoundNesting run(const std::optional<ChainGrid>& grid) && {
+    WoundNesting run(const std::optional<ChainGrid>& grid, const LayerBudget& budget) && {
         order_by_area();
         order_from_left_to_right();
         const bool by_grid = grid && !grid->crowded();
@@ -42,6 +42,7 @@ class NestingSearch {
         std::vector<std::uint32_t> open; // an edge is not enough to know
         edges.reserve(order_.size());
         for (const std::uint32_t ring : order_) {
+            budget.check();
             edges.push_back(by_grid ? edge_below_end(ring, *grid) : EdgeBelow{.sure = false});
             if (!edges.back().sure)
                 open.push_back(ring);
@@ -49,11 +50,13 @@ class NestingSearch {
         std::optional<SurroundingsSearch> surroundings;
         if (!open.empty())
             surroundings.emplace(chains_, ends_, copies_, turns_, order_, by_area_, open);
-        for (std::size_t i = 0; i < order_.size(); ++i)
+        for (std::size_t i = 0; i < order_.size(); ++i) {
+            budget.check();
             if (edges[i].sure)
                 place_over(edges[i], order_[i]);
             else
                 place_amid(surroundings->find(order_[i]), order_[i]);
+        }
         WoundNesting result = std::move(placement_).result();
         result.below = std::move(below_);
         return result;
@@ -172,9 +175,9 @@ Nesting nesting(const Layer& layer) {
 }
 
 WoundNesting nesting(const Layer& layer, const MonotoneChains& chains, const std::optional<ChainGrid>& grid,
-                     const Contacts& contacts, std::span<const Windings> turns) {
+                     const Contacts& contacts, std::span<const Windings> turns, const LayerBudget& budget) {
     check_size(layer);
-    return NestingSearch(layer, chains, turns, contacts).run(grid);
+    return NestingSearch(layer, chains, turns, contacts).run(grid, budget);
 }
 
 std::vector<Polygon> polygons(const Nesting& nesting) {

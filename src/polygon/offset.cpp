@@ -64,8 +64,9 @@ double width_across_longest_side(std::span<const Point2> ring) noexcept {
 class Boundaries {
   public:
     // Bodies that fit in one another are united first: of each ring other points may be straight.
-    explicit Boundaries(const Layer& layer) {
-        const Overlay overlay(layer);
+    Boundaries(const Layer& layer, const LayerLimits& limits)
+        : limits_(limits), budget_(limits, layer.index) {
+        const Overlay overlay(layer, limits);
         const Layer material =
             overlay.clean() ? layer
                             : overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
@@ -80,11 +81,12 @@ class Boundaries {
         std::vector<std::vector<bool>> gone;
         for (const double distance : distances)
             gone.push_back(surely_gone(distance, corners));
-        std::vector<Layer> all = moved_rings(layer_, distances, corners, gone);
+        std::vector<Layer> all = moved_rings(layer_, distances, corners, gone, budget_);
         std::vector<Layer> result;
         for (std::size_t k = 0; k < all.size(); ++k) {
             const Layer rings = std::move(all[k]);
-            Overlaid overlaid = Overlay(rings).filled(Material(FillRule::positive), Walls::dissolved);
+            Overlaid overlaid =
+                Overlay(rings, limits_).filled(Material(FillRule::positive), Walls::dissolved);
             if (vanished != nullptr && k == 0)
                 *vanished = vanished_rings(rings, overlaid.fates, gone[k], distances[k]);
             result.push_back(with_chains(std::move(overlaid.filled.layer)));
@@ -156,7 +158,7 @@ class Boundaries {
         if (area > reach)
             return false;
         const std::vector<std::span<const Point2>> rings(left.begin(), left.end());
-        return filled(rings, FillRule::positive, grid).empty();
+        return filled(rings, FillRule::positive, grid, budget_).empty();
     }
 
     /// In normal form.
@@ -171,6 +173,8 @@ class Boundaries {
         return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
     }
 
+    const LayerLimits& limits_;
+    LayerBudget budget_;
     Layer layer_;
     std::vector<Polygon> polygons_;
 };
@@ -183,17 +187,18 @@ std::string_view offset_corner_name(OffsetCorner corner) noexcept {
     return names[static_cast<std::size_t>(corner)];
 }
 
-Layer offset(const Layer& layer, double distance, const OffsetCorners& corners, std::uint64_t* vanished) {
+Layer offset(const Layer& layer, double distance, const OffsetCorners& corners, std::uint64_t* vanished,
+             const LayerLimits& limits) {
     check({&distance, 1}, corners);
     if (vanished != nullptr)
         *vanished = 0;
     if (distance == 0 || layer.rings == 0)
         return layer;
-    return Boundaries(layer).moved({&distance, 1}, corners, vanished).front();
+    return Boundaries(layer, limits).moved({&distance, 1}, corners, vanished).front();
 }
 
 std::vector<Layer> offsets(const Layer& layer, std::span<const double> distances,
-                           const OffsetCorners& corners, std::uint64_t* vanished) {
+                           const OffsetCorners& corners, std::uint64_t* vanished, const LayerLimits& limits) {
     check(distances, corners);
     if (vanished != nullptr)
         *vanished = 0;
@@ -202,7 +207,7 @@ std::vector<Layer> offsets(const Layer& layer, std::span<const double> distances
                  [](double distance) { return distance != 0; });
     std::vector<Layer> moved;
     if (layer.rings > 0 && !others.empty())
-        moved = Boundaries(layer).moved(others, corners, distances.front() == 0 ? nullptr : vanished);
+        moved = Boundaries(layer, limits).moved(others, corners, distances.front() == 0 ? nullptr : vanished);
     std::vector<Layer> result;
     std::size_t next = 0;
     for (const double distance : distances)

@@ -33,8 +33,8 @@ std::int64_t left_of(Fate fate) noexcept {
 class Filler {
   public:
     Filler(const Layer& layer, std::span<const Windings> turns, const Material& material, Walls walls,
-           const Contacts& contacts, const WoundNesting& nest)
-        : layer_(layer), turns_(turns), material_(material), walls_(walls), nest_(nest),
+           const Contacts& contacts, const WoundNesting& nest, const LayerBudget& budget)
+        : layer_(layer), turns_(turns), material_(material), walls_(walls), nest_(nest), budget_(budget),
           groups_(contacts.groups), fates_(layer.rings) {
         assert(contacts.group.size() == layer.rings && nest.nesting.order.size() == layer.rings);
         for (const std::uint32_t ring : nest.nesting.order) {
@@ -95,7 +95,7 @@ class Filler {
         }
         if (!grid_)
             grid_.emplace(layer_.points.span().first(layer_.offsets[layer_.rings]));
-        const Arrangement arrangement = arranged(wound(group), around, *grid_);
+        const Arrangement arrangement = arranged(wound(group), around, *grid_, budget_);
         if (!arrangement.crossed && stay(group, arrangement, most))
             return;
         unite(group, arrangement);
@@ -129,7 +129,7 @@ class Filler {
         std::erase_if(all, [this](std::uint32_t ring) { return flat(ring); });
         united_.clear();
         result_ = {};
-        unite(all, arranged(wound(all), {}, *grid_));
+        unite(all, arranged(wound(all), {}, *grid_, budget_));
     }
 
     /// Whether rings that do not cross can stay or go each as a whole, and which.
@@ -168,6 +168,7 @@ class Filler {
     const Material& material_;
     Walls walls_;
     const WoundNesting& nest_;
+    const LayerBudget& budget_;
     std::vector<std::vector<std::uint32_t>> groups_;
     std::vector<Fate> fates_;
     std::optional<ClippingGrid> grid_;
@@ -177,10 +178,10 @@ class Filler {
 
 } // namespace
 
-Overlay::Overlay(const Layer& layer, std::vector<Windings> turns)
-    : layer_(layer), turns_(std::move(turns)), chains_(layer), grid_(ChainGrid::of(chains_)),
-      contacts_(find_contacts(layer, chains_, grid_)),
-      nest_(nesting(layer, chains_, grid_, contacts_, turns_)) {}
+Overlay::Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits)
+    : layer_(layer), budget_(limits, layer.index), turns_(std::move(turns)), chains_(layer),
+      grid_(ChainGrid::of(chains_)), contacts_(find_contacts(layer, chains_, grid_, budget_)),
+      nest_(nesting(layer, chains_, grid_, contacts_, turns_, budget_)) {}
 
 bool Overlay::clean() const noexcept {
     if (contacts_.groups > 0)
@@ -200,11 +201,11 @@ Box2 Overlay::box() const noexcept {
 }
 
 Overlaid Overlay::filled(const Material& material, Walls walls) const {
-    return Filler(layer_, turns_, material, walls, contacts_, nest_).run();
+    return Filler(layer_, turns_, material, walls, contacts_, nest_, budget_).run();
 }
 
-Layer united(const Layer& layer) {
-    return united(layer, Overlay(layer));
+Layer united(const Layer& layer, const LayerLimits& limits) {
+    return united(layer, Overlay(layer, limits));
 }
 
 Layer united(const Layer& layer, const Overlay& overlay) {

@@ -6,6 +6,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/polygon/fill.hpp"
 
+#include "core/layer_budget.hpp"
 #include "polygon/chain_grid.hpp"
 #include "polygon/contacts.hpp"
 #include "polygon/known_nesting.hpp"
@@ -38,9 +39,10 @@ struct Overlaid {
 class Overlay {
   public:
     /// The rings of one operand.
-    explicit Overlay(const Layer& layer) : Overlay(layer, std::vector<Windings>(layer.rings, {1, 0})) {}
+    explicit Overlay(const Layer& layer, const LayerLimits& limits = {})
+        : Overlay(layer, std::vector<Windings>(layer.rings, {1, 0}), limits) {}
     /// `turns`: what each ring adds to the windings of its inside. The layer is to outlive the overlay.
-    Overlay(const Layer& layer, std::vector<Windings> turns);
+    Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits);
 
     /// Whether no rings are in contact and all of them bound material of one operand, with none around it.
     [[nodiscard]] bool clean() const noexcept;
@@ -54,6 +56,7 @@ class Overlay {
 
   private:
     const Layer& layer_;
+    LayerBudget budget_;
     std::vector<Windings> turns_;
     MonotoneChains chains_;
     std::optional<ChainGrid> grid_;
@@ -63,7 +66,7 @@ class Overlay {
 
 /// The material of a layer (FillRule::positive), walls dissolved. A layer that is that already is passed
 /// through.
-[[nodiscard]] Layer united(const Layer& layer);
+[[nodiscard]] Layer united(const Layer& layer, const LayerLimits& limits = {});
 /// The same for who has its overlay.
 [[nodiscard]] Layer united(const Layer& layer, const Overlay& overlay);
 

@@ -80,8 +80,6 @@ Layer followed(const Layer& rings, const ContourRule& rule, std::uint32_t number
     std::vector<Start> starts;
     for (std::size_t i = 0; i < rings.rings; ++i) {
         const std::span<const Point2> ring = rings.contour(i);
-        if (ring.empty())
-            continue;
         std::size_t point = 0;
         switch (rule.start) {
         case StartPoint::aligned:

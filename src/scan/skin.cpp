@@ -91,7 +91,7 @@ constexpr std::size_t most_at_once = 4;
 /// and only what is near to these is looked at.
 Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double narrowest) {
     const auto count = static_cast<double>(neighbours.size());
-    const double reach = narrowest * (1 + spread) * OffsetCorners{}.mitre_limit;
+    const double reach = narrowest * (1 + spread) * OffsetCorners{}.longest_mitre();
     std::vector<Differing> different;
     std::vector<bool> chosen(layer.rings);
     for (std::size_t k = 0; k < neighbours.size(); ++k) {

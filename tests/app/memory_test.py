@@ -73,6 +73,16 @@ class Memory(ProgramTest):
         self.assertEqual(process.returncode, 0)
         return 1024 * usage.ru_maxrss
 
+    def test_of_crossings_is_counted_before_it_is_taken(self):
+        numbers = iter(pow(7919, k, 1_000_003) / 10_000 for k in range(10 ** 9))
+        rings = [[next(numbers) for _ in range(6)] for _ in range(1500)]
+        self.write("chords.json", json.dumps({
+            "format": "lamella layers", "version": 1, "units": "mm", "parts": [{"label": "part"}],
+            "layers": [{"index": 3, "z": 0.5, "bottom": 0, "top": 1, "parts": [{"rings": rings}]}]}).encode())
+        for step in (["--fill", "nonzero"], ["--offset=0.01"]):
+            self.fail_with(5, "layer 3: .*crossings of contours.* above .*--max-memory", "convert", "chords.json",
+                           "x.json", *step, "--max-memory", "100M", "--threads", 2)
+
     def test_points_of_a_slice_file_are_held_once(self):
         points = self.slice(self.lattice(), "--layer-height", "0.02", "-o", "layers.cli")["points"]
         self.slice("lattice.stl", "--layer-height", "10", "-o", "few.cli")

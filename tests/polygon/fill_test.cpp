@@ -4,6 +4,7 @@
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/nesting.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
 #include "polygon/winding_areas.hpp"
@@ -293,6 +294,67 @@ TEST(Fill, IsRightWhereAllSidesRunThroughOnePlace) {
         std::reverse(rings.begin(), rings.end());
         EXPECT_TRUE(same_contours(united(rings), star));
     }
+}
+
+/// Rectangles around one another whose lower sides lie on one line, which is turned by an angle.
+std::vector<Contour> nested_on_a_line(int count, double angle) {
+    std::vector<Contour> rings;
+    for (int i = 1; i <= count; ++i) {
+        Contour& ring = rings.emplace_back();
+        for (const Point2& p : rectangle(-i, 0, i, i))
+            ring.push_back({p.x * std::cos(angle) - p.y * std::sin(angle),
+                            p.x * std::sin(angle) + p.y * std::cos(angle)});
+    }
+    return rings;
+}
+
+TEST(Fill, AddsUpSidesOnOneLine) {
+    constexpr int count = 400;
+    for (const double angle : {0.0, 0.5, std::numbers::pi / 2}) {
+        const std::vector<Contour> rings = nested_on_a_line(count, angle);
+        EXPECT_NEAR(measure(united(rings)).area_mm2, 2.0 * count * count, 1e-3);
+        EXPECT_EQ(united(rings).rings, 1U);
+        const Layer odd = united(rings, FillRule::evenodd);
+        EXPECT_NEAR(measure(odd).area_mm2, count * (count + 1.0), 1e-3); // every other ring is a hole
+        EXPECT_FALSE(has_crossings(odd));
+    }
+}
+
+TEST(Fill, JoinsThousandsOfSidesThatMeetInOnePoint) {
+    std::vector<Contour> apart;
+    std::vector<Contour> overlapping;
+    constexpr int count = 2000;
+    const auto at = [](double share) {
+        const double angle = 2 * std::numbers::pi * share / count;
+        return Point2{100 * std::cos(angle), 100 * std::sin(angle)};
+    };
+    for (int i = 0; i < count; ++i) {
+        apart.push_back({{0, 0}, at(i), at(i + 0.5)});
+        overlapping.push_back({{0, 0}, at(i), at(i + 1.5)});
+    }
+    const Layer petals = normal_layer(apart);
+    EXPECT_FALSE(fill(petals, FillRule::nonzero).changed());
+    const Layer odd = united(overlapping, FillRule::evenodd);
+    EXPECT_FALSE(has_crossings(odd));
+    EXPECT_FALSE(fill(odd, FillRule::nonzero).changed());
+    EXPECT_NEAR(measure(united(overlapping)).area_mm2, std::numbers::pi * 1e4, 1);
+}
+
+TEST(Fill, IsRefusedWhereItsCrossingsWouldTakeMoreMemoryThanThereIsForThem) {
+    Random random(7);
+    std::vector<Contour> chords;
+    for (int i = 0; i < 2000; ++i)
+        chords.push_back({{random.real(0, 100), random.real(0, 100)},
+                          {random.real(0, 100), random.real(0, 100)},
+                          {random.real(0, 100), random.real(0, 100)}});
+    Layer layer = normal_layer(chords);
+    layer.index = 12;
+    test::expect_error(ErrorKind::limit, {"layer 12: ", "crossings", "`max_memory`"},
+                       [&] { static_cast<void>(fill(layer, FillRule::nonzero, {.memory = 1 << 19})); });
+    CancelFlag stop;
+    stop.request();
+    test::expect_error(ErrorKind::cancelled, {},
+                       [&] { static_cast<void>(fill(layer, FillRule::nonzero, {.cancel = &stop})); });
 }
 
 TEST(WindsOnce, IsTrueOfCleanPartsThatLieApart) {

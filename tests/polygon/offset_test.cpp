@@ -6,6 +6,7 @@
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/offset.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
 #include "polygon/orientation.hpp"
@@ -37,6 +38,22 @@ constexpr OffsetCorners rounded{.shape = OffsetCorner::round};
 
 double area(const Layer& layer) {
     return measure(layer).area_mm2;
+}
+
+/// The distance of a point to the nearest side of a layer.
+double distance_to(const Layer& layer, const Point2& p) {
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t r = 0; r < layer.rings; ++r)
+        for (std::size_t i = 0; i < layer.contour(r).size(); ++i) {
+            const Point2& a = layer.contour(r)[i];
+            const Point2& b = layer.contour(r)[(i + 1) % layer.contour(r).size()];
+            const double dx = b.x - a.x;
+            const double dy = b.y - a.y;
+            const double t =
+                std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
+            least = std::min(least, std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy));
+        }
+    return least;
 }
 
 TEST(Offset, OfNothingIsTheLayerItself) {
@@ -72,6 +89,51 @@ TEST(Offset, CutsSharpCornersOff) {
         EXPECT_GE(p.x, -1.000000001);
     const double farther = offset(needle, 1, {.mitre_limit = 1000}).points[0].x;
     EXPECT_NEAR(farther, -std::sqrt(10001), 1e-6);
+}
+
+// Of an equilateral triangle all mitres are exactly as long as the limit allows, but for rounding.
+TEST(Offset, MitresCornersAtTheLimitWhateverTheirRounding) {
+    constexpr double third = 2 * std::numbers::pi / 3;
+    for (const double size : {0.7, 5.0, 80.0})
+        for (int k = 0; k < 400; ++k) {
+            const double angle = 0.0357 * k;
+            Contour triangle;
+            Contour in_single_precision; // as a mesh in STL has them
+            for (int i = 0; i < 3; ++i) {
+                const Point2 p{120 + size * std::cos(angle + third * i),
+                               90 + size * std::sin(angle + third * i)};
+                triangle.push_back(p);
+                in_single_precision.push_back({static_cast<float>(p.x), static_cast<float>(p.y)});
+            }
+            for (const Contour& ring : {triangle, in_single_precision}) {
+                SCOPED_TRACE(angle);
+                EXPECT_EQ(offset(normal_form(layer_of({ring})), 0.5).points.size(), 3U);
+                EXPECT_EQ(offset(normal_form(layer_of({ring})), 0.5, {.mitre_limit = 1.99}).points.size(),
+                          6U);
+            }
+        }
+}
+
+TEST(Offset, KeepsChordsOfRoundCornersWithinTheirToleranceAtAnyDistance) {
+    const Layer square = normal_form(layer_of({rectangle(0, 0, 10, 10)}));
+    for (const double distance : {0.5, 3.0, 100.0, 1e4, 1e6}) {
+        const Layer grown = offset(square, distance, rounded);
+        ASSERT_EQ(grown.rings, 1U);
+        const auto ring = grown.contour(0);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Point2& a = ring[i];
+            const Point2& b = ring[(i + 1) % ring.size()];
+            for (const Point2& p : {a, Point2{(a.x + b.x) / 2, (a.y + b.y) / 2}})
+                ASSERT_NEAR(distance_to(square, p), distance, 0.001 * (1 + 1e-6)) << distance;
+        }
+    }
+}
+
+TEST(Offset, IsRefusedWhereItsPointsWouldTakeMoreMemoryThanThereIsForThem) {
+    const Layer square = normal_form(layer_of({rectangle(0, 0, 10, 10)}));
+    test::expect_error(ErrorKind::limit, {"points of an offset", "`max_memory`"}, [&] {
+        static_cast<void>(offset(square, 1e6, rounded, nullptr, {.memory = 1 << 20}));
+    });
 }
 
 TEST(Offset, JoinsSidesAsWished) {
@@ -320,7 +382,7 @@ Layer swept(const Layer& layer, double distance, const OffsetCorners& corners) {
                 continue;
             Contour wedge{b, to};
             if (corners.shape == OffsetCorner::mitre) {
-                if (1 / std::cos(turn / 2) <= corners.mitre_limit) {
+                if (1 / std::cos(turn / 2) <= corners.longest_mitre()) {
                     wedge.push_back(around(turn / 2, 1 / std::cos(turn / 2)));
                 } else {
                     wedge.push_back(around(turn / 4, 1 / std::cos(turn / 4)));
@@ -457,22 +519,6 @@ TEST(Offset, ShrunkThenGrownIsContained) {
     }
 }
 
-/// The distance of a point to the nearest side of a layer.
-double distance_to(const Layer& layer, const Point2& p) {
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t r = 0; r < layer.rings; ++r)
-        for (std::size_t i = 0; i < layer.contour(r).size(); ++i) {
-            const Point2& a = layer.contour(r)[i];
-            const Point2& b = layer.contour(r)[(i + 1) % layer.contour(r).size()];
-            const double dx = b.x - a.x;
-            const double dy = b.y - a.y;
-            const double t =
-                std::clamp(((p.x - a.x) * dx + (p.y - a.y) * dy) / (dx * dx + dy * dy), 0.0, 1.0);
-            least = std::min(least, std::hypot(p.x - a.x - t * dx, p.y - a.y - t * dy));
-        }
-    return least;
-}
-
 TEST(Offset, WithRoundCornersHasItsContoursAtTheDistance) {
     Random random(84);
     for (int round = 0; round < test::rounds_within_reason(300); ++round) {
@@ -503,7 +549,9 @@ TEST(Offset, TakesAnyLayerThatFillTakes) {
         }
         const Layer layer = layer_of(rings);
         for (const double distance : {-0.3, 0.4, 1.0, 1e-9, -1e-9, 1e6}) {
-            const Layer moved = offset(layer, distance, random_corners(random));
+            const OffsetCorners corners = random_corners(random);
+            const bool many_chords = corners.shape == OffsetCorner::round && distance == 1e6;
+            const Layer moved = offset(layer, many_chords ? 1e3 : distance, corners);
             ASSERT_TRUE(in_normal_form(moved));
             ASSERT_EQ(find_crossings(moved).count, 0U);
             ASSERT_FALSE(fill(moved, FillRule::positive).changed());

@@ -3,6 +3,7 @@
 // Two layers made into one: union, intersection, difference, exclusive or of their material.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/layer_limits.hpp"
 
 #include <cstdint>
 
@@ -35,7 +36,8 @@ enum class BooleanOperation : std::uint8_t {
 /// O(n) for n points in rings that both layers have, bit for bit; those too count as other rings only where
 /// these come near, or where their own overlaps matter (`unite`, `intersect`). Expected O(n) and O(c log c)
 /// for c other rings, then as `fill`. Throws Error{limit} for layers of more than 2^32 - 2 points together.
-[[nodiscard]] Layer combine(const Layer& first, const Layer& second, BooleanOperation operation);
+[[nodiscard]] Layer combine(const Layer& first, const Layer& second, BooleanOperation operation,
+                            const LayerLimits& limits = {});
 
 } // namespace lamella
 LAMELLA_API_END

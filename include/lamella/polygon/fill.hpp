@@ -3,6 +3,7 @@
 // What of a layer is material: overlapping bodies united, crossing contours made right.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/layer_limits.hpp"
 
 #include <cstdint>
 #include <span>
@@ -48,8 +49,9 @@ struct Filled {
 /// Open chains stay as they are. Flat rings, which bound nothing, are dropped.
 ///
 /// Expected O(n) to find that a layer is clean, O(n log n) to find what overlaps; to unite rings of m points
-/// with k crossings, O((m + k) log m). Throws Error{limit} for a layer of more than 2^32 - 2 points.
-[[nodiscard]] Filled fill(const Layer& layer, FillRule rule);
+/// with k crossings, O((m + k) log m). Throws Error{limit} for a layer of more than 2^32 - 2 points and for
+/// more crossings than `limits.memory` has room for, and Error{cancelled}.
+[[nodiscard]] Filled fill(const Layer& layer, FillRule rule, const LayerLimits& limits = {});
 
 /// Whether the winding number of all parts together is known to be 0 or 1 everywhere: the boxes of the parts
 /// lie apart, and in each no rings touch, counter-clockwise ones lie in nothing, clockwise ones in one body.

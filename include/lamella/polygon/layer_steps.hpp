@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/offset.hpp"
 #include "lamella/polygon/selection.hpp"
@@ -54,18 +55,20 @@ void check_steps(const LayerSteps& steps);
 /// Takes the steps. A layer that none of them changes is passed through, bit for bit; one that they change
 /// has no hatches any more, as these filled other contours. The result is in normal form when the layer was.
 /// Throws what the steps throw.
-[[nodiscard]] Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes);
+[[nodiscard]] Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes,
+                               const LayerLimits& limits = {});
 
 /// The same for the layers of all parts on one plane. However many of them change, they count as one layer.
 /// Throws what the steps throw.
 [[nodiscard]] std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
-                                                     LayerChanges& changes);
+                                                     LayerChanges& changes, const LayerLimits& limits = {});
 
 /// The same for parts on the same planes, in parallel, each with as many layers as the first; `planes` are
-/// the changes of every plane. Throws Error{cancelled}, too.
+/// the changes of every plane. Throws Error{cancelled}, too. `memory`, if it is not 0, is that of
+/// LayerLimits, for all layers that are worked on at the same time.
 [[nodiscard]] std::vector<LayerStack> take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
                                                  std::vector<LayerChanges>& planes,
-                                                 const Execution& execution = {});
+                                                 const Execution& execution = {}, std::uint64_t memory = 0);
 
 /// The same for one part; `changes` are those of all layers together.
 [[nodiscard]] LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,

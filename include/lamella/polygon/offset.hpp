@@ -3,6 +3,7 @@
 // Compensation for the width of a beam or for what a pixel bleeds: contours moved outwards or inwards.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/layer_limits.hpp"
 
 #include <cstdint>
 #include <span>
@@ -24,12 +25,18 @@ enum class OffsetCorner : std::uint8_t {
 
 struct OffsetCorners {
     OffsetCorner shape = OffsetCorner::mitre;
-    /// A mitre that would be farther from its corner than so many times the distance is cut off at right
-    /// angles to its bisector, at the distance. At least 1.
+    /// A mitre whose tip is farther from its corner than this many times the distance is cut off at right
+    /// angles to its bisector, at the distance. At least 1. `mitre_tolerance` is allowed on top.
     double mitre_limit = 2;
-    /// How far chords may be from their arc, in mm; above 0. A 4096th of the distance is enough anyway: some
-    /// 150 chords for all of a circle.
+    /// How far chords may be from their arc, in mm; above 0. Coordinates are rounded to some 2^-36 of the
+    /// layer's extent after it has grown: chords are not finer than that.
     double arc_tolerance_mm = 0.001;
+
+    /// A share of the limit. Corners of the same shape differ by the rounding of their coordinates, and all
+    /// of them are to be mitred or none.
+    static constexpr double mitre_tolerance = 1e-4;
+    /// How far from its corner the tip of a mitre is at most, in distances.
+    [[nodiscard]] double longest_mitre() const noexcept { return mitre_limit * (1 + mitre_tolerance); }
 
     friend bool operator==(const OffsetCorners&, const OffsetCorners&) = default;
 };
@@ -52,14 +59,15 @@ struct OffsetCorners {
 ///
 /// Expected O(n) for n points in rings that meet nothing before and after, O((n + k) log n) for others with k
 /// crossings of moved rings. Throws Error{usage} for a distance that is not finite and corners that cannot
-/// be, Error{limit} as `fill` does.
+/// be, Error{limit} as `fill` does and for more points than `limits.memory` has room for, and
+/// Error{cancelled}.
 [[nodiscard]] Layer offset(const Layer& layer, double distance, const OffsetCorners& corners = {},
-                           std::uint64_t* vanished = nullptr);
+                           std::uint64_t* vanished = nullptr, const LayerLimits& limits = {});
 
 /// The same for several distances: the layer itself is looked at once. `vanished` is of the first of them.
 [[nodiscard]] std::vector<Layer> offsets(const Layer& layer, std::span<const double> distances,
-                                         const OffsetCorners& corners = {},
-                                         std::uint64_t* vanished = nullptr);
+                                         const OffsetCorners& corners = {}, std::uint64_t* vanished = nullptr,
+                                         const LayerLimits& limits = {});
 
 } // namespace lamella
 LAMELLA_API_END

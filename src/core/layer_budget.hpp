@@ -1,0 +1,49 @@
+#pragma once
+
+// LayerLimits kept while a layer is worked on.
+
+#include "lamella/core/error.hpp"
+#include "lamella/core/layer_limits.hpp"
+
+#include <cstdint>
+#include <limits>
+#include <string_view>
+
+namespace lamella {
+
+class LayerBudget {
+  public:
+    /// Without limits.
+    LayerBudget() = default;
+    /// `layer`: its index, for errors.
+    LayerBudget(const LayerLimits& limits, std::uint64_t layer) noexcept : limits_(limits), layer_(layer) {}
+
+    /// Cheap enough for inner loops. Throws Error{cancelled} once a stop was requested.
+    void check() const {
+        if (limits_.cancel != nullptr && limits_.cancel->requested())
+            stop();
+    }
+
+    /// How many items of this size fit.
+    [[nodiscard]] std::uint64_t room(std::uint64_t bytes_each) const noexcept {
+        return limits_.memory == 0 ? std::numeric_limits<std::uint64_t>::max() : limits_.memory / bytes_each;
+    }
+    /// To be called before memory is asked for. Throws Error{limit} when the items do not fit. `items` says
+    /// what they are, such as "hatch vectors".
+    void need(std::uint64_t count, std::uint64_t bytes_each, std::string_view items) const {
+        if (count > room(bytes_each))
+            refuse(count, bytes_each, items);
+    }
+
+    /// Its index.
+    [[nodiscard]] std::uint64_t layer() const noexcept { return layer_; }
+
+  private:
+    [[noreturn]] static void stop();
+    [[noreturn]] void refuse(std::uint64_t count, std::uint64_t bytes_each, std::string_view items) const;
+
+    LayerLimits limits_;
+    std::uint64_t layer_ = 0;
+};
+
+} // namespace lamella
