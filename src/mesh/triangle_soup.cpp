@@ -57,7 +57,9 @@ void require_finite(const TriangleSoup& soup) {
     bool all = true;
     for (std::size_t i = 0; i < soup.size(); ++i)
         all &= is_finite(i);
-    for (std::size_t i = 0; !all; ++i)
+    if (all)
+        return;
+    for (std::size_t i = 0; i < soup.size(); ++i) // to name it
         if (!is_finite(i))
             throw Error(ErrorKind::input,
                         fmt::format("triangle {} (numbered from 0) has a corner that is not finite", i));
