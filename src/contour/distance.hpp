@@ -44,4 +44,17 @@ namespace lamella {
     return ex * ex + ey * ey;
 }
 
+/// The point between a and b that is nearest to p.
+[[nodiscard]] inline Point2 nearest_on(const Point2& a, const Point2& b, const Point2& p) noexcept {
+    const double dx = b.x - a.x;
+    const double dy = b.y - a.y;
+    const double square = dx * dx + dy * dy;
+    const double along = (p.x - a.x) * dx + (p.y - a.y) * dy;
+    if (!(along > 0))
+        return a;
+    if (along >= square)
+        return b;
+    return {a.x + along / square * dx, a.y + along / square * dy};
+}
+
 } // namespace lamella

@@ -132,23 +132,23 @@ std::int64_t whole(double number) noexcept {
     return static_cast<std::int64_t>(number);
 }
 
-struct Vector {
+struct GridVector {
     std::int64_t x;
     std::int64_t y;
 };
 
-Vector from_to(const Point2& a, const Point2& b) noexcept {
+GridVector from_to(const Point2& a, const Point2& b) noexcept {
     return {whole(b.x - a.x), whole(b.y - a.y)};
 }
 
-Wide cross(const Vector& a, const Vector& b) noexcept {
+Wide cross(const GridVector& a, const GridVector& b) noexcept {
     return Wide{a.x} * b.y - Wide{a.y} * b.x;
 }
 
 /// The place in whose square two sides cross properly.
 Point2 crossing_place(const Segment& a, const Segment& b) noexcept {
-    const Vector u = from_to(a.lo, a.hi);
-    const Vector v = from_to(b.lo, b.hi);
+    const GridVector u = from_to(a.lo, a.hi);
+    const GridVector v = from_to(b.lo, b.hi);
     Wide of = cross(u, v);
     Wide share = cross(from_to(a.lo, b.lo), v); // of u, up to the crossing
     if (of < 0) {
@@ -169,7 +169,7 @@ bool comes_into(const Segment& s, const Point2& place) noexcept {
     const auto [low, high] = std::minmax(s.lo.y, s.hi.y);
     if (place.x < s.lo.x || place.x > s.hi.x || place.y < low || place.y > high)
         return false;
-    const Vector way = from_to(s.lo, s.hi);
+    const GridVector way = from_to(s.lo, s.hi);
     const Wide twice = 2 * cross(way, from_to(s.lo, place));
     const Wide reach = Wide{way.x} + (way.y < 0 ? -way.y : way.y);
     // The corners at either end of the borders that belong to the square do not, but for the one between
@@ -274,8 +274,8 @@ void add_crossings(std::span<const Side> sides, std::vector<Point2>& places, con
 
 /// A line through places of the grid: sides on it have the same one, exactly.
 struct CarryingLine {
-    Vector direction; ///< from left to right, in lowest terms
-    Wide height;      ///< cross product of the direction with any of its places
+    GridVector direction; ///< from left to right, in lowest terms
+    Wide height;          ///< cross product of the direction with any of its places
 
     explicit CarryingLine(const Segment& s) noexcept : direction(from_to(s.lo, s.hi)) {
         const std::int64_t divisor = std::gcd(direction.x, direction.y);

@@ -13,7 +13,7 @@ namespace lamella {
 
 namespace {
 
-constexpr std::array rows = {
+constexpr std::array role_rows = {
     MeshRoleRow{MeshRole::part, "part", "parts", "part", false},
     MeshRoleRow{MeshRole::support, "support", "supports", "support", true},
     MeshRoleRow{MeshRole::negative, "negative volume", "negative volumes", "negative", false},
@@ -27,7 +27,7 @@ constexpr std::array rows = {
 
 std::string all_words() {
     std::string words;
-    for (const MeshRoleRow& row : rows)
+    for (const MeshRoleRow& row : role_rows)
         if (row.role != MeshRole::part)
             words.append(words.empty() ? "" : ", ").append(row.word);
     return words;
@@ -36,11 +36,11 @@ std::string all_words() {
 } // namespace
 
 std::span<const MeshRoleRow> mesh_roles() noexcept {
-    return rows;
+    return role_rows;
 }
 
 const MeshRoleRow& row_of(MeshRole role) noexcept {
-    return rows[static_cast<std::size_t>(role)];
+    return role_rows[static_cast<std::size_t>(role)];
 }
 
 MeshRoles roles_named(std::string_view words) {
@@ -48,10 +48,11 @@ MeshRoles roles_named(std::string_view words) {
     while (!words.empty()) {
         const std::string_view word = words.substr(0, words.find(','));
         words.remove_prefix(std::min(words.size(), word.size() + 1));
-        const auto* const row = std::find_if(rows.begin(), rows.end(), [&](const MeshRoleRow& known) {
-            return known.role != MeshRole::part && known.word == word;
-        });
-        if (row == rows.end())
+        const auto* const row =
+            std::find_if(role_rows.begin(), role_rows.end(), [&](const MeshRoleRow& known) {
+                return known.role != MeshRole::part && known.word == word;
+            });
+        if (row == role_rows.end())
             throw Error(ErrorKind::usage,
                         fmt::format("found '{}', expected one of {}, or several with commas between them",
                                     word.substr(0, 200), all_words()));

@@ -24,7 +24,7 @@ namespace lamella {
 namespace {
 
 constexpr std::string_view ticket_type = "http://schemas.microsoft.com/3dmanufacturing/2013/01/printticket";
-constexpr std::size_t longest_name = 200;
+constexpr std::size_t longest_file_name = 200;
 
 [[noreturn]] void refuse_package(const ZipReader& package, const std::string& what) {
     throw Error(ErrorKind::input, fmt::format("{}: {}", package.name(), what));
@@ -77,12 +77,12 @@ class PartLoader {
         }
         if (targets.size() > 1)
             refuse_package(package_, fmt::format("the package names {} models ('{}', '{}'), expected one",
-                                                 targets.size(), printable(targets[0], longest_name),
-                                                 printable(targets[1], longest_name)));
+                                                 targets.size(), printable(targets[0], longest_file_name),
+                                                 printable(targets[1], longest_file_name)));
         if (!targets.empty()) {
             if (package_.find(targets.front()) == nullptr)
                 refuse_package(package_, fmt::format("the package names the model '{}', which is not in it",
-                                                     printable(targets.front(), longest_name)));
+                                                     printable(targets.front(), longest_file_name)));
             return targets.front();
         }
         const ZipEntry* entry = package_.find(three_mf::usual_root);
@@ -94,7 +94,7 @@ class PartLoader {
                 package_,
                 "is a zip archive without a model, expected a 3MF file; unpack it and slice what is in it");
         remarks_.add(fmt::format("the package does not say which part is its model; took '{}'",
-                                 printable(entry->name, longest_name)));
+                                 printable(entry->name, longest_file_name)));
         return entry->name;
     }
 
@@ -112,7 +112,7 @@ class PartLoader {
         }
         if (first_astray != nullptr)
             remarks_.add(fmt::format("{} references of the package lead to no part of it (the first is '{}')",
-                                     astray, printable(first_astray->target, longest_name)));
+                                     astray, printable(first_astray->target, longest_file_name)));
         if (tickets > 1)
             remarks_.add(fmt::format("the package has {} print tickets for one part, expected one", tickets));
         return found;
@@ -140,7 +140,7 @@ class PartLoader {
         for (const std::string& part : others) {
             if (!listed.contains(part))
                 remarks_.add(fmt::format("the part '{}' is used without a relationship to it",
-                                         printable(part, longest_name)));
+                                         printable(part, longest_file_name)));
             parts_.emplace_back().model.part = part;
         }
         if (!others.empty())
@@ -156,7 +156,7 @@ class PartLoader {
         if (package_.find(use.part) == nullptr)
             throw Error(ErrorKind::input,
                         fmt::format("{}, line {}: refers to the part '{}', which is not in the package",
-                                    root.source, use.line, printable(use.part, longest_name)));
+                                    root.source, use.line, printable(use.part, longest_file_name)));
         others.push_back(use.part);
     }
 
@@ -253,7 +253,7 @@ class ThreeMfReader {
                                         model.source, use.line, use.object,
                                         target == part
                                             ? ""
-                                            : fmt::format(" in '{}'", printable(use.part, longest_name))));
+                                            : fmt::format(" in '{}'", printable(use.part, longest_file_name))));
             return AssemblyUse{node->second,
                                use.placement,
                                place(model, use.line, "this use"),
@@ -304,7 +304,7 @@ class ThreeMfReader {
     }
 
     static std::string place(const ThreeMfModel& model, std::size_t line, std::string_view what) {
-        return fmt::format("part '{}', line {}: {}", printable(model.part, longest_name), line, what);
+        return fmt::format("part '{}', line {}: {}", printable(model.part, longest_file_name), line, what);
     }
 
     /// Those nodes, and all that they consist of.

@@ -1,5 +1,6 @@
 #include "scan/alongside.hpp"
 
+#include "contour/distance.hpp"
 #include "polygon/box2.hpp"
 
 #include <algorithm>
@@ -13,17 +14,6 @@ namespace {
 
 double squared_distance(const Point2& p, const Point2& q) noexcept {
     return (q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y);
-}
-
-/// Of the way from one point to another the place next to p.
-Point2 nearest_on(const Point2& from, const Point2& to, const Point2& p) noexcept {
-    const double length = squared_distance(from, to);
-    const double along = (p.x - from.x) * (to.x - from.x) + (p.y - from.y) * (to.y - from.y);
-    if (!(along > 0))
-        return from;
-    if (along >= length)
-        return to;
-    return {from.x + along / length * (to.x - from.x), from.y + along / length * (to.y - from.y)};
 }
 
 /// A ring that is followed once around, from a point of it.

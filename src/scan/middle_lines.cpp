@@ -31,12 +31,6 @@ Point2 along(const Point2& from, const Point2& way, double by) noexcept {
     return {from.x + by * way.x, from.y + by * way.y};
 }
 
-Point2 nearest_on(const Point2& a, const Point2& b, const Point2& p) noexcept {
-    const Point2 edge = minus(b, a);
-    const double length = dot(edge, edge);
-    return length > 0 ? along(a, edge, std::clamp(dot(minus(p, a), edge) / length, 0.0, 1.0)) : a;
-}
-
 /// Numbers by the cell of a square grid that they lie in.
 class Cells {
   public:
