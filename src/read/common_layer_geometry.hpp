@@ -28,6 +28,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -74,7 +75,10 @@ struct BeamSettings {
     std::optional<double> focus_mm;
 
     [[nodiscard]] bool any() const noexcept { return power_w || speed_mm_s || focus_mm; }
-    friend auto operator<=>(const BeamSettings&, const BeamSettings&) = default;
+    friend bool operator==(const BeamSettings&, const BeamSettings&) = default;
+    friend bool operator<(const BeamSettings& a, const BeamSettings& b) noexcept {
+        return std::tie(a.power_w, a.speed_mm_s, a.focus_mm) < std::tie(b.power_w, b.speed_mm_s, b.focus_mm);
+    }
 };
 
 /// What of a part of the file becomes a part: all of it, or where the file says how vectors are exposed,
@@ -84,7 +88,10 @@ struct CommonLayerPart {
     BeamSettings beam = {};
     VectorKind kind = VectorKind::contour; ///< of what has settings
 
-    friend auto operator<=>(const CommonLayerPart&, const CommonLayerPart&) = default;
+    friend bool operator==(const CommonLayerPart&, const CommonLayerPart&) = default;
+    friend bool operator<(const CommonLayerPart& a, const CommonLayerPart& b) noexcept {
+        return std::tie(a.number, a.beam, a.kind) < std::tie(b.number, b.beam, b.kind);
+    }
 };
 
 /// Collects what the geometry section says, however it is coded.

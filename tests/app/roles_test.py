@@ -1,6 +1,7 @@
 """Volumes of 3MF and AMF files that are no material: negative ones are subtracted, the others left out."""
 
 import io
+import os
 import resource
 import zipfile
 
@@ -142,6 +143,8 @@ class Roles(ProgramTest):
                       "support,support-blocker to read them as solids", result.err)
 
     def test_instances_that_double_stay_within_the_memory_that_is_allowed(self):
+        if "LAMELLA_SANITIZED" in os.environ:
+            self.skipTest("what a sanitizer takes is not the program's")
         resources = f'<object id="1">{mesh(BODY)}</object>' + "".join(
             f'<object id="{i}"><components>{2 * f"<component objectid=&quot;{i - 1}&quot;/>"}</components></object>'.replace(
                 "&quot;", '"') for i in range(2, 18))
