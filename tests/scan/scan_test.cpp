@@ -184,7 +184,8 @@ TEST(Scan, GivesThinWallsALineThatEveryOrderOfRingsHas) {
     EXPECT_LT(unreached(normal_layer(rings), strategy), 2e-3);
     const std::vector<Layer> again =
         scan(layer_of({rings[2], rings[3], rings[1], rings[0]}), {}, {}, strategy);
-    EXPECT_TRUE(std::ranges::equal(again[1].hatches, vectors[1].hatches));
+    EXPECT_TRUE(std::equal(again[1].hatches.begin(), again[1].hatches.end(), vectors[1].hatches.begin(),
+                           vectors[1].hatches.end()));
 }
 
 TEST(Scan, KeepsItsDistancesToTheOutline) {
