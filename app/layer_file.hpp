@@ -28,7 +28,8 @@ struct StepChanges {
 
 /// Takes the steps, and tells as above of rings that bound no material, of hatch lines that are left out with
 /// the contours that they fill, and where no contour is left. Throws Error{usage} for steps on scan vectors:
-/// hatches are other parts than their contours, which would be moved alone. `memory`: as of lamella::take_steps.
+/// hatches are other parts than their contours, which would be moved alone. `memory`: as of
+/// lamella::take_steps.
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
                        const Execution& execution, std::uint64_t memory);
 

@@ -177,10 +177,11 @@ void bind_losses(py::module_& module) {
         .def(py::init())
         .def("add",
              [](ScanLosses& self, const LayerPointer& layer) {
-                 self.add({&layer->get(), 1},
-                          result_of_points(layer->get().points.size(), [layer](const Execution& /*execution*/) {
-                              return inverted_rings(layer->get(), {}, InversionSearch::full);
-                          }));
+                 self.add(
+                     {&layer->get(), 1},
+                     result_of_points(layer->get().points.size(), [layer](const Execution& /*execution*/) {
+                         return inverted_rings(layer->get(), {}, InversionSearch::full);
+                     }));
              })
         .def("texts", &ScanLosses::texts);
     module.def("scan_losses", [](const Stack& stack) {

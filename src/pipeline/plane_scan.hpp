@@ -26,7 +26,7 @@ struct PlaneVectors {
     std::vector<ScanFigures> figures; ///< of each of `plane_exposures`
     double unreached_mm2 = 0; ///< that no vector reaches, of parts where that is more than is accepted
     std::vector<InvertedRings> inverted; ///< of each part, which have no vectors either
-    std::uint64_t hash = 0; ///< of `layers`, in their order: see content_hash
+    std::uint64_t hash = 0;              ///< of `layers`, in their order: see content_hash
 };
 
 /// What has figures: the exposures of parts, and then those of supports, where there are such; of no part:

@@ -248,12 +248,13 @@ class ThreeMfReader {
             const ThreeMfModel& model = parts_[part].model;
             const auto node = numbers[target].find(use.object);
             if (node == numbers[target].end())
-                throw Error(ErrorKind::input,
-                            fmt::format("{}, line {}: found objectid {}, but there is no such object{}",
-                                        model.source, use.line, use.object,
-                                        target == part
-                                            ? ""
-                                            : fmt::format(" in '{}'", printable(use.part, longest_file_name))));
+                throw Error(
+                    ErrorKind::input,
+                    fmt::format("{}, line {}: found objectid {}, but there is no such object{}", model.source,
+                                use.line, use.object,
+                                target == part
+                                    ? ""
+                                    : fmt::format(" in '{}'", printable(use.part, longest_file_name))));
             return AssemblyUse{node->second,
                                use.placement,
                                place(model, use.line, "this use"),

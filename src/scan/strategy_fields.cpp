@@ -65,7 +65,8 @@ std::span<const StrategyField<ScanStrategy>> strategy_fields() noexcept {
     static constexpr std::array<StrategyField<ScanStrategy>, 2> fields{
         {{"seed", "", "of all that is drawn by lot: random orders and starts", &ScanStrategy::seed},
          {"accepted_mm2", "mm2",
-          "material of a layer that may be left without vectors; more is a warning, an error where jobs are strict",
+          "material of a layer that may be left without vectors; more is a warning, an error where jobs are "
+          "strict",
           &ScanStrategy::accepted_mm2}}};
     return fields;
 }

@@ -394,7 +394,8 @@ TEST(ScanFormats, LeaveChainsOpenWhoseEndsRoundingMakesEqualWhereTheyCan) {
             for (const ScanFormat& format : scan_formats()) {
                 const LayerFile file = read(written(format.name, job));
                 const Layer layer = file.parts.at(0).layers.at(0);
-                if (std::string_view(format.name) == "ilt" && static_cast<float>(x + apart) == static_cast<float>(x)) {
+                if (std::string_view(format.name) == "ilt" &&
+                    static_cast<float>(x + apart) == static_cast<float>(x)) {
                     EXPECT_EQ(layer.rings, 1U);
                     EXPECT_EQ(layer.points.size(), 4U);
                     EXPECT_FALSE(file.warnings.empty());

@@ -241,7 +241,8 @@ TEST(ReadCommonLayer, LabelsAreTextAndNoLongerThanOneIsMeantToBe) {
 TEST(ReadCommonLayer, LabelsCountAgainstTheLimitOfMemory) {
     const std::string bytes = ascii(ring, "$$UNITS/0.01\n$$LABEL/1," + std::string(100'000, 'x') + "\n");
     const std::string error = test::error_of(ErrorKind::limit, [&] {
-        static_cast<void>(read_layers(std::as_bytes(std::span(bytes)), "test.cli", {.max_memory = bytes.size() + 1000}));
+        static_cast<void>(
+            read_layers(std::as_bytes(std::span(bytes)), "test.cli", {.max_memory = bytes.size() + 1000}));
     });
     EXPECT_NE(error.find("line 4"), std::string::npos) << error;
 }

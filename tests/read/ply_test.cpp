@@ -322,7 +322,8 @@ TEST(Ply, CountsTextOfAnyLayoutOnceOnly) {
     const std::string text = laid_out(ascii_with_all(1002), random, {" ", "\n"});
     const std::uint64_t bytes = 1002 * sizeof(Point3) + 1000 * sizeof(Corners);
     const auto triangles = read(text, name).stored_triangles;
-    EXPECT_EQ(read(text, name, {.max_triangles = triangles, .max_memory = 2 * bytes + text.size()}).stored_triangles,
+    EXPECT_EQ(read(text, name, {.max_triangles = triangles, .max_memory = 2 * bytes + text.size()})
+                  .stored_triangles,
               triangles);
     EXPECT_EQ(error_of(text, name, {.max_triangles = 999}, ErrorKind::limit),
               name + ": holds more than the 999 triangles of `max_triangles`");
