@@ -1,7 +1,7 @@
 #pragma once
 
-// Bytes of a layer under construction, and their memory used again for the next one: fresh pages would cost
-// as much as the formatting.
+// Bytes of a layer under construction. Their memory is reused for the next layer: fresh pages would cost as
+// much as the formatting.
 
 #include "core/pages.hpp"
 
@@ -23,24 +23,24 @@ inline char* put_text(char* out, std::string_view text) noexcept {
     return out + text.size();
 }
 
-/// Writes the bytes of a value as they lie in memory, and returns their end.
+/// Writes the bytes of a value as they are in memory, and returns their end.
 template <class T>
 char* put_value(char* out, T value) noexcept {
     std::memcpy(out, &value, sizeof value);
     return out + sizeof value;
 }
 
-/// The same bytes as a string.
+/// Returns the same bytes as a string.
 template <class T>
 std::string bytes_of(T value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-/// A byte array that grows. What lies beyond its end is not initialised.
+/// A growing byte array. Bytes beyond its end are not initialised.
 class ByteBuffer {
   public:
-    /// Room for `size` bytes after the end; write there and tell `end_at` how far. Earlier pointers become
-    /// invalid.
+    /// Returns space for `size` bytes after the end. The caller writes there and passes the new end to
+    /// `end_at`. Earlier pointers become invalid.
     [[nodiscard]] char* room(std::size_t size) {
         if (bytes_.size() - size_ < size)
             grow(size);
@@ -71,12 +71,12 @@ class ByteBuffer {
     std::size_t size_ = 0;
 };
 
-/// Buffers that wait to be used again. For any number of threads.
+/// A pool of reusable buffers, for any number of threads.
 class BufferPool : public std::enable_shared_from_this<BufferPool> {
   public:
     BufferPool() { idle_.reserve(most_idle); }
 
-    /// An empty buffer, which comes back to the pool when the last pointer to it goes.
+    /// Returns an empty buffer, which goes back to the pool when the last pointer to it is destroyed.
     [[nodiscard]] std::shared_ptr<ByteBuffer> take() {
         ByteBuffer buffer;
         {
@@ -93,7 +93,7 @@ class BufferPool : public std::enable_shared_from_this<BufferPool> {
     }
 
   private:
-    // As many as there may be threads at work; more would only keep memory.
+    // As many buffers as there may be working threads; more would only keep memory.
     static constexpr std::size_t most_idle = 64;
 
     void give_back(std::unique_ptr<ByteBuffer> buffer) noexcept {

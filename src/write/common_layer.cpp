@@ -28,7 +28,7 @@ using Direction = CommonLayerDirection;
 
 constexpr int first_part = 1;
 
-// The label as the format's strings have it: readers differ on quotes, commas and letters beyond ASCII.
+// Returns the label as a string of this format: readers differ on quotes, commas and letters beyond ASCII.
 std::string label_text(std::string_view label) {
     std::string text;
     for (const char c : label) {
@@ -40,7 +40,8 @@ std::string label_text(std::string_view label) {
 
 constexpr Holds holds{.hatches = true, .gaps = false, .written_label = label_text};
 
-// In the order that the strictest readers ask for. No date: equal layers give equal bytes.
+// Returns the header in the order that the strictest readers require. It has no date, so that equal layers
+// give equal bytes.
 std::string header(std::string_view coding, const LayerFileInfo& info, double units) {
     std::string text = "$$HEADERSTART\n";
     text += fmt::format("$${}\n", coding);
@@ -53,13 +54,13 @@ std::string header(std::string_view coding, const LayerFileInfo& info, double un
     for (const double v : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
         text += decimal_text(v, 6, 6) + ',';
     text.back() = '\n';
-    // One more for the empty layer that says where the first one begins.
+    // The additional layer is the empty one that marks the bottom of the first.
     text += fmt::format("$$LAYERS/{}\n$$HEADEREND", info.layers + 1);
     return text;
 }
 
-// Whether a ring turns left at its first point, which in normal form is its smallest: then a ring that does
-// not cross itself is an outer one.
+// Returns whether a ring turns left at its first point. In normal form this point is the ring's smallest, so
+// a ring without self-intersections is an outer one if it turns left there.
 bool starts_convex(std::span<const Point2> ring) {
     if (ring.size() < 2)
         return true;
@@ -73,14 +74,14 @@ Direction direction_of(double ring_area) {
     return ring_area >= 0 ? Direction::counter_clockwise : Direction::clockwise;
 }
 
-// What contours of a part follow one another by.
+// Order in which the contours of a part are written.
 enum class Sequence {
     nesting, // outer rings, then holes, then open chains
-    kept,    // as they come: they are to be exposed one after the other
+    kept,    // as given: they are exposed one after the other
 };
 
-// Calls write(contour, closed). Nesting is found by a glance at each ring, so that its points are fetched
-// from memory once.
+// Calls write(contour, closed). Only the first corner of a ring decides its nesting, so its points are
+// fetched from memory once.
 template <class Write>
 void for_each_contour(const Layer& layer, Sequence sequence, const Write& write) {
     std::vector<std::size_t> holes;
@@ -103,22 +104,22 @@ void for_each_part(std::span<const Layer> parts, const Format& format) {
         format(parts[i], first_part + static_cast<int>(i));
 }
 
-// What one command lists, on a grid: a polyline or, without a direction, hatch lines. Handed on by value, so
-// that compilers know that text which is written does not change it.
+// The list of one command, on a grid: a polyline or, without a direction, hatch lines. It is passed by value
+// so that compilers know that writing text does not change it.
 struct Listed {
     int part;
     std::uint64_t layer;
     std::span<const GridPoint> points;
     std::optional<Direction> direction;
 
-    // The points of a ring end with the first one once more.
+    // A ring repeats its first point at the end.
     [[nodiscard]] std::size_t size() const {
         return points.size() + (direction && *direction != Direction::open ? 1 : 0);
     }
     [[nodiscard]] const GridPoint& operator[](std::size_t i) const {
         return points[i < points.size() ? i : 0];
     }
-    // What stands in the command: points, or else lines.
+    // Count that the command states: points, or else lines.
     [[nodiscard]] std::size_t count() const { return direction ? size() : size() / 2; }
 };
 
@@ -129,7 +130,7 @@ std::string position_text(double z, double units) {
 
 class CommonLayerWriter : public SequentialWriter {
   protected:
-    // `precision`: that of heights, and what 1 of them stands for.
+    // `precision` and `height_mm` are the precision of heights and the millimetres of one unit of them.
     CommonLayerWriter(const std::string& path, const LayerFileInfo& info, std::string_view head,
                       std::string precision, double height_mm)
         : SequentialWriter(path, info, head, holds),
@@ -138,8 +139,8 @@ class CommonLayerWriter : public SequentialWriter {
             sequences_.push_back(part.exposure ? Sequence::kept : Sequence::nesting);
     }
 
-    // The height of a layer, as it is written: `height_of(mm)`. What is below the first layer of a file or a
-    // piece was written before it.
+    // Returns the height of a layer as it is written, `height_of(mm)`. The bottom of the first layer of a
+    // file or a range is checked first.
     template <class HeightOf>
     auto checked_height(const PlanePlace& place, const HeightOf& height_of) {
         const auto height = height_of(place.top);
@@ -153,7 +154,8 @@ class CommonLayerWriter : public SequentialWriter {
         return sequences_[static_cast<std::size_t>(part - first_part)];
     }
 
-    // Calls put(listed) for what the grid leaves of the contours of each part, and for its hatch lines.
+    // Calls put(listed) for each contour of each part that snapping to the grid preserves, and for its hatch
+    // lines.
     template <class Put>
     void for_each_on_grid(const WriterGrid& grid, std::span<const Layer> parts, const Put& put) const {
         std::vector<GridPoint> scratch;
@@ -215,7 +217,7 @@ class AsciiWriter final : public CommonLayerWriter {
         out.end_at(put_text(at, "\n"));
     }
 
-    // A real number has a decimal point.
+    // Writes numbers with a decimal point, which marks them as real.
     static char* put_point(char* at, const GridPoint& p) {
         *at = ',';
         at = put_integer(at + 1, p.x);
@@ -227,7 +229,7 @@ class AsciiWriter final : public CommonLayerWriter {
     WriterGrid grid_;
 };
 
-// What stands before the points of a polyline or, without a direction, of hatch lines.
+// Writes the header of a polyline or, without a direction, of hatch lines.
 template <class Number>
 char* put_head(char* out, CommonLayerCommand command, int part, std::optional<Direction> direction,
                std::size_t count) {
@@ -272,7 +274,7 @@ class LongWriter final : public CommonLayerWriter {
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for_each_part(parts, [&](const Layer& layer, int part) {
-            // All room at once: most layers lose no point.
+            // Reserves all the space at once: most layers lose no point.
             static_cast<void>(out.room(layer.contours() * (long_head + float_point_size) +
                                        layer.points.size() * float_point_size));
             for_each_contour(layer, sequence_of(part), [&](std::span<const Point2> contour, bool closed) {
@@ -309,12 +311,12 @@ class LongWriter final : public CommonLayerWriter {
     FloatContours floats_;
 };
 
-// 16-bit numbers are unsigned by the standard and signed in some readers and writers: only those that mean
+// 16-bit numbers are unsigned by the standard and signed in some readers and writers. Only numbers that mean
 // the same in both are written.
 constexpr std::int64_t most_short = 32767;
 
-// More points or hatches, or a part of a larger number, than 16 bits count are written in the long form; a
-// file may hold both.
+// Commands with more points, more hatches or a larger part number than 16 bits can count are written in the
+// long form. A file may contain both.
 constexpr std::size_t most_counted = std::numeric_limits<std::uint16_t>::max();
 
 class ShortWriter final : public CommonLayerWriter {
@@ -327,7 +329,7 @@ class ShortWriter final : public CommonLayerWriter {
           units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:
-    // What does not fit is better said before an hour of slicing than after it.
+    // Checks the coordinates before an hour of slicing rather than after it.
     static std::string checked_head(const LayerFileInfo& info, double units) {
         const double farthest = std::max({info.box.max.x, info.box.max.y, info.box.max.z});
         const auto check = [&](const char* axis, double mm) {
@@ -342,7 +344,7 @@ class ShortWriter final : public CommonLayerWriter {
         return header("BINARY", info, units) + layer_start(whole_units(info.bottom, units));
     }
 
-    /// `farthest`: what else has to fit, in mm.
+    /// Throws unless `value` fits. `farthest` is the largest other coordinate that must fit, in mm.
     static void check_short(const std::string& what, const char* axis, std::int64_t value, double units,
                             double farthest = 0) {
         if (value >= 0 && value <= most_short)
@@ -354,7 +356,7 @@ class ShortWriter final : public CommonLayerWriter {
                 fmt::format("{} reaches {} = {:.6g} mm, but the short form has no negative numbers; move "
                             "the part to positive coordinates or use the long form",
                             what, axis, mm));
-        // So that 0.002 is not taken to lie above 2 * 0.001.
+        // The factor prevents 0.002 from being taken to lie above 2 * 0.001.
         const double needed = std::max(mm, farthest) / most_short * (1 - 1e-9);
         throw Error(
             ErrorKind::usage,

@@ -5,7 +5,7 @@
 namespace lamella {
 
 namespace {
-// The longest double without an exponent: 309 digits before the point, or 1074 after it.
+// Length of the longest double without an exponent: 309 digits before the point, or 1074 after it.
 constexpr std::size_t longest = 1500;
 } // namespace
 

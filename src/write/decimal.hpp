@@ -34,18 +34,18 @@ inline constexpr std::array<std::uint64_t, 20> powers_of_ten = [] {
 
 } // namespace detail
 
-/// The longest text of a 64-bit integer with its sign.
+/// Length of the longest text of a 64-bit integer with its sign.
 inline constexpr std::size_t most_integer_digits = 20;
 
-/// Decimal digits of n; 1 for 0.
+/// Returns the number of decimal digits of n; 1 for 0.
 [[nodiscard]] inline unsigned digit_count(std::uint64_t n) noexcept {
     // 1233 / 4096 is a little more than log10(2), so this guess is right or one too high.
     const unsigned guess = static_cast<unsigned>(std::bit_width(n | 1U)) * 1233U >> 12U;
     return guess + 1 - (n < detail::powers_of_ten[guess] && guess > 0 ? 1 : 0);
 }
 
-/// Writes n and returns the end. Two digits at a time, from the last to the first: divisions by a constant
-/// are multiplications.
+/// Writes n and returns the end. Writes two digits at a time, from the last to the first: divisions by a
+/// constant become multiplications.
 inline char* put_integer(char* out, std::uint64_t n) noexcept {
     char* const end = out + digit_count(n);
     char* at = end;
@@ -75,7 +75,7 @@ inline char* put_thousandths(char* out, std::int64_t n) noexcept {
     const auto magnitude = negative ? 0 - static_cast<std::uint64_t>(n) : static_cast<std::uint64_t>(n);
     out = put_integer(out + (negative ? 1 : 0), magnitude / 1000);
     const auto rest = static_cast<unsigned>(magnitude % 1000);
-    // All three are written; what the end leaves out is overwritten by what follows.
+    // All three decimals are written; trailing ones beyond the returned end are overwritten later.
     out[0] = '.';
     out[1] = static_cast<char>('0' + rest / 100);
     std::memcpy(out + 2, &detail::digit_pairs[std::size_t{2} * (rest % 100)], 2);
@@ -83,7 +83,7 @@ inline char* put_thousandths(char* out, std::int64_t n) noexcept {
     return out + kept;
 }
 
-/// The same with at least one decimal, as formats want it that tell real numbers from whole ones: "7.0".
+/// Writes the same with at least one decimal, for formats that distinguish real numbers from integers: "7.0".
 inline char* put_real_thousandths(char* out, std::int64_t n) noexcept {
     char* const end = put_thousandths(out, n);
     if (n % 1000 != 0)
@@ -93,20 +93,21 @@ inline char* put_real_thousandths(char* out, std::int64_t n) noexcept {
     return end + 2;
 }
 
-/// `value` rounded to `most` decimals, trailing zeros removed down to `least`; zero without a sign. For
-/// headings, not for points.
+/// Returns `value` rounded to `most` decimals, with trailing zeros removed down to `least`; zero has no sign.
+/// Meant for headers, not for points.
 [[nodiscard]] std::string decimal_text(double value, int most = 9, int least = 0);
 
-/// The longest text of a double that `put_shortest` writes.
+/// Length of the longest text of a double that `put_shortest` writes.
 inline constexpr std::size_t most_double_digits = 24;
 
 /// Writes the shortest text that reads back as the same number, with an exponent where that is shorter, and
 /// returns the end.
 char* put_shortest(char* out, double value) noexcept;
-/// The same as a string; zero without a sign.
+/// Returns the same as a string; zero has no sign.
 [[nodiscard]] std::string shortest_text(double value);
 
-/// The shortest text that reads back as the same number, without an exponent and with at least one decimal.
+/// Returns the shortest text that reads back as the same number, without an exponent and with at least one
+/// decimal.
 [[nodiscard]] std::string exact_decimal_text(double value);
 
 } // namespace lamella

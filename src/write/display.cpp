@@ -13,8 +13,8 @@ namespace lamella {
 namespace {
 
 constexpr double common_pixel_mm = 0.05;
-/// How far from a whole number of pixels the size of a display may be, and how far a part may reach beyond
-/// the last one: sizes are rounded for people.
+/// Tolerance in pixels, since published sizes are rounded: largest deviation of a display's size from a whole
+/// number of pixels, and largest distance by which a part may reach beyond the last one.
 constexpr double most_rounding = 0.05;
 
 void check_length(const std::optional<AlongXY<double>>& mm, std::string_view what) {
@@ -76,8 +76,8 @@ std::optional<T> y_of(const std::optional<AlongXY<T>>& pair) {
     return pair ? std::optional(pair->y) : std::nullopt;
 }
 
-/// The options, with the printer's values where nothing speaks against them: its resolution stays when only a
-/// size is given, its size when only a resolution is.
+/// Returns the options with the printer's values unless other options contradict them: its resolution stays
+/// if only a size is given, its size if only a resolution is.
 PictureOptions with_printer(PictureOptions options, const PicturePrinter& printer) {
     if (printer.name.empty())
         return options;
@@ -90,8 +90,8 @@ PictureOptions with_printer(PictureOptions options, const PicturePrinter& printe
 
 } // namespace
 
-// PrusaSlicer's: bed coordinates (x, y) begin in a corner of the display. In landscape (u, v) = (x, y) and in
-// portrait (y, x); each is turned over, or not, to become column and row.
+// Follows PrusaSlicer: bed coordinates (x, y) begin in a corner of the display. (u, v) is (x, y) in landscape
+// and (y, x) in portrait; each is mirrored or not to become column and row.
 PixelGrid Display::grid(const Box3& box) const noexcept {
     const double x0 = 0.5 * width_mm() - 0.5 * (box.min.x + box.max.x);
     const double y0 = 0.5 * height_mm() - 0.5 * (box.min.y + box.max.y);

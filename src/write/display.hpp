@@ -1,6 +1,6 @@
 #pragma once
 
-// The pixels of a display or picture, and where the part lies among them.
+// Pixels of a display or image, and the position of the part among them.
 
 #include "lamella/raster/picture.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -11,9 +11,9 @@
 
 namespace lamella {
 
-/// What is known of a printer that shows pictures.
+/// Properties of a printer that displays images.
 struct PicturePrinter {
-    std::string_view name = {}; ///< as people and its files call it; "" for none
+    std::string_view name = {}; ///< as used by people and in its files; "" for none
     AlongXY<std::uint32_t> pixels{};
     AlongXY<double> display_mm{};
     bool portrait = false;
@@ -21,7 +21,8 @@ struct PicturePrinter {
     bool mirror_y = false;
     double normal_s = 0;
     double first_s = 0;
-    /// For a layer that covers at most so much of the display, and for others, the time between exposures.
+    /// A layer is large if it covers more than this fraction of the display. The pauses are the times between
+    /// exposures of small and large layers.
     double large_area = 0.5;
     double small_pause_s = 0;
     double large_pause_s = 0;
@@ -38,12 +39,12 @@ struct Display {
     [[nodiscard]] double height_mm() const noexcept { return pixels.y * pixel_mm.y; }
     [[nodiscard]] double pixel_mm2() const noexcept { return pixel_mm.x * pixel_mm.y; }
 
-    /// The picture, with the middle of the box in the middle of the display.
+    /// Returns the pixel grid with the middle of the box in the middle of the display.
     [[nodiscard]] PixelGrid grid(const Box3& box) const noexcept;
 };
 
-/// The display that options ask for, on this printer. Throws Error{usage} where they contradict themselves
-/// and where the part, which has this box, does not fit; says by how much.
+/// Returns the display that the options describe, on this printer. Throws Error{usage} if they contradict
+/// each other, and if the part, which has this box, does not fit; the error states by how much.
 [[nodiscard]] Display display_for(const Box3& box, const PictureOptions& options,
                                   const PicturePrinter& printer);
 

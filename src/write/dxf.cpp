@@ -24,8 +24,8 @@ class DxfWriter final : public SequentialWriter {
         : SequentialWriter(path, info, head(info), {.labels = false}), several_(info.parts.size() > 1) {}
 
   private:
-    // Release 12 needs neither tables nor handles. It knows no units, but readers look for $INSUNITS all the
-    // same and take metres without it.
+    // Release 12 needs neither tables nor handles. It has no units, but readers look for $INSUNITS all the
+    // same and assume metres without it.
     static std::string head(const LayerFileInfo& info) {
         const auto corner = [](std::string_view name, const Point3& p) {
             return fmt::format("  9\n{}\n 10\n{}\n 20\n{}\n 30\n{}\n", name, length_text(p.x),
@@ -43,7 +43,7 @@ class DxfWriter final : public SequentialWriter {
             format_part(parts[part], part, out);
     }
 
-    // At most 31 letters, digits and underscores.
+    // Returns a name of at most 31 letters, digits and underscores.
     [[nodiscard]] std::string layer_name(std::uint64_t index, std::size_t part) const {
         return several_ ? fmt::format("PART_{}_LAYER_{:05}", part + 1, index)
                         : fmt::format("LAYER_{:05}", index);

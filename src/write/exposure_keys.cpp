@@ -13,8 +13,8 @@ namespace lamella {
 
 namespace {
 
-/// What an exposure is apart from its part. Numbers count by their bits, since those that are none have no
-/// order; -0 is 0.
+/// Returns the properties of an exposure except its part. Numbers are compared by their bits, since NaN has
+/// no order; -0 becomes 0.
 auto key_of(const Exposure& exposure) {
     const auto bits = [](auto... numbers) {
         return std::array{std::bit_cast<std::uint64_t>(numbers + 0.0)...};
@@ -24,7 +24,8 @@ auto key_of(const Exposure& exposure) {
                       bits(power, speed, jump_speed, focus, spot, mark_delay, jump_delay));
 }
 
-/// Where an item is in a list, at the end of which it is put if it is not there; `places` has those that are.
+/// Returns the index of an item in a list, and appends it if it is absent. `places` maps the keys of present
+/// items to their indices.
 template <class Key, class T>
 std::size_t place_of(std::map<Key, std::size_t>& places, const Key& key, std::vector<T>& known,
                      const T& item) {
@@ -38,14 +39,14 @@ std::size_t place_of(std::map<Key, std::size_t>& places, const Key& key, std::ve
 
 ExposureKeys::ExposureKeys(std::span<const PartInfo> all) {
     std::map<decltype(key_of(Exposure{})), std::size_t> exposure_places;
-    std::map<std::string_view, std::vector<std::size_t>> places; // in `parts`, of each label
+    std::map<std::string_view, std::vector<std::size_t>> places; // indices in `parts` of each label
     std::map<std::pair<std::string_view, std::optional<std::size_t>>, std::size_t> times;
     for (const PartInfo& part : all) {
         const std::string& label = part.exposure ? part.exposure->part : part.label;
         Key& key = keys.emplace_back();
         if (part.exposure)
             key.exposure = place_of(exposure_places, key_of(*part.exposure), exposures, *part.exposure);
-        // What a part has already is of the next one of the same label.
+        // An exposure that a part already has belongs to the next part of the same label.
         const std::size_t number = times[{label, key.exposure}]++;
         std::vector<std::size_t>& same = places[label];
         if (number == same.size()) {

@@ -1,7 +1,6 @@
 #pragma once
 
-// What the parts of a file of scan vectors share: formats list parts and parameters once, and vectors refer
-// to them.
+// Parts and parameters shared in a file of scan vectors: formats list them once, and vectors refer to them.
 
 #include "lamella/write/layer_writer.hpp"
 
@@ -14,15 +13,15 @@
 namespace lamella {
 
 struct ExposureKeys {
-    /// Of one of LayerFileInfo::parts.
+    /// Key of one of LayerFileInfo::parts.
     struct Key {
-        std::size_t part;                    ///< in `parts`
-        std::optional<std::size_t> exposure; ///< in `exposures`
+        std::size_t part;                    ///< index in `parts`
+        std::optional<std::size_t> exposure; ///< index in `exposures`
     };
 
-    std::vector<std::string> parts;  ///< by their labels, in the order of the file
-    std::vector<Exposure> exposures; ///< that differ in more than the part, in the order of execution
-    std::vector<Key> keys;           ///< of each
+    std::vector<std::string> parts;  ///< labels of the parts, in the order of the file
+    std::vector<Exposure> exposures; ///< differ in more than the part, in the order of execution
+    std::vector<Key> keys;           ///< one for each of LayerFileInfo::parts
 
     explicit ExposureKeys(std::span<const PartInfo> all);
 };

@@ -34,18 +34,18 @@ struct Rounded {
     FloatPoint least; // of the box
     FloatPoint most;
     double area_mm2;
-    bool repeats; // whether two neighbours became equal
+    bool repeats; // true if two neighbours became equal
 };
 
 using FourDoubles = Vector<4>::Doubles;
 using FourFloats = Vector<4>::Floats;
 
-// Of numbers x, y, x, y: two points in single precision. Adding zero turns a rounded -0 into +0.
+// Returns two points x, y, x, y in single precision. Adding zero turns a rounded -0 into +0.
 [[gnu::always_inline]] inline FourFloats rounded_pair(const FourDoubles& pair, double scale) {
     return __builtin_convertvector(pair * scale, FourFloats) + 0.0F;
 }
 
-// Whether two neighbours are equal.
+// Returns whether two neighbours are equal.
 [[gnu::always_inline]] inline bool any_repeats(const char* points, std::size_t count) {
     const auto words = [&](std::size_t i) -> const Vector<4>::WordsAnywhere& {
         return *reinterpret_cast<const Vector<4>::WordsAnywhere*>(points + i * float_point_size);
@@ -61,11 +61,11 @@ using FourFloats = Vector<4>::Floats;
     return any;
 }
 
-// Writes points, scaled and in single precision, and finds out on the way what the rest of the work needs to
-// know of them: what a large file spends its time in is to fetch the points from memory.
+// Writes points, scaled and in single precision, and gathers in the same pass all properties that later steps
+// need: in a large file fetching points from memory takes most of the time.
 LAMELLA_VECTOR_CLONES Rounded round_points(std::span<const Point2> points, double scale, char* out) {
-    // Contours follow one another in memory, so what lies a page ahead is needed soon; processors by
-    // themselves look ahead no further than the page, and find a new direction only after some lines.
+    // Contours follow one another in memory, so points one page ahead are needed soon. Hardware prefetchers
+    // stop at the end of the page and detect a new stream only after some cache lines.
     constexpr std::size_t ahead = 4096 / sizeof(Point2);
     constexpr float infinity = std::numeric_limits<float>::infinity();
     FourFloats least = FourFloats{} + infinity;
@@ -108,7 +108,7 @@ LAMELLA_VECTOR_CLONES Rounded round_points(std::span<const Point2> points, doubl
             any_repeats(out, points.size())};
 }
 
-// The signed area of a ring of such points.
+// Returns the signed area of a ring of such points.
 double area_of_floats(const char* points, std::size_t count) {
     std::vector<Point2> ring(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -119,10 +119,10 @@ double area_of_floats(const char* points, std::size_t count) {
     return ring_area(ring);
 }
 
-// A point as it stands in a file, where numbers have no alignment.
+// A point as it is stored in a file, without alignment.
 using StoredPoint = std::array<char, float_point_size>;
 
-// Removes points that rounding made equal to the one before, if there are any; returns how many stay.
+// Removes points that rounding made equal to the one before, if there are any; returns the number that stay.
 std::size_t without_repeats(std::span<StoredPoint> points, bool repeats, bool closed) {
     const auto equal = [](const StoredPoint& a, const StoredPoint& b) { // == is a call for each
         return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
@@ -145,7 +145,7 @@ void check_range(const Rounded& rounded, std::uint64_t layer) {
                 layer));
 }
 
-// Twice how far a coordinate can have moved, in what is written.
+// Returns twice the largest rounding error of a coordinate, in written units.
 double last_place(const Rounded& rounded) {
     const auto& [least, most, area, repeats] = rounded;
     const double largest = std::max({-double{least.x}, -double{least.y}, double{most.x}, double{most.y}});
@@ -160,9 +160,9 @@ double largest_move(std::span<const Point2> points, double per_mm) {
     return largest;
 }
 
-// A bound on how much rounding has changed the area of a ring, in squares of what is written. Each point
-// moves by half a unit in the last place at most, and a term of the area with it by that times the lengths of
-// its two edges. Twice is for the rounding of this and of the area itself.
+// Returns a bound on the change of a ring's area by rounding, in square written units. Each point moves by at
+// most half a unit in the last place, and changes the area by at most that times the lengths of its two
+// edges. The factor 2 covers the rounding of this and of the area itself.
 double moved_area(const Rounded& rounded, std::size_t points) {
     const auto& [least, most, area, repeats] = rounded;
     const double extent = (double{most.x} - double{least.x}) + (double{most.y} - double{least.y});
@@ -191,7 +191,7 @@ FloatContour FloatContours::put(std::span<const Point2> contour, bool closed, st
         return {};
     if (!closed)
         return {count, 0};
-    // Only of a thin ring can rounding have turned the area over.
+    // Rounding can have reversed the orientation of a thin ring only.
     const bool thin = !(std::abs(rounded.area_mm2) * per_mm_ * per_mm_ > moved_area(rounded, contour.size()));
     if (thin && rounded.area_mm2 * area_of_floats(out, count) < 0)
         std::reverse(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));

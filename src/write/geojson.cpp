@@ -17,7 +17,7 @@ namespace lamella {
 
 namespace {
 
-// "[[1,2],[3.5,4],[1,2]]"; a ring ends with its first point once more.
+// Writes "[[1,2],[3.5,4],[1,2]]"; a ring repeats its first point at the end.
 void put_positions(std::span<const GridPoint> points, bool closed, ByteBuffer& out) {
     constexpr std::size_t per_point = 2 * (most_integer_digits + 6) + 4;
     char* at = out.room((points.size() + 1) * per_point + 2);
@@ -47,8 +47,8 @@ class GeoJsonWriter final : public SequentialWriter {
     }
 
   private:
-    // The standard means degrees on the Earth and knows no other system any more; who reads millimetres out
-    // of it has to know. "units" is ours.
+    // The standard defines coordinates as degrees on the Earth and no longer allows other systems; consumers
+    // have to know that these are millimetres. "units" is an addition of ours.
     static std::string head(const LayerFileInfo& info) {
         const Box3& box = info.box;
         return fmt::format("{{\"type\":\"FeatureCollection\",\"units\":\"mm\",\"bbox\":[{},{},{},{}],"
@@ -74,8 +74,8 @@ class GeoJsonWriter final : public SequentialWriter {
         put_lines(layer, part, nested, scratch, out);
     }
 
-    // The rings that bound material: outer ones, and after each of them its holes. What the grid leaves
-    // nothing of is passed over, an outer ring with its holes.
+    // Writes the rings that bound material: each outer ring, then its holes. Rings that vanish on the grid
+    // are skipped, an outer ring together with its holes.
     void put_polygons(const Layer& layer, std::size_t part, const Nesting& nested,
                       std::vector<GridPoint>& scratch, ByteBuffer& out) const {
         const auto put_ring = [&](std::size_t i, std::string_view before) {
@@ -99,7 +99,8 @@ class GeoJsonWriter final : public SequentialWriter {
         out.append(any ? "]]}}" : "]}}");
     }
 
-    // What bounds no material: rings in nothing that run clockwise, rings without area, and open chains.
+    // Writes contours that bound no material: clockwise rings outside of material, rings without area, and
+    // open chains.
     void put_lines(const Layer& layer, std::size_t part, const Nesting& nested,
                    std::vector<GridPoint>& scratch, ByteBuffer& out) const {
         bool any = false;
@@ -120,7 +121,7 @@ class GeoJsonWriter final : public SequentialWriter {
             out.append("]}}");
     }
 
-    // Up to the bracket of its coordinates.
+    // Writes a feature up to the opening bracket of its coordinates.
     void put_feature(const Layer& layer, std::size_t part, std::string_view type, ByteBuffer& out) const {
         out.append(fmt::format("{{\"type\":\"Feature\",\"properties\":{{\"layer\":{},\"z\":{},\"bottom\":{},"
                                "\"top\":{},\"part\":{},\"label\":{}}},\"geometry\":{{\"type\":\"{}\","

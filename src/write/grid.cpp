@@ -13,7 +13,7 @@ namespace lamella {
 
 namespace {
 
-// Added to a number of at most 2^51, this leaves its nearest whole number in the low bits of the sum:
+// Added to a number of at most 2^51, this constant leaves the nearest integer in the low bits of the sum:
 // rounding by two instructions that every processor has for vectors.
 constexpr double round_to_whole = 6755399441055744.0; // 1.5 * 2^52
 constexpr double largest = 2251799813685248.0;        // 2^51

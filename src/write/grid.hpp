@@ -1,6 +1,6 @@
 #pragma once
 
-// Contours on a grid of whole numbers, as text and 16-bit formats store them.
+// Contours on an integer grid, as text and 16-bit formats store them.
 
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/point.hpp"
@@ -25,33 +25,34 @@ inline constexpr double text_step_mm = text_rounding.step_mm;
 /// Throws Error{usage} for units of LayerWriteOptions that no file can have.
 void check_units(double units);
 
-/// The smallest of 1, 2 or 5 times a power of ten that is at least this positive number.
+/// Returns the smallest of 1, 2 or 5 times a power of ten that is at least this positive number.
 [[nodiscard]] double round_step(double least) noexcept;
 
-/// Signed area of a ring in square steps.
+/// Returns the signed area of a ring in square steps.
 [[nodiscard]] double grid_area(std::span<const GridPoint> ring) noexcept;
 
 class WriterGrid {
   public:
-    /// Points at whole multiples of `step_mm`. What that loses of contours goes to `loss`, which must outlive
-    /// the grid.
+    /// Creates a grid of points at integer multiples of `step_mm`. Losses of contours are counted in `loss`,
+    /// which must outlive the grid.
     explicit WriterGrid(double step_mm, RoundingLoss* loss = nullptr);
 
-    /// The nearest point for each of a contour, half-way cases to the even one. Points that fall together
-    /// with the one before are dropped; what is left of a ring of fewer than three, or of a chain of fewer
-    /// than two points, is nothing. `area` is the ring's before rounding: a ring so thin that rounding turned
-    /// it over is listed the other way round, so that outer rings stay outer rings. The result lives in
-    /// `scratch`.
+    /// Returns the nearest grid point of each point of a contour, ties to even. Points equal to the one
+    /// before are dropped. A ring of fewer than three or a chain of fewer than two remaining points becomes
+    /// empty. `area` is that of the ring before rounding: a ring so thin that rounding reversed its
+    /// orientation is returned in reverse order, so that outer rings stay outer rings. The result is stored
+    /// in `scratch`.
     ///
     /// Throws Error{usage}, naming the layer, for coordinates beyond 2^51 steps.
     std::span<const GridPoint> snap(std::span<const Point2> contour, bool closed, double area,
                                     std::uint64_t layer, std::vector<GridPoint>& scratch) const;
 
-    /// The nearest points for lines, two each; lines that shrink to a point are left out. The same error.
+    /// Returns the nearest points for lines, two each; lines that shrink to a point are left out. Throws the
+    /// same error.
     [[nodiscard]] std::vector<GridPoint> snap_lines(std::span<const Point2> points,
                                                     std::uint64_t layer) const;
 
-    /// The nearest points, each for itself. The same error.
+    /// Returns the nearest grid point of each point. Throws the same error.
     [[nodiscard]] std::vector<GridPoint> snap_points(std::span<const Point2> points,
                                                      std::uint64_t layer) const;
 
@@ -63,7 +64,7 @@ class WriterGrid {
     double step_;
     double per_step_;
     RoundingLoss* loss_; ///< may be null
-    bool noticed_;       ///< whether anybody could miss what a move loses
+    bool noticed_;       ///< true if moves by rounding must be reported
 };
 
 } // namespace lamella

@@ -1,5 +1,5 @@
-// An archive holds one file after the other, and layers come for all of them at once. The first one goes to
-// the archive as it comes, the others wait in a store for their turn.
+// An archive contains one file after the other, and layers arrive for all files at once. The first file is
+// written to the archive directly; the others wait in a store.
 
 #include "lamella/core/error.hpp"
 
@@ -24,9 +24,10 @@ namespace lamella {
 
 namespace {
 
-/// What the name of a file says of its vectors, in German initials: st (Stuetze) is support, s1 a shell,
-/// which is the whole part where there is one beam only; v volume, u (unten) below, s (Schraffur) hatch, k
-/// (Kontur) contour, kv (Versatz) contours further inwards. Of upskin there is but one name.
+/// Returns the code of the vectors in the name of their file. It consists of German initials: st (Stuetze) is
+/// support, s1 a shell, which is the whole part if there is only one beam; v volume, u (unten) below, s
+/// (Schraffur) hatch, k (Kontur) contour, kv (Versatz) contours further inwards. There is only one name for
+/// upskin.
 std::string code_of(const Exposure& exposure) {
     const bool contour = exposure.kind == VectorKind::contour;
     switch (exposure.region) {
@@ -41,12 +42,12 @@ std::string code_of(const Exposure& exposure) {
     }
 }
 
-/// What parts without an exposure have; a machine does nothing with it.
+/// Returns the exposure of parts without one; a machine ignores it.
 Exposure no_exposure(const std::string& part) {
     return {.part = part, .parameters = unknown_parameters()};
 }
 
-/// Of a set of parameters what the list of files has a place for.
+/// Returns those parameters of a set that the list of files can hold.
 ParameterSet kept_in_list(ParameterSet set) {
     set.jump_speed_mm_s = set.spot_mm = set.mark_delay_us = set.jump_delay_us = 0;
     return set;
@@ -57,11 +58,11 @@ struct Section {
     std::string name;
     std::string code; ///< in the name
     ParameterSet parameters;
-    std::vector<std::size_t> parts; ///< those of LayerFileInfo::parts that it holds
+    std::vector<std::size_t> parts; ///< indices in LayerFileInfo::parts
 };
 
-/// Vectors of a part that have name and parameters in common share a file. Files of a part have its number,
-/// and another one where they would have the name of one before.
+/// Returns the files of the archive. Vectors of a part with equal names and parameters share a file. Files of
+/// a part have its number, or another one if their name is already taken.
 std::vector<Section> sections_of(const std::vector<PartInfo>& parts) {
     const auto name_of = [](std::size_t number, const std::string& code) {
         return fmt::format("modelsection_{:03}_{}.cli", number, code);
@@ -99,8 +100,8 @@ std::vector<Section> sections_of(const std::vector<PartInfo>& parts) {
     return sections;
 }
 
-/// Five lines for each file, as readers count them. Distance and time of points are for beams that are
-/// pulsed; ours are not. The sign of a millionth is one byte of Latin-1.
+/// Returns five lines for each file, which is the number that readers expect. Distance and time of points
+/// apply to pulsed beams only, which these are not. The prefix for a millionth is one byte of Latin-1.
 std::string parameters_text(const std::vector<Section>& sections) {
     constexpr std::string_view micro = "\xb5";
     std::string text;
@@ -133,7 +134,7 @@ class IltWriter final : public OrderedWriter {
 
     std::vector<std::string> warnings() const override {
         std::vector<std::string> lines = OrderedWriter::warnings();
-        std::map<std::string, std::vector<std::string_view>> told; // and by which sections
+        std::map<std::string, std::vector<std::string_view>> told; // with the sections that are affected
         for (std::size_t i = 0; i < sections_.size(); ++i)
             for (const std::string& line : entries_[i].writer->warnings())
                 told[line].push_back(sections_[i].name);
@@ -149,7 +150,7 @@ class IltWriter final : public OrderedWriter {
         std::uint64_t place;
         std::size_t size;
     };
-    /// What writes a file of the archive, and which bytes of it are in the store.
+    /// Writer of a file of the archive, and the location of its bytes in the store.
     struct Entry {
         LayerFilePiece piece;
         std::unique_ptr<LayerWriter> writer;
@@ -189,7 +190,7 @@ class IltWriter final : public OrderedWriter {
         zip_.finish();
     }
 
-    /// Readers take heights for one that differ by so little as files round them.
+    /// Throws if readers would take two heights for one because they differ by less than files round them.
     void check_apart(const PlanePlace& place) {
         const double units = place.top / units_;
         const double top =
@@ -203,7 +204,7 @@ class IltWriter final : public OrderedWriter {
         last_top_ = top;
     }
 
-    /// All of the file is one piece, which goes where it is put.
+    /// Opens a writer for a whole file as a single range, whose bytes go to `put`.
     void open(std::size_t section, const LayerFileInfo& info, const LayerWriteOptions& options) {
         Entry& entry = entries_[section];
         entry.piece = {0, info.layers, [this, section](std::string_view bytes) {
@@ -215,7 +216,7 @@ class IltWriter final : public OrderedWriter {
                                 .parts = {},
                                 .rule = info.rule,
                                 .piece = &entry.piece,
-                                .known_finite = true}; // or found to be so by this writer
+                                .known_finite = true}; // else this writer has checked it
         for (const std::size_t part : sections_[section].parts) {
             PartInfo known = info.parts[part];
             known.support = false; // the warning is of the whole archive
@@ -247,12 +248,12 @@ class IltWriter final : public OrderedWriter {
 
     ZipWriter zip_;
     std::vector<Section> sections_;
-    std::vector<Entry> entries_; ///< of sections_; their pieces stay where they are
+    std::vector<Entry> entries_; ///< of sections_; their addresses must not change
     ByteStore store_;
-    std::uint64_t waiting_ = 0; ///< bytes in it that are not in the archive
+    std::uint64_t waiting_ = 0; ///< bytes in store_ that are not yet in the archive
     double units_;
     bool short_form_;
-    double last_top_ = 0; ///< as readers have it
+    double last_top_ = 0; ///< as read back from the file
 };
 
 } // namespace

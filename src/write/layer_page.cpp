@@ -30,7 +30,7 @@ namespace lamella {
 
 namespace {
 
-/// What is told of a plane whether or not all of it is shown.
+/// Figures of a plane, whether or not all of it is shown.
 struct PlaneFacts {
     PlanePlace place;
     LayerMeasure measure = {};
@@ -42,7 +42,7 @@ struct PlaneFacts {
     ScanFigures scan = {};
 };
 
-/// A plane as the page may hold it, all of it or thinned out.
+/// The data of a plane for the page, complete or thinned out.
 struct Picture {
     std::string bytes; ///< compressed
     std::uint64_t shown = 0;
@@ -51,10 +51,10 @@ struct Picture {
     double tolerance_mm = 0;
 };
 
-/// Crossings of a plane whose places are told.
+/// Number of crossings of a plane whose locations are listed.
 constexpr std::size_t most_marks = 1000;
 
-/// Fills in the figures of a plane and what is wrong with it, and appends the places of the first crossings.
+/// Fills in the figures and defects of a plane, and appends the locations of the first crossings.
 void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, PlaneFacts& facts,
              std::vector<Point2>& places) {
     const auto look_for_crossings = [&](const Layer& layer) {
@@ -64,14 +64,14 @@ void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, Pla
             places.push_back(crossing.at);
     };
     std::optional<Point2> beam;
-    std::vector<Layer> bounding; // material: what is wrong with it is wrong with all parts together
+    std::vector<Layer> bounding; // layers that bound material: the parts are checked together
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const Layer& layer = layers[i];
         facts.hatches += layer.hatches.size() / 2;
         if (parts[i].exposure) {
             look_for_crossings(layer);
-            // Vectors bound no material: their rings have no area, need not lie within one another, and a
-            // chain is open by intent.
+            // Vectors do not bound material: their rings have no area and need not be nested, and their
+            // chains are open by intent.
             facts.scan += measure_vectors(layer, parts[i].exposure->parameters, beam);
             facts.measure.contours += layer.contours();
             facts.measure.points += layer.points.size();
@@ -93,15 +93,15 @@ void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, Pla
         static_cast<std::uint64_t>(std::count(nested.kind.begin(), nested.kind.end(), RingKind::overlapping));
 }
 
-/// Layers that lose detail step by step, no contour moving by more than `tolerance_mm` in all. What remains
-/// stays in its order: that of scan vectors is told.
+/// Layers that lose detail step by step. No contour moves by more than `tolerance_mm` in total. Remaining
+/// contours keep their order, since the page shows the order of scan vectors.
 class Thinning {
   public:
     Thinning(std::span<const Layer> parts, double step_mm)
         : layers_(parts.begin(), parts.end()), step_mm_(step_mm) {}
 
-    /// Drops hatches; then to a tolerance of one step, and to four times the last one, at which curves keep
-    /// half of their points. Drops specks as soon as the tolerance can be seen.
+    /// Drops hatches first. Later calls simplify to a tolerance of one step, then to four times the previous
+    /// one, at which curves keep half of their points. Drops specks as soon as the tolerance is visible.
     void coarsen() {
         if (drop_hatches())
             return;
@@ -118,7 +118,7 @@ class Thinning {
     [[nodiscard]] double tolerance_mm() const noexcept { return tolerance_mm_; }
 
   private:
-    /// Whether there were any.
+    /// Drops the hatches; returns whether there were any.
     bool drop_hatches() {
         bool any = false;
         for (Layer& layer : layers_) {
@@ -136,7 +136,7 @@ class Thinning {
     double tolerance_mm_ = 0;
 };
 
-/// What a page spends on a layer.
+/// Size of a layer on the page.
 struct Cost {
     std::uint64_t bytes = 0;
     std::uint64_t points = 0;
@@ -150,13 +150,13 @@ Cost cost_of(const Picture& picture) {
     return {base64_size(picture.bytes.size()), picture.shown};
 }
 
-constexpr std::uint64_t most_shares = 4; // of those that are thinned out, for one layer
+constexpr std::uint64_t most_shares = 4; // largest multiple of a thinned layer's budget
 
-/// Hands out the bytes of a page: an equal share for each layer, and from what layers below have left of
-/// theirs so much more that it makes four shares at most.
+/// Distributes the bytes of a page: an equal share for each layer, plus bytes that the layers below did not
+/// use, up to four shares in total.
 ///
-/// Of scan vectors a layer may have all that is left, but only as a whole; else it takes a quarter of its
-/// share, and those above it may have the rest. For all vectors of every tenth layer tell more than all
+/// A layer of scan vectors may use all unused bytes, but only if it is kept whole; else it gets a quarter of
+/// its share, and layers above may use the rest. All vectors of every tenth layer are more useful than all
 /// layers without their hatches.
 class Budget {
   public:
@@ -166,10 +166,10 @@ class Budget {
                                                                                       options.layer_points},
           vectors_(vectors) {}
 
-    /// What a layer that is thinned out shall cost.
+    /// Returns the budget of a layer that is thinned out.
     [[nodiscard]] const Cost& thinned() const noexcept { return thinned_; }
 
-    /// Of the pictures of the next layer, the finest first, the first that it can pay for; else the last.
+    /// Returns the first version of the next layer that is within the budget, finest first; else the last.
     const Picture& choose(const std::vector<Picture>& pictures) {
         const std::uint64_t left = saved_bytes_ + bytes_;
         const Cost most{vectors_ ? left : std::min(left, most_shares * bytes_), thinned_.points};
@@ -183,14 +183,14 @@ class Budget {
     }
 
   private:
-    std::uint64_t bytes_; ///< the share of a layer
+    std::uint64_t bytes_; ///< equal share of each layer
     Cost thinned_;
     bool vectors_;
     std::uint64_t saved_bytes_ = 0;
 };
 
-/// The same plane, all of it first, each with less detail than the one before, until one costs no more than
-/// `thinned`, or little is gained and it costs no more than four times as much.
+/// Returns versions of a plane: the whole plane, then versions with less detail each, until one costs at most
+/// `thinned`, or little is gained and it costs at most four times as much.
 std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const PartInfo> infos,
                                  std::span<const Point2> places, const PageGrid& grid, const Cost& thinned) {
     const auto picture = [&](std::span<const Layer> layers, double tolerance) {
@@ -212,7 +212,7 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
     for (Cost cost = cost_of(pictures.back());
          !cost.within(thinned) && !thinning.at_end() && !shows_nothing(pictures.back());) {
         if (!saves && cost.within(most))
-            break; // what is left is many small rings: better a larger page than a crude one
+            break; // many small rings remain: a larger page is better than a crude one
         thinning.coarsen();
         pictures.push_back(picture(thinning.layers(), thinning.tolerance_mm()));
         const Cost next = cost_of(pictures.back());
@@ -222,10 +222,10 @@ std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const P
     return pictures;
 }
 
-/// Columns of numbers about the planes, as JSON grows row by row.
+/// Columns of numbers about the planes, as JSON that grows row by row.
 class PlaneTable {
   public:
-    /// `vectors`: whether there are columns about scan vectors.
+    /// `vectors` adds the columns about scan vectors.
     explicit PlaneTable(bool vectors) : shown_(vectors ? columns.size() : columns.size() - columns_of_scan) {}
 
     void add(const PlaneFacts& facts, const Picture& picture) {
@@ -248,7 +248,8 @@ class PlaneTable {
         planes_.push_back({facts.place.index, facts.measure.area_mm2});
     }
 
-    /// `changes`: what steps did to the planes; without any, there are no columns about it.
+    /// Returns the table as JSON. `changes` are those that layer steps made to the planes; if there are none,
+    /// the columns about them are left out.
     [[nodiscard]] std::string json(const std::vector<PageChange>& changes) const {
         std::string text;
         for (std::size_t i = 0; i < shown_; ++i)
@@ -275,7 +276,7 @@ class PlaneTable {
         for (const Plane& plane : planes_) {
             const LayerChanges& change = by_index[plane.index];
             append(dropped, std::to_string(change.rings_dropped));
-            // Of the parts that were changed alone, so the others are in neither number.
+            // The figures cover changed parts only; unchanged parts cancel in the difference.
             append(before, page_number(plane.area_mm2 - change.area_after_mm2 + change.area_before_mm2));
         }
         return column("rings_dropped", dropped) + "," + column("area_before_mm2", before);

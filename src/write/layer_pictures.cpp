@@ -15,7 +15,7 @@ namespace lamella {
 
 namespace {
 
-/// Whether the outer contour of a hole may be among those that are open.
+/// Returns whether the outer contour of a hole may be among the open chains.
 bool may_have_lone_holes(const Layer& layer) {
     if (layer.open_chains() == 0)
         return false;
@@ -30,14 +30,14 @@ bool may_have_lone_holes(const Layer& layer) {
     return false;
 }
 
-/// Alone, a hole would be drawn as a body.
+/// Removes holes without an outer ring, which would be drawn as solid.
 Layer without_lone_holes(const Layer& layer) {
     return may_have_lone_holes(layer) ? fill(layer, FillRule::positive).layer : layer;
 }
 
 } // namespace
 
-// Options that make no picture show before the first layer does.
+// Draws an empty image so that impossible options are reported before the first layer.
 LayerPictures::LayerPictures(const PixelGrid& grid, const RasterOptions& options)
     : grid_(grid), options_(options) {
     static_cast<void>(picture({}));
@@ -47,8 +47,8 @@ LayerPicture LayerPictures::picture(std::span<const Layer> all) const {
     std::vector<Layer> parts(all.size());
     std::transform(all.begin(), all.end(), parts.begin(), without_lone_holes);
     RasterOptions options = options_;
-    // To look takes less than drawing, and contours finer than pixels are drawn in a fraction of the time
-    // then.
+    // This check takes less time than drawing, and contours finer than pixels are then drawn in a fraction of
+    // the time.
     options.winds_once = options.antialias > 1 && winds_once(parts);
     PngEncoder encoder(grid_.width, grid_.height);
     const double covered =

@@ -23,12 +23,12 @@ struct LayerPicture {
     [[nodiscard]] ZipPiece in_zip() const { return {file->view(), file->view().size(), crc}; }
 };
 
-/// Makes pictures of one kind. For any number of threads.
+/// Makes images with the same grid and options, for any number of threads.
 class LayerPictures {
   public:
     LayerPictures(const PixelGrid& grid, const RasterOptions& options);
 
-    /// All parts in one picture.
+    /// Draws all parts into one image.
     [[nodiscard]] LayerPicture picture(std::span<const Layer> all) const;
 
     [[nodiscard]] const PixelGrid& grid() const noexcept { return grid_; }

@@ -167,7 +167,7 @@ constexpr std::array formats{
                 .exposure = true},
 };
 
-/// "json, npz and svg": those that keep where layers were cut, and can be read.
+/// Returns "json, npz and svg": the formats that keep the heights of cuts and can be read.
 std::string names_of_exact() {
     std::vector<std::string_view> texts;
     for (const LayerFormat& format : formats)
@@ -195,7 +195,7 @@ void check_info(const LayerFileInfo& info) {
                     "a slice file needs the box of its part, and that is empty or not finite");
 }
 
-/// Counts layers that were not cut half-way up.
+/// Counts layers that were not cut at mid-height.
 class MovedCuts {
   public:
     void note(const PlanePlace& layer) {
@@ -209,7 +209,7 @@ class MovedCuts {
         bottoms_ += is_at(layer.bottom) ? 1 : 0;
         tops_ += is_at(layer.top) ? 1 : 0;
     }
-    /// A warning, where there are any: of a format that has no place for them.
+    /// Returns a warning if there are any, for a format that cannot keep them.
     [[nodiscard]] std::vector<std::string> warnings() const {
         if (all_ == 0)
             return {};
@@ -230,8 +230,9 @@ class MovedCuts {
     double lowest_ = 0;
 };
 
-/// Another writer, held to LayerWriteOptions::most_bytes and `strict`: throws after the layer that was too
-/// much, and instead of ending a file that there are warnings of. Warns of what the table says of the format.
+/// Enforces LayerWriteOptions::most_bytes and `strict` on another writer: throws after the layer that exceeds
+/// the limit, and instead of ending a file with warnings. Adds the warnings that follow from the table of
+/// formats.
 class HeldWriter final : public LayerWriter {
   public:
     HeldWriter(std::unique_ptr<LayerWriter> writer, std::string path, const LayerFormat& format,
@@ -353,7 +354,8 @@ void write_planes(LayerWriter& writer, std::size_t planes,
     executor.for_chunks(planes, 1, [&](std::uint64_t plane, std::uint64_t, unsigned) {
         const std::function<void()> write = writer.prepare(parts_of(plane));
         std::unique_lock lock(mutex);
-        // Planes are handed out in ascending order, so somebody is at work on the next one, or has failed.
+        // Planes are handed out in ascending order, so another thread is at work on the next one, or has
+        // failed.
         while (next != plane) {
             if (executor.stopping())
                 return;

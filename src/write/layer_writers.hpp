@@ -1,6 +1,6 @@
 #pragma once
 
-// The formats of slice files, each in a source of its name; docs/formats.md tells what they hold.
+// The formats of slice files, each in a source of its name. docs/formats.md describes their content.
 
 #include "lamella/write/layer_writer.hpp"
 
@@ -20,21 +20,21 @@ OpenLayerWriter open_common_layer_binary;
 OpenLayerWriter open_dxf;
 /// GeoJSON (RFC 7946), in millimetres.
 OpenLayerWriter open_geojson;
-/// ILT: Common Layer Interface files in a zip archive, with the parameters of each. There is no published
-/// description; files of several programs agree in what docs/formats.md tells.
+/// ILT: Common Layer Interface files in a zip archive, with the parameters of each. No description is
+/// published; files of several programs agree in the content that docs/formats.md describes.
 OpenLayerWriter open_ilt;
 /// SVG: one file with all layers, as Slic3r writes it.
 OpenLayerWriter open_layered_svg;
 /// A folder with `layer_00000.svg` and so on, numbered by Layer::index.
 OpenLayerWriter open_svg_layers;
-/// Everything that layers have, as JSON.
+/// All data of layers, as JSON.
 OpenLayerWriter open_layers_json;
 /// NumPy arrays in a zip archive, as numpy.load reads them.
 OpenLayerWriter open_npz;
-/// Open Vector Format, of Digital Production Aachen: messages of Protocol Buffers, with tables of where they
-/// lie.
+/// Open Vector Format, of Digital Production Aachen: messages of Protocol Buffers, with tables of their
+/// offsets.
 OpenLayerWriter open_ovf;
-/// A folder with a PNG picture for each layer, `00000.png` and so on, numbered by Layer::index, and
+/// A folder with a PNG image for each layer, `00000.png` and so on, numbered by Layer::index, and
 /// `manifest.json`.
 OpenLayerWriter open_picture_folder;
 /// The same in a zip archive.
@@ -49,7 +49,7 @@ OpenLayerWriter open_slices_3mf;
 /// 3MF with toolpaths (3MF Toolpath Extension 1.0, a release candidate).
 OpenLayerWriter open_toolpath_3mf;
 
-/// Throws Error{limit} where a file takes more than LayerWriteOptions::most_bytes.
+/// Throws Error{limit} if a file takes more than LayerWriteOptions::most_bytes.
 void check_bytes(const std::string& path, std::uint64_t bytes, std::uint64_t most);
 
 } // namespace lamella

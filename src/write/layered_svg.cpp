@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t per_number = most_integer_digits + 6;
 
-// The grid point at or below a coordinate; relative coordinates are then on the same grid as absolute ones.
+// Returns the grid point at or below a coordinate; relative coordinates are then on the same grid as absolute
+// ones.
 std::int64_t steps_below(double mm) {
     constexpr double most = 1e15;
     return static_cast<std::int64_t>(std::clamp(std::floor(mm / text_step_mm + 1e-6), -most, most));
@@ -32,7 +33,7 @@ GridPoint steps_below(const Point3& p) {
     return {steps_below(p.x), steps_below(p.y)};
 }
 
-// "1,2 3.5,4 " with a blank after each point but the last; less `origin`.
+// Writes "1,2 3.5,4 ", relative to `origin`, with a space after each point but the last.
 void put_points(std::span<const GridPoint> points, const GridPoint& origin, ByteBuffer& out) {
     char* at = out.room(points.size() * 2 * per_number);
     for (const GridPoint& p : points) {
@@ -49,15 +50,13 @@ std::string height_text(double mm) {
     return decimal_text(mm, 9, 4);
 }
 
-/// Rings by how they are listed in a file, with their signed areas: computed once, used for order, direction
-/// and rounding.
+/// Ring of a layer with its signed area: computed once, used for order, direction and rounding.
 struct MeasuredRing {
     std::size_t contour;
     double area;
 };
 
-// Without `:has`, which older browsers do not know, the first layer stays below the one that the address
-// names.
+// In older browsers without `:has`, the first layer stays visible below the one that the address names.
 constexpr std::string_view screen_style =
     "  <style>@media screen {\n"
     "    svg { background: #808080 }\n"
@@ -82,8 +81,8 @@ class LayeredSvgWriter final : public SequentialWriter {
     }
 
   private:
-    // Importers, which know Slic3r's files, take coordinates as millimetres, and pass over title and style.
-    // Browsers take the style: they show one layer, which the address can name, with y upwards.
+    // Importers that know Slic3r's files take coordinates as millimetres and ignore title and style. Browsers
+    // apply the style: they show one layer, which the address can name, with y upwards.
     static std::string head(const LayerFileInfo& info) {
         const Box3& box = info.box;
         const auto mm = [](std::int64_t steps) {
@@ -127,8 +126,8 @@ class LayeredSvgWriter final : public SequentialWriter {
     }
 
     void format_part(const Layer& layer, bool exposed, ByteBuffer& out) const {
-        // Painted one after the other, each ring must come after those around it, which are larger. What a
-        // beam follows is in its order.
+        // Rings are painted one after the other, so each must come after the larger ones around it. Contours
+        // of scan vectors keep their order.
         std::vector<MeasuredRing> rings;
         for (std::size_t i = 0; i < layer.rings; ++i)
             rings.push_back({i, ring_area(layer.contour(i))});
@@ -151,7 +150,7 @@ class LayeredSvgWriter final : public SequentialWriter {
                             : R"(" style="fill: white" />)"
                               "\n");
         }
-        // Kept, but not painted: a projector would cure them.
+        // Open chains are kept but not painted: a projector would cure them.
         for (std::size_t i = layer.rings; i < layer.contours(); ++i) {
             const auto points = grid_.snap(layer.contour(i), false, 0, layer.index, scratch);
             if (points.empty())
@@ -165,13 +164,13 @@ class LayeredSvgWriter final : public SequentialWriter {
     std::string tail() override { return "</svg>\n"; }
 
     GridPoint origin_;
-    std::vector<bool> exposed_; ///< parts of scan vectors
-    /// Empty for a single part that nobody gave a name: then it needs no group of its own.
+    std::vector<bool> exposed_; ///< true for parts of scan vectors
+    /// Empty for a single part without a label of its own: then it needs no group.
     std::vector<std::string> part_heads_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
 };
 
-// How each picture begins, and how a folder of pictures is known again that may be replaced.
+// First bytes of each image. They identify a folder of images that may be replaced.
 constexpr std::string_view picture_mark =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- A layer cut by Lamella -->\n";
 
@@ -200,7 +199,7 @@ class SvgLayersWriter final : public OrderedWriter {
 
     void end_file() override { directory_.commit(); }
 
-    // Millimetres, with y upwards and a margin around the part, so that all pictures have the same frame.
+    // Millimetres, with y upwards and a margin around the part, so that all images have the same frame.
     static std::string head(const LayerFileInfo& info) {
         const Box3& box = info.box;
         const double margin = 0.03 * std::max(box.max.x - box.min.x, box.max.y - box.min.y) + 0.1;

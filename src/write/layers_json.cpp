@@ -9,7 +9,7 @@ namespace lamella {
 
 namespace {
 
-// "[1,2,3.5,4]": x and y in turn.
+// Writes "[1,2,3.5,4]": x and y in turn.
 void put_numbers(std::span<const Point2> points, ByteBuffer& out) {
     char* at = out.room(points.size() * 2 * (most_double_digits + 1) + 2);
     *at++ = '[';

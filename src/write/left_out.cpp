@@ -11,10 +11,10 @@ namespace lamella {
 
 namespace {
 
-constexpr std::size_t longest_label = 60; ///< of those that warnings name
+constexpr std::size_t longest_label = 60; ///< of labels in warnings
 
-/// Whether a number that somebody chose is lost. What is as by default, a machine has settings of its own
-/// for.
+/// Returns whether a number that the user chose is lost. For default values a machine has settings of its
+/// own.
 bool loses_a_choice(const ParameterSet& set, const ParameterSet& kept) noexcept {
     const ParameterSet preset;
     const auto is_lost = [&](double ParameterSet::*member) {

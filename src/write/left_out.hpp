@@ -1,6 +1,6 @@
 #pragma once
 
-// What a format cannot hold is said, not lost in silence.
+// Warnings of content that a format cannot hold.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -15,63 +15,63 @@
 
 namespace lamella {
 
-/// What a format holds besides rings.
+/// Content that a format can hold besides rings.
 struct Holds {
     bool open_chains = true;
     bool hatches = false;
-    bool gaps = true;        ///< between layers: false where a layer is read as if it began on the one before
+    bool gaps = true;        ///< between layers: false if a layer is read as beginning on the one before
     bool parameters = false; ///< of scan vectors: power, speed; such a format expects them for each part
     bool labels = true;      ///< of parts
-    /// What a label becomes in the file; unless given, it stays as it is.
+    /// Returns the text of a label in the file; if null, the label is unchanged.
     std::string (*written_label)(std::string_view) = nullptr;
-    /// Which parts are supports. True of pictures, too, which do not tell parts apart. Scan vectors are of a
-    /// region that says it.
+    /// True if the format marks supports. Also true for images, which do not distinguish parts. For scan
+    /// vectors the region identifies supports.
     bool supports = false;
-    /// What it keeps of a set of parameters where that is not all, and what it does not keep, in words.
+    /// Returns those parameters of a set that the format keeps, if that is not all of them; `not_kept` lists
+    /// the others in words.
     ParameterSet (*kept)(ParameterSet) = nullptr;
     std::string_view not_kept = {};
 };
 
-/// How many of a kind there are, and where the lowest of them lie.
+/// Number of a kind, and height of the lowest one.
 struct Extras {
     std::uint64_t count = 0;
     double z = 0;
 };
 
-/// What some formats have no place for.
+/// Content of a plane that some formats cannot hold.
 struct PlaneExtras {
     Extras open_chains;
     Extras hatches;
-    Extras gaps; ///< one, where the plane's layer does not begin where the one before it ends
+    Extras gaps; ///< one if the plane's layer does not begin at the top of the one before it
 };
 
-/// All but gaps.
+/// Counts all kinds except gaps.
 [[nodiscard]] PlaneExtras extras_of(std::span<const Layer> parts);
 
-/// Counts what a file leaves out. Planes are noted in ascending z.
+/// Counts content that a file leaves out. Planes must be noted in ascending z.
 class LeftOut {
   public:
     LeftOut(Holds holds, std::span<const PartInfo> parts);
 
     void note(const PlaneExtras& plane);
-    /// For what rounds.
+    /// Returns the counter for writers that round.
     [[nodiscard]] RoundingLoss& rounding() noexcept { return rounding_; }
-    /// One line for each kind.
+    /// Returns one line for each kind.
     [[nodiscard]] std::vector<std::string> warnings() const;
 
   private:
     Holds holds_;
     std::uint64_t known_ = 0;         ///< parts with parameters of scan vectors
-    std::uint64_t unknown_ = 0;       ///< and without
-    std::uint64_t supports_ = 0;      ///< parts that are, and do not say so otherwise
-    std::uint64_t labelled_ = 0;      ///< parts whose labels are not the usual one
+    std::uint64_t unknown_ = 0;       ///< parts without parameters of scan vectors
+    std::uint64_t supports_ = 0;      ///< support parts that are not marked otherwise
+    std::uint64_t labelled_ = 0;      ///< parts whose labels differ from the default
     std::string first_labelled_;      ///< of those
-    std::uint64_t changed_parts_ = 0; ///< those of whose parameters a number is lost that
-                                      ///< is not as by default
+    std::uint64_t changed_parts_ = 0; ///< parts that lose a parameter that differs from its default
     PlaneExtras noted_;               ///< of all planes
     RoundingLoss rounding_;
     std::uint64_t changed_labels_ = 0;
-    std::string first_label_; ///< of those, and
+    std::string first_label_; ///< first changed label, and its text in the file
     std::string first_written_;
 };
 

@@ -25,10 +25,10 @@ namespace {
 
 constexpr unsigned finest = 16; // halvings of the longest edge
 
-/// The cube that a point lies in, in cubes from the corner of the box.
+/// Grid cell of a point, counted from the corner of the box.
 using Cell = std::array<std::uint32_t, 3>;
 
-/// Cubes of 2^-halvings of the longest edge of a box.
+/// Cubic grid whose cell edge is 2^-halvings of the longest edge of a box.
 class Cubes {
   public:
     Cubes(const Box3& box, unsigned halvings) : corner_(box.min) {
@@ -52,7 +52,7 @@ class Cubes {
     std::uint32_t last_;
 };
 
-/// The mesh on the cubes: vertices in the order in which the triangles meet them.
+/// The mesh snapped to the grid: vertices in the order of their first use by triangles.
 struct CoarseMesh {
     std::vector<Cell> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -94,8 +94,8 @@ CoarseMesh coarse(const IndexedMesh& mesh, const std::vector<Cell>& cells, const
     return result;
 }
 
-/// The vertices and then, for each triangle, its shell and its corners; all as the difference from the one
-/// before.
+/// Returns the vertices and then, for each triangle, its shell and its corners, all as differences from the
+/// one before.
 NumberBytes mesh_numbers(const CoarseMesh& mesh) {
     NumberBytes out;
     const auto way = [&](std::uint32_t from, std::uint32_t to) {
@@ -142,7 +142,7 @@ void write_mesh_page(const std::string& path, const IndexedMesh& mesh, const Dia
     };
     while (shown() > page_triangles) {
         executor.check_cancelled();
-        // Cubes of the next size are made of eight of these.
+        // Each cell of the next grid consists of eight of these.
         --halvings;
         for (Cell& cell : cells)
             for (std::uint32_t& along : cell)

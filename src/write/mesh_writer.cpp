@@ -51,7 +51,7 @@ Triangle3f rounded(const Triangle3& triangle, std::uint64_t number, const std::s
     return corners;
 }
 
-// The unit normal of the corners as they are stored; zero for a triangle without area.
+// Returns the unit normal of the corners as they are stored; zero for a triangle without area.
 Point3f unit_normal(const Triangle3f& t) {
     const auto corner = [&](int i) {
         return Point3{t[i].x, t[i].y, t[i].z};
@@ -64,7 +64,8 @@ Point3f unit_normal(const Triangle3f& t) {
             static_cast<float>(n.z / length) + 0.0F};
 }
 
-/// Of triangle i; errors count from the first triangle of the file, `before` this soup.
+/// Returns facet i. Errors count from the first triangle of the file; `before` is the number of triangles
+/// before this soup.
 Facet facet(const TriangleSoup& soup, std::size_t i, std::uint64_t before, const std::string& path) {
     Facet f;
     f.corners = soup.has_placement() ? rounded(soup.placed(i), before + i, path) : soup.stored(i);
@@ -86,8 +87,7 @@ bool fits_single_precision(const IndexedMesh& mesh) {
                        [&](const Point3& p) { return fits(p.x) && fits(p.y) && fits(p.z); });
 }
 
-/// Appends items in blocks; `put_item(at, i)` writes one of at most `longest` bytes and returns where it
-/// ends.
+/// Appends items in chunks. `put_item(at, i)` writes one of at most `longest` bytes and returns its end.
 template <class Put>
 void append_blocks(AtomicFile& file, std::size_t count, std::size_t longest, Put put_item) {
     ByteBuffer block;
@@ -102,7 +102,7 @@ void append_blocks(AtomicFile& file, std::size_t count, std::size_t longest, Put
     }
 }
 
-/// The rest of a line: a blank before each number, the shortest text that reads back to it.
+/// Writes the rest of a line: each number after a space, as the shortest text that reads back to it.
 template <class Number>
 char* put_rest_of_line(char* out, const std::array<Number, 3>& numbers) {
     constexpr std::size_t longest_number = 24;
@@ -135,7 +135,7 @@ StlWriter::StlWriter(const std::string& path, std::uint64_t triangles) : announc
             fmt::format("{} triangles are more than a binary STL file can count (2^32 - 1)", triangles));
     file_ = std::make_unique<AtomicFile>(path);
     std::array<char, 84> head{};
-    // It must not begin with "solid": readers take such a file for ASCII.
+    // The text must not begin with "solid": readers take such a file for ASCII STL.
     put_text(head.data(), "Binary STL written by Lamella, millimetres");
     const auto count = static_cast<std::uint32_t>(triangles);
     std::memcpy(head.data() + 80, &count, sizeof count);
@@ -235,14 +235,14 @@ void write_ply(const std::string& path, const IndexedMesh& mesh) {
 void write_obj(const std::string& path, const IndexedMesh& mesh, const std::string& name) {
     AtomicFile file(path);
     std::string line = one_line(name);
-    std::replace(line.begin(), line.end(), '\\', '/'); // at its end it would go on to the next line
+    std::replace(line.begin(), line.end(), '\\', '/'); // a backslash at the end would continue the line
     file.append(fmt::format("# written by Lamella, millimetres\no {}\n", line));
     constexpr std::size_t longest_line = 80;
     append_blocks(file, mesh.vertices.size(), longest_line, [&](char* at, std::size_t i) {
         return put_rest_of_line(put_text(at, "v"), coordinates(mesh.vertices[i]));
     });
     append_blocks(file, mesh.triangles.size(), longest_line, [&](char* at, std::size_t i) {
-        const auto& [a, b, c] = mesh.triangles[i]; // which count from 1 here
+        const auto& [a, b, c] = mesh.triangles[i]; // indices count from 1 in this format
         return put_rest_of_line(put_text(at, "f"), std::array{a + 1ULL, b + 1ULL, c + 1ULL});
     });
     file.commit();

@@ -1,6 +1,6 @@
-// The points of all layers are one array and go to the file as they come; hatch lines are another one and
-// wait in a store; what they are the points of is small and kept until the end. An array begins with its
-// shape, so the first bytes of the points are written last.
+// The points of all layers are one array and are written to the file as they arrive. Hatch lines are another
+// array and wait in a store. The tables of contours are small and kept until the end. An array begins with
+// its shape, so the first bytes of the points are written last.
 
 #include "container/byte_store.hpp"
 #include "container/inflate.hpp"
@@ -23,8 +23,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as memory has them");
 
-// The head of an array: magic, version 1.0, the length of what follows, and a Python dictionary. All of it as
-// long as NumPy makes it, so that the numbers begin at a multiple of 64.
+// Returns the header of an array: magic, version 1.0, the length of the rest, and a Python dictionary. Its
+// length is that of NumPy's headers, so that the numbers begin at a multiple of 64.
 std::string npy_head(std::string_view type, const std::string& shape, std::size_t size) {
     std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
     constexpr std::size_t before = 10;
@@ -43,7 +43,7 @@ std::string_view bytes_in(std::span<const T> values) {
     return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
 }
 
-/// UTF-8, well-formed, as the fixed-width characters of NumPy's strings.
+/// Converts well-formed UTF-8 to the fixed-width characters of NumPy's strings.
 std::u32string characters(std::string_view text) {
     std::u32string result;
     for (std::size_t i = 0; i < text.size();) {
@@ -58,11 +58,11 @@ std::u32string characters(std::string_view text) {
     return result;
 }
 
-/// In the tables: end, layer, part, and whether it is closed.
+/// Size in the tables: end, layer, part, and whether it is closed.
 constexpr std::uint64_t bytes_of_contour = 3 * sizeof(std::int64_t) + 1;
 /// Two points.
 constexpr std::uint64_t bytes_of_line = 4 * sizeof(double);
-/// With layer and part.
+/// A line with its layer and part.
 constexpr std::uint64_t bytes_of_hatch = bytes_of_line + 2 * sizeof(std::int64_t);
 
 class NpzWriter final : public OrderedWriter {
@@ -115,7 +115,7 @@ class NpzWriter final : public OrderedWriter {
         zip_.finish();
     }
 
-    /// What one part has on one plane.
+    /// Counts of one part on one plane.
     struct PartPlane {
         std::uint64_t contours;
         std::uint64_t rings;
@@ -127,7 +127,7 @@ class NpzWriter final : public OrderedWriter {
         bool closed;
     };
 
-    /// An array of a known size, written some thousand elements at a time.
+    /// An array of a known size, written in chunks of some thousand elements.
     class Array {
       public:
         Array(ZipWriter& zip, std::string_view name, std::string_view type, const std::string& shape)
@@ -204,7 +204,7 @@ class NpzWriter final : public OrderedWriter {
         array.end();
     }
 
-    // Only where there are any.
+    // Writes the arrays of hatches if there are any.
     void add_hatches() {
         const std::uint64_t lines = hatches_.size() / bytes_of_line;
         if (lines == 0)
@@ -243,11 +243,11 @@ class NpzWriter final : public OrderedWriter {
     PlaneRule rule_;
     ZipWriter zip_;
     std::vector<PlanePlace> planes_;
-    std::vector<PartPlane> counts_; ///< of all parts of the first plane, then of the second ...
+    std::vector<PartPlane> counts_; ///< all parts of the first plane, then of the second ...
     ByteStore hatches_;
     std::vector<std::int64_t> offsets_{0};
     std::int64_t points_ = 0;
-    std::uint64_t waiting_ = 0; ///< bytes that contours and hatches take at the end
+    std::uint64_t waiting_ = 0; ///< bytes that contours and hatches will add at the end
 };
 
 } // namespace

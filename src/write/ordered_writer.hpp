@@ -1,6 +1,6 @@
 #pragma once
 
-// What the writers of all formats check and count while planes pass by.
+// Checks and counts that the writers of all formats share.
 
 #include "lamella/write/layer_writer.hpp"
 
@@ -18,7 +18,7 @@
 
 namespace lamella {
 
-/// Where a plane lies; its position is known when it is written.
+/// Heights and index of a plane, and its position in the file, which is known when it is written.
 struct PlanePlace {
     std::uint64_t position = 0; ///< 0 for the first of the file
     std::uint64_t index = 0;
@@ -27,44 +27,44 @@ struct PlanePlace {
     double top = 0;
 };
 
-/// Of what the layers of a plane have in common.
+/// Returns the values that the layers of a plane have in common.
 [[nodiscard]] PlanePlace plane_place(std::span<const Layer> parts);
 
-/// Throws Error{usage} that names the first layer of a part which has not the heights of the first part's, by
+/// Throws Error{usage} for the first layer of a part whose heights differ from those of the first part, by
 /// which a plane is written.
 void check_same_planes(std::span<const LayerStack> parts, const LayerFileInfo& info);
 
-/// What must ascend from plane to plane.
+/// Values that must ascend from plane to plane.
 enum class Ascending {
     z,
-    z_and_index, ///< files are called after the indices of layers
+    z_and_index, ///< files are named after the indices of layers
 };
 
-/// The order of planes, checked as they are written: ascending, and as many planes and parts as were
-/// announced.
+/// Checks the order of planes as they are written: they must ascend, and the numbers of planes and parts must
+/// be those announced.
 class PlaneOrder {
   public:
     explicit PlaneOrder(const LayerFileInfo& info, Ascending ascending = Ascending::z);
 
-    /// Throws Error{usage} when there is not one layer for each part, one has a length that is not finite, or
-    /// half a hatch line.
+    /// Throws Error{usage} if there is not one layer for each part, if a length is not finite, or if an end
+    /// of a hatch line is missing.
     void check_parts(std::span<const Layer> parts) const;
-    /// Tells the plane its position. Throws Error{usage} when it does not follow the one before.
+    /// Sets the position of the plane. Throws Error{usage} if it does not follow the one before.
     void next(PlanePlace& plane);
-    /// Throws Error{usage} when there were more or fewer planes than announced.
+    /// Throws Error{usage} if there were more or fewer planes than announced.
     void end() const;
-    /// Whether a plane's layer begins where that of the last one ends. Of a piece of a file
-    /// this is for the writer of all pieces.
+    /// Returns whether a plane's layer begins at the top of the last one. For a range of a file the writer of
+    /// the whole file checks this.
     [[nodiscard]] bool adjoins(const PlanePlace& plane) const noexcept {
         return is_piece_ || count_ == 0 || std::abs(plane.bottom - last_.top) <= same_height_mm;
     }
-    /// Planes so far.
+    /// Returns the number of planes so far.
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
   private:
     bool is_piece_;
     bool known_finite_;
-    std::uint64_t before_; ///< planes of the file that other pieces of it have
+    std::uint64_t before_; ///< number of planes of the file below this range
     std::uint64_t announced_;
     std::size_t parts_;
     Ascending ascending_;
@@ -72,7 +72,7 @@ class PlaneOrder {
     PlanePlace last_;
 };
 
-/// A writer that knows the order of its planes, and what it leaves out.
+/// Base of writers that check the order of planes and report what they leave out.
 class OrderedWriter : public LayerWriter {
   public:
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) final;
@@ -80,25 +80,25 @@ class OrderedWriter : public LayerWriter {
     [[nodiscard]] std::vector<std::string> warnings() const override { return left_out_.warnings(); }
 
   protected:
-    /// What writes a plane that was formatted; called in order.
+    /// Writes a formatted plane; called in order.
     using Write = std::function<void(const PlanePlace& place)>;
 
     OrderedWriter(const LayerFileInfo& info, Holds holds, Ascending ascending = Ascending::z)
         : order_(info, ascending),
           left_out_(holds, tells_of_parts(info) ? std::span(info.parts) : std::span<const PartInfo>()) {}
 
-    /// Called from any threads.
+    /// Formats a plane. Called from any threads.
     [[nodiscard]] virtual Write formatted(std::span<const Layer> parts) = 0;
     /// Ends the file and gives it its name. Called once, after the last plane.
     virtual void end_file() = 0;
 
-    /// For the members that round.
+    /// Returns the counter of losses by rounding.
     [[nodiscard]] RoundingLoss& rounding_loss() noexcept { return left_out_.rounding(); }
-    /// For what is formatted.
+    /// Returns a buffer for formatted text.
     [[nodiscard]] std::shared_ptr<ByteBuffer> buffer() { return buffers_->take(); }
 
   private:
-    /// Whether this writer warns about parts: of several pieces of a file only the first one does.
+    /// Returns whether this writer warns about parts: among several ranges of a file only the first one does.
     static bool tells_of_parts(const LayerFileInfo& info) noexcept {
         return info.piece == nullptr || info.piece->before == 0;
     }

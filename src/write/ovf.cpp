@@ -1,6 +1,6 @@
-// The file is a work plane after the other, each with a table of where its vectors lie, then the job, which
-// has what all of them share, and a table of where work planes lie. The file's first bytes tell where that
-// is; they are written last.
+// The file consists of the work planes, each with a table of the offsets of its vectors, then the job, which
+// holds the shared data, and a table of the offsets of the work planes. The first bytes of the file are the
+// offset of the job; they are written last.
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
@@ -30,8 +30,8 @@ namespace {
 
 constexpr std::size_t position_size = sizeof(std::int64_t);
 
-/// The name of the parameters: contours further inwards have their number in it, for which there is no other
-/// place.
+/// Returns the name of the parameters. For inner contours it includes their number, which the format cannot
+/// hold elsewhere.
 std::string name_of_parameters(const Exposure& exposure) {
     return exposure.contour > 1 ? fmt::format("{} {}", exposure.parameters.name, exposure.contour)
                                 : exposure.parameters.name;
@@ -72,8 +72,8 @@ ProtobufMessage lpbf_meta_data(const Exposure& exposure) {
     return message;
 }
 
-/// What stands behind the vectors in each block of a part of the file. Keys of the job count from 1; 0 is
-/// none.
+/// Returns the bytes after the vectors in each block of a part of the file. Keys of the job count from 1; 0
+/// is none.
 std::vector<std::string> ends_of_blocks(const ExposureKeys& keys) {
     std::vector<std::string> ends;
     for (const auto& [part, exposure] : keys.keys) {
@@ -90,7 +90,7 @@ std::vector<std::string> ends_of_blocks(const ExposureKeys& keys) {
     return ends;
 }
 
-/// Parameters and parts of the job.
+/// Writes parameters and parts of the job.
 void put_keys(const ExposureKeys& keys, double layer_thickness, ProtobufMessage& job) {
     std::int64_t key = 1;
     for (const Exposure& exposure : keys.exposures)
@@ -106,19 +106,19 @@ void put_keys(const ExposureKeys& keys, double layer_thickness, ProtobufMessage&
     }
 }
 
-/// The vectors of a plane, and where each block of them begins.
+/// The vectors of a plane, and the offset of each block of them.
 struct Blocks {
     std::shared_ptr<ByteBuffer> bytes;
     std::vector<std::uint64_t> begins;
 };
 
-/// Blocks of vectors with their lengths in front.
+/// Writes blocks of vectors, each preceded by its length.
 class BlockWriter {
   public:
     BlockWriter(const FloatContours& floats, std::uint64_t layer, Blocks& blocks)
         : floats_(floats), layer_(layer), blocks_(blocks) {}
 
-    /// A ring ends with its first point once more.
+    /// Writes a contour; a ring repeats its first point at the end.
     void put_contour(std::span<const Point2> contour, bool closed, std::string_view of_block) {
         const std::size_t expected = contour.size() + (closed ? 1 : 0);
         char* const begin = room(expected, of_block);
@@ -145,8 +145,8 @@ class BlockWriter {
     }
 
   private:
-    /// More than three points of which the last is the first are a ring for those who read them: the ends of
-    /// a chain are kept apart by one unit in the last place.
+    /// Readers take more than three points whose last equals the first for a ring: the ends of such a chain
+    /// are separated by one unit in the last place.
     static void keep_open(char* points, std::size_t count) {
         char* const last = points + (count - 1) * float_point_size;
         if (count <= 3 || std::memcmp(points, last, float_point_size) != 0)
@@ -162,7 +162,7 @@ class BlockWriter {
         return blocks_.bytes->room(most_head + (points + 1) * float_point_size + of_block.size());
     }
 
-    /// What stands in front of the points: the lengths of the block, of its vectors and of their list.
+    /// Writes the header of the points: the lengths of the block, of its vectors and of their list.
     static char* put_head(char* out, std::uint32_t kind, std::size_t points, std::string_view of_block) {
         constexpr auto bytes = ProtobufType::bytes;
         char text[most_varint];
@@ -178,7 +178,7 @@ class BlockWriter {
         return put_varint(put_varint(out, protobuf_tag(ovf::block::points, bytes)), list);
     }
 
-    /// For fewer points than the head that is there says: these move to where the new one ends.
+    /// Rewrites the header for fewer points than announced, and moves the points to its new end.
     static void put_head_again(char* begin, std::uint32_t kind, const char* points, std::size_t count,
                                std::string_view of_block) {
         char* const moved = begin + head_size(kind, count, of_block);
@@ -268,7 +268,7 @@ class OvfWriter final : public OrderedWriter {
         file_.commit();
     }
 
-    /// In front of a plane stands where its table lies.
+    /// Writes a plane, preceded by the offset of its table.
     void append_plane(const Blocks& blocks, double top) {
         const std::uint64_t begin = file_.bytes();
         ProtobufMessage shell;
@@ -297,10 +297,10 @@ class OvfWriter final : public OrderedWriter {
 
     Box3 box_;
     ExposureKeys keys_;
-    std::vector<std::string> ends_of_blocks_; ///< of parts
+    std::vector<std::string> ends_of_blocks_; ///< one for each part
     AtomicFile file_;
     FloatContours floats_{1, &rounding_loss()};
-    std::vector<std::uint64_t> planes_; ///< where they begin
+    std::vector<std::uint64_t> planes_; ///< offsets of the planes
     WrittenHeights heights_{"single precision", 1, rounding_loss()};
     double layer_thickness_ = 0;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// What writers of 3MF packages share.
+// Common base of writers of 3MF packages.
 
 #include "lamella/core/point.hpp"
 
@@ -17,7 +17,7 @@
 
 namespace lamella::package_3mf {
 
-/// Bytes of a part of the package, compressed.
+/// Compressed bytes of a part of the package.
 struct Piece {
     std::string bytes;
     std::uint64_t size = 0;
@@ -32,23 +32,23 @@ class PackageWriter : public OrderedWriter {
     [[nodiscard]] std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
 
   protected:
-    /// Begins it with what it says of its parts: relationships, the model, and `more_types`, which are
-    /// elements for parts of other types.
+    /// Begins the package with the description of its parts: relationships, the model, and `more_types`, the
+    /// elements for other types.
     PackageWriter(const std::string& path, const LayerFileInfo& info, Holds holds,
                   std::string_view more_types = {});
 
     [[nodiscard]] ZipWriter& zip() noexcept { return zip_; }
-    /// One of several that make up a part. For any number of threads.
+    /// Compresses one of several chunks that make up a part. For any number of threads.
     [[nodiscard]] Piece compressed(std::string_view text);
 
   private:
     ZipWriter zip_;
     std::mutex mutex_;
-    /// They wait to be used again: each has some hundred kilobytes.
+    /// Reusable compressors; each has some hundred kilobytes.
     std::vector<std::unique_ptr<Deflater>> idle_;
 };
 
-/// Every object must have a mesh; this one only says where the part is.
+/// Returns a mesh that only gives the position of the part; every object must have a mesh.
 [[nodiscard]] std::string box_mesh(const Box3& box);
 
 } // namespace lamella::package_3mf

@@ -11,7 +11,7 @@ namespace lamella {
 
 namespace {
 
-/// Adds points as the way from one to the next, the first one counted from `at`.
+/// Adds points as differences from one to the next, beginning with `at`.
 void add_way(GridPoint at, std::span<const GridPoint> points, NumberBytes& out) {
     for (const GridPoint& p : points) {
         out.add_signed(p.x - at.x);
@@ -20,7 +20,7 @@ void add_way(GridPoint at, std::span<const GridPoint> points, NumberBytes& out) 
     }
 }
 
-/// Adds the counts of rings, chains and hatch lines, and the contours; returns how many points those have.
+/// Adds the counts of rings, chains and hatch lines, and the contours; returns the number of their points.
 std::uint64_t add_contours(const Layer& layer, bool vectors, const WriterGrid& grid, GridPoint origin,
                            NumberBytes& out) {
     NumberBytes contours;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the scripts of a page decode: whole numbers of variable length, compressed, as text. docs/viewer.md
+// Data that the scripts of a page decode: integers of variable length, compressed, as text. docs/viewer.md
 // describes the format; viewer/src/data/ has its reader.
 
 #include "lamella/contour/layer.hpp"
@@ -16,7 +16,7 @@
 
 namespace lamella {
 
-/// Whole numbers, seven bits a byte, the lowest first; signed ones as 0, -1, 1, -2, ...
+/// Integers in groups of seven bits a byte, the lowest first; signed ones as 0, -1, 1, -2, ...
 class NumberBytes {
   public:
     void add(std::uint64_t value) {
@@ -35,23 +35,24 @@ class NumberBytes {
     std::string bytes_;
 };
 
-/// The step of a page's coordinates: the smallest of 1, 2 or 5 times a power of ten mm that is at least
-/// 1/50000 of the longer edge of the box, seen from above. 0.001 mm for a box without width.
+/// Returns the step of a page's coordinates: the smallest of 1, 2 or 5 times a power of ten mm that is at
+/// least 1/50000 of the longer edge of the box, seen from above. 0.001 mm for a box without width.
 [[nodiscard]] double page_step_mm(const Box3& box);
 
-/// Where the numbers of a page count from, and how far apart they are.
+/// Origin and step of the numbers of a page.
 struct PageGrid {
     double step_mm = 0.001;
     GridPoint origin; ///< steps from zero
 };
 
-/// On the page's step, from the corner of the box. Throws Error{usage} for a box beyond 2^51 steps.
+/// Returns the page's grid, with its origin at the corner of the box. Throws Error{usage} for a box beyond
+/// 2^51 steps.
 [[nodiscard]] PageGrid page_grid(const Box3& box);
 
-/// What one plane yields, as numbers: for each part the counts of rings, chains and hatch lines and then
-/// those; a contour is the count of its points and the way from point to point, its first one counted from
-/// that of the contour before; at last the places. `shown` counts the points of the contours. Those of scan
-/// vectors are all there, even where points fall together: each line is one that is executed.
+/// Returns the numbers of one plane: for each part the counts of rings, chains and hatch lines and then
+/// these; at the end the locations. A contour is the count of its points and the differences from point to
+/// point; its first one is relative to that of the contour before. `shown` counts the points of the contours.
+/// Scan vectors are all kept, even if points coincide: each line is executed.
 [[nodiscard]] NumberBytes layer_numbers(std::span<const Layer> layers, std::span<const PartInfo> parts,
                                         std::span<const Point2> places, const PageGrid& grid,
                                         std::uint64_t& shown);

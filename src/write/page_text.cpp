@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view place_of_data = "<!--lamella-data-->";
 
-/// In the order of Tone.
+/// Names in the order of Tone.
 constexpr std::array<std::string_view, 4> tone_names{"plain", "good", "warning", "bad"};
 
 std::string point_json(const Point3& p) {

@@ -21,14 +21,14 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view manifest_name = "manifest.json";
-/// How the list begins; a folder of pictures that may be replaced is known by it.
+/// First bytes of the list. They identify a folder of images that may be replaced.
 constexpr std::string_view manifest_mark = "{\n  \"content\": \"layers as pictures, by Lamella\",\n";
 
 std::string picture_name(std::uint64_t index) {
     return fmt::format("{:05}.png", index);
 }
 
-/// The list of the pictures, and what their pixels mean.
+/// List of the images, with the meaning of their pixels.
 class Manifest {
   public:
     Manifest(const Display& display, const LayerPictures& pictures) : pixel_mm2_(display.pixel_mm2()) {
@@ -55,7 +55,7 @@ class Manifest {
     std::string text_;
 };
 
-/// Of an entry of a folder that is there already.
+/// Returns whether an existing entry of a folder was written by this program.
 bool is_ours(const fs::path& path) {
     std::error_code ignored;
     if (!fs::is_regular_file(fs::symlink_status(path, ignored)) ||

@@ -14,7 +14,7 @@ namespace lamella {
 
 namespace {
 
-// The byte before each row: its bytes are the pixels themselves, or what they are more than those above them.
+// Filter byte before each row: its bytes are the pixels themselves, or their differences from those above.
 constexpr std::uint8_t as_it_is = 0;
 constexpr std::uint8_t more_than_above = 2;
 

@@ -1,21 +1,21 @@
 #pragma once
 
-// Names as strings of files. What is no printable UTF-8 stands there as \xNN.
+// Names as strings of files. Bytes that are not printable UTF-8 become \xNN.
 
 #include <string>
 #include <string_view>
 
 namespace lamella {
 
-/// As it stands there; what is longer than 64 KiB is cut.
+/// Returns the text with these replacements; texts longer than 64 KiB are cut.
 [[nodiscard]] std::string quotable(std::string_view text);
-/// The same for labels in binary formats; what is longer than 4 KiB is cut.
+/// Does the same for labels in binary formats; texts longer than 4 KiB are cut.
 [[nodiscard]] std::string printable_label(std::string_view text);
-/// With quotation marks.
+/// Returns the text as a JSON string, with quotation marks.
 [[nodiscard]] std::string json_quoted(std::string_view text);
-/// The same, such that it can stand in an element of a page: no tag begins in it.
+/// Returns the same for an element of a page: no tag begins in it.
 [[nodiscard]] std::string page_quoted(std::string_view text);
-/// Without quotation marks, for text and attributes.
+/// Returns the text escaped for XML text and attributes, without quotation marks.
 [[nodiscard]] std::string xml_escaped(std::string_view text);
 
 } // namespace lamella

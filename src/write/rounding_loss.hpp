@@ -1,6 +1,6 @@
 #pragma once
 
-// What rounding does to contours beyond what anybody would miss.
+// Losses of contours by rounding that are worth a warning.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,16 +12,16 @@
 
 namespace lamella {
 
-/// What rounding did to a contour.
+/// Changes of a contour by rounding.
 struct RoundedContour {
     double moved_mm = 0;          ///< the largest change of a coordinate
-    std::uint64_t merged = 0;     ///< points that fell together with the one before
-    bool lost = false;            ///< nothing is left of it
-    std::uint64_t lost_lines = 0; ///< of hatch lines, those that shrank to a point
+    std::uint64_t merged = 0;     ///< points equal to the one before
+    bool lost = false;            ///< no point is left
+    std::uint64_t lost_lines = 0; ///< hatch lines that shrank to a point
 };
 
-/// Takes out lines that rounding shrank to a point, of ends two by two. Gives how many ends are left, at the
-/// front.
+/// Removes lines that rounding shrank to a point; each line is two consecutive ends. Returns the number of
+/// remaining ends, which are moved to the front.
 template <class Point>
 [[nodiscard]] std::size_t without_lost_lines(std::span<Point> ends) noexcept {
     std::size_t kept = 0;
@@ -37,14 +37,14 @@ template <class Point>
 /// Counts what a file loses to rounding.
 class RoundingLoss {
   public:
-    /// Moves and merged points need not be counted where rounding cannot move by more: half a unit of the
-    /// coarsest files that machines are used to. Contours and lines that are lost always are.
+    /// Callers need not count moves and merged points if rounding cannot move by more than this: half a unit
+    /// of the coarsest files that machines commonly take. Lost contours and lines are always counted.
     static constexpr double unnoticed_mm = 0.01;
 
-    /// From any threads, layers in any order.
+    /// May be called from any threads, for layers in any order.
     void add(const RoundedContour& contour, std::uint64_t layer);
     void add_height(double moved_mm, std::uint64_t layer);
-    /// One line for contours, one for heights, or none.
+    /// Returns at most one line for contours and one for heights.
     [[nodiscard]] std::vector<std::string> warnings() const;
 
   private:
@@ -55,7 +55,7 @@ class RoundingLoss {
     std::uint64_t merged_ = 0;
     std::uint64_t lost_ = 0;
     std::uint64_t lost_lines_ = 0;
-    std::optional<std::uint64_t> first_layer_; ///< where anything was lost
+    std::optional<std::uint64_t> first_layer_; ///< with a loss
     double moved_heights_mm_ = 0;
     std::optional<std::uint64_t> first_moved_height_;
 };

@@ -11,7 +11,7 @@ namespace lamella {
 
 namespace {
 
-// The names and numbers are those of RFC 1951.
+// Names and numbers follow RFC 1951.
 
 constexpr std::size_t literals = 256;
 constexpr std::size_t end_of_block = 256;
@@ -24,12 +24,12 @@ constexpr std::size_t longest_copy_symbol = 285;
 
 struct CopyCode {
     std::uint16_t symbol = 0;
-    std::uint8_t extra = 0; ///< how many bits follow
+    std::uint8_t extra = 0; ///< number of following bits
     std::uint8_t bits = 0;
 };
 
-/// For each length of a copy. Eight lengths have a symbol of their own; from there on each four symbols stand
-/// for twice as many lengths as the four before.
+/// Codes by length of a copy. Eight lengths have a symbol of their own; beyond these, each four symbols
+/// represent twice as many lengths as the four before.
 constexpr std::array<CopyCode, longest_copy + 1> copy_codes = [] {
     std::array<CopyCode, longest_copy + 1> codes{};
     for (unsigned length = shortest_copy; length < longest_copy; ++length) {
@@ -43,8 +43,8 @@ constexpr std::array<CopyCode, longest_copy + 1> copy_codes = [] {
     return codes;
 }();
 
-/// A run as symbols: so many literals, then so many copies of full length, then one of length `rest`, if not
-/// 0, all of distance 1.
+/// A run as symbols: literals, then copies of full length, then one of length `rest` if that is not 0, all of
+/// distance 1.
 struct Parts {
     std::uint64_t literals;
     std::uint64_t full;
@@ -59,7 +59,7 @@ Parts parts_of(std::uint64_t count) noexcept {
     return rest < shortest_copy ? Parts{1 + rest, full, 0} : Parts{1, full, rest};
 }
 
-/// Runs of so many are few literals, or one and one copy: most of them.
+/// Runs up to this length are a few literals, or one literal and one copy. Most runs are this short.
 constexpr std::uint64_t longest_short_run = longest_copy + 1;
 
 struct Code {
@@ -67,10 +67,10 @@ struct Code {
     std::uint8_t length = 0;
 };
 
-/// Huffman codes of at most `longest` bits for how often each symbol occurs; none for those that do not.
+/// Returns Huffman codes of at most `longest` bits for these frequencies; symbols with frequency 0 get none.
 template <std::size_t n>
 std::array<Code, n> huffman_codes(const std::array<std::uint64_t, n>& frequencies, unsigned longest) {
-    std::array<std::uint16_t, n> order; // of the symbols that occur: rare ones first
+    std::array<std::uint16_t, n> order; // symbols that occur, rarest first
     std::size_t used = 0;
     for (std::size_t i = 0; i < n; ++i)
         if (frequencies[i] > 0)
@@ -79,8 +79,8 @@ std::array<Code, n> huffman_codes(const std::array<std::uint64_t, n>& frequencie
     std::stable_sort(leaves.begin(), leaves.end(),
                      [&](auto a, auto b) { return frequencies[a] < frequencies[b]; });
 
-    // Joins the two rarest until one is left. Inner nodes come into being in ascending order, so two queues
-    // do.
+    // Joins the two rarest nodes until one is left. Inner nodes are created in ascending order of weight, so
+    // two queues suffice.
     std::array<std::uint64_t, 2 * n> weight{};
     std::array<std::uint16_t, 2 * n> parent{};
     for (std::size_t i = 0; i < used; ++i)
@@ -98,7 +98,7 @@ std::array<Code, n> huffman_codes(const std::array<std::uint64_t, n>& frequencie
         parent[a] = parent[b] = static_cast<std::uint16_t>(nodes);
     }
 
-    // How many codes there are of each length, then made to fit: one that is too long moves up beside a
+    // Counts the codes of each length, then enforces the limit: a code that is too long moves up beside a
     // shorter one, which becomes longer by a bit.
     std::array<std::uint16_t, 2 * n> depth{};
     std::array<std::uint32_t, longest_code + 2> of_length{};
@@ -138,13 +138,13 @@ std::array<Code, n> huffman_codes(const std::array<std::uint64_t, n>& frequencie
 
 static_assert(std::endian::native == std::endian::little, "the lowest bits are those of the first byte");
 
-/// Writes bits to memory that is large enough, with some bytes to spare.
+/// Writes bits to memory that must be large enough, with some bytes to spare.
 class BitWriter {
   public:
     BitWriter(char* out, std::uint64_t bits, unsigned count) : out_(out), bits_(bits), count_(count) {}
 
-    /// Up to 56 bits. All whole bytes go out at once, and more behind them that the next ones overwrite: no
-    /// branch that a processor could guess wrong.
+    /// Writes up to 56 bits. All whole bytes are written at once, with more after them that the next ones
+    /// overwrite: this avoids a branch that a processor could mispredict.
     void put(std::uint64_t bits, unsigned count) {
         bits_ |= bits << count_;
         count_ += count;
@@ -154,7 +154,7 @@ class BitWriter {
         count_ %= 8;
     }
     void put(const Code& code) { put(code.bits, code.length); }
-    /// The same bits (at most 16) many times.
+    /// Writes the same bits (at most 16) many times.
     void put_repeated(std::uint64_t bits, unsigned count, std::uint64_t times) {
         std::uint64_t pattern = bits;
         std::uint64_t repeated = 1;
@@ -176,7 +176,8 @@ class BitWriter {
     unsigned count_;
 };
 
-/// The code lengths of a block as they stand in its head: 0 to 15, or 18 for as many zeros as `bits` say.
+/// The code lengths of a block as its header lists them: 0 to 15, or 18 for a number of zeros given by
+/// `bits`.
 struct LengthSymbol {
     std::uint8_t symbol;
     std::uint8_t bits;
@@ -232,10 +233,10 @@ void put_lengths(const std::array<Code, symbols>& codes, BitWriter& out) {
     }
 }
 
-// 3 + 14 bits, 19 lengths, 287 lengths of 7 + 7 bits at most, and what a BitWriter has to have spare.
+// 3 + 14 bits, 19 lengths, 287 lengths of at most 7 + 7 bits, and the spare bytes of a BitWriter.
 constexpr std::size_t most_head_bytes = 600;
 
-/// What follows the first literal of a short run: a copy, if it is one that is long enough for it.
+/// Bits after the first literal of a short run: a copy, if the run is long enough for one.
 struct CopyBits {
     std::uint32_t bits = 0;
     std::uint32_t count = 0;
@@ -246,7 +247,7 @@ std::array<CopyBits, longest_short_run + 1> copies_of(const std::array<Code, sym
     for (std::size_t n = shortest_copy + 1; n <= longest_short_run; ++n) {
         const CopyCode& copy = copy_codes[n - 1];
         const Code& code = codes[copy.symbol];
-        // The last one is the bit 0 for distance 1.
+        // The last bit is the code 0 of distance 1.
         copies[n] = {static_cast<std::uint32_t>(code.bits | copy.bits << code.length),
                      code.length + copy.extra + 1U};
     }
@@ -285,8 +286,9 @@ void RunDeflater::put(std::span<const PixelRun> row) {
         }
         return;
     }
-    // All but the first and the last are runs by themselves, and no count here comes near the longest. What
-    // changes with each is kept out of the object: stores of bytes would have it fetched again each time.
+    // All runs but the first and the last are complete, and no count here comes near the longest. State that
+    // changes with each run is kept in local variables: stores of bytes may alias the object and would force
+    // reloads.
     put(row.front().value, row.front().end);
     end_run();
     make_room_in_checksum(row.back().end - row.front().end);
@@ -342,11 +344,12 @@ void RunDeflater::write_block(bool last) {
 
     std::uint64_t bits = 0;
     for (std::size_t i = 0; i < symbols; ++i)
-        bits += frequencies[i] * (codes[i].length + (i < literals ? 0U : 6U)); // 5 more bits, and a distance
+        bits += frequencies[i] *
+                (codes[i].length + (i < literals ? 0U : 6U)); // up to 5 extra bits, and a distance
     char* const room = stream_.room(bits / 8 + most_head_bytes);
     BitWriter out(room, bits_, bit_count_);
     out.put(last ? 1 : 0, 1);
-    out.put(2, 2); // with codes of its own
+    out.put(2, 2); // dynamic Huffman codes
     put_lengths(codes, out);
     const auto copies = copies_of(codes);
     for (const Run& run : runs) {

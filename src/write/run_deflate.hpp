@@ -16,10 +16,11 @@
 namespace lamella {
 
 /// Makes a zlib stream (RFC 1950) of runs: each becomes its byte once and copies of the byte before it, in
-/// Deflate's own codes. The time and the memory that it takes do not depend on how long runs are, but for the
-/// stream itself, which takes two bits or more for 258 bytes.
+/// Deflate's own codes. Time and memory do not depend on the length of runs, except for the stream itself,
+/// which takes at least two bits for 258 bytes.
 ///
-/// One object makes one stream after the other. Equal bytes give equal streams, however they are divided.
+/// One object makes one stream after the other. Equal bytes give equal streams, however they are divided into
+/// calls.
 class RunDeflater {
   public:
     /// Appends `count` bytes of one value.
@@ -42,19 +43,19 @@ class RunDeflater {
     [[nodiscard]] std::string_view finish();
 
   private:
-    /// Kept small: a picture has thousands in a block.
+    /// Kept small: an image has thousands in a block.
     struct Run {
         std::uint32_t count;
         std::uint8_t value;
     };
 
-    /// The two halves of Adler-32, which are reduced now and then only, long before they overflow.
+    /// The two halves of Adler-32. They are reduced only now and then, long before they overflow.
     struct Checksum {
         std::uint64_t sum = 1;
         std::uint64_t sum_of_sums = 0;
 
-        /// Of n equal bytes v: the sum grows by n v, the sum of sums by n times the old sum and n (n + 1) / 2
-        /// times v.
+        /// Adds n equal bytes v: the sum grows by n v, the sum of sums by n times the old sum and n (n + 1) /
+        /// 2 times v.
         void add(std::uint8_t v, std::uint64_t n) noexcept {
             sum_of_sums += n * sum + n * (n + 1) / 2 * v;
             sum += n * v;
@@ -90,10 +91,10 @@ class RunDeflater {
 
     std::vector<Run> runs_ = std::vector<Run>(most_runs);
     std::size_t run_count_ = 0;
-    std::uint64_t count_ = 0; ///< of the run that is not yet among them
+    std::uint64_t count_ = 0; ///< of the run that is not yet in runs_
     std::uint8_t value_ = 0;
     Checksum checksum_;
-    std::uint64_t unreduced_ = 0; ///< bytes that were added to it since it was reduced
+    std::uint64_t unreduced_ = 0; ///< bytes added since checksum_ was reduced
     ByteBuffer stream_;
     std::uint64_t bits_ = 0; ///< not yet written
     unsigned bit_count_ = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What all formats have in common whose layers follow one another in one file.
+// Base of the writers of formats whose layers follow one another in one file.
 
 #include "core/atomic_file.hpp"
 #include "write/ordered_writer.hpp"
@@ -21,11 +21,11 @@ class SequentialWriter : public OrderedWriter {
     /// Creates the file and writes `head`.
     SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view head, Holds holds);
 
-    /// What stands before the contours of a layer. Called in order.
+    /// Returns the text before the contours of a layer. Called in order.
     [[nodiscard]] virtual std::string layer_head(const PlanePlace& place) = 0;
-    /// Appends the contours of a layer, part by part, and what stands after them. Called from any threads.
+    /// Appends the contours of a layer, part by part, and the text after them. Called from any threads.
     virtual void format(std::span<const Layer> parts, ByteBuffer& out) const = 0;
-    /// What ends the file. Called once, after the last layer.
+    /// Returns the end of the file. Called once, after the last layer.
     [[nodiscard]] virtual std::string tail() { return {}; }
 
   private:
@@ -34,7 +34,7 @@ class SequentialWriter : public OrderedWriter {
     void append_bytes(std::string_view bytes);
 
     std::optional<AtomicFile> file_; ///< or
-    const LayerFilePiece* piece_;    ///< a piece of one
+    const LayerFilePiece* piece_;    ///< a range of its layers
     std::uint64_t piece_bytes_ = 0;
     std::uint64_t file_layers_;
 };

@@ -25,8 +25,8 @@ namespace lamella {
 
 namespace {
 
-// The displays are those of Prusa's printers; the exposures are Prusa's for its Orange Tough resin in layers
-// of 0.05 mm.
+// The displays are those of Prusa's printers; the exposures are Prusa's values for its Orange Tough resin in
+// layers of 0.05 mm.
 constexpr PicturePrinter original_sl1{.name = "SL1",
                                       .pixels = {2560, 1440},
                                       .display_mm = {120.96, 68.04},
@@ -50,7 +50,7 @@ constexpr PicturePrinter speed_sl1s{.name = "SL1S",
 
 constexpr std::uint64_t first_layers = 3;
 
-/// Of the pictures that printers and programs show of a job.
+/// Sizes of the images that printers and programs show of a job.
 constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 2> thumbnail_sizes{{{400, 400}, {800, 480}}};
 constexpr std::uint32_t relief_side = 640;
 
@@ -68,14 +68,14 @@ std::string number(double value) {
     return fmt::format("{:.9g}", value);
 }
 
-/// What pictures and job are called: the name of the file, in letters that every reader knows.
+/// Returns the name of images and job: that of the file, in characters that every reader accepts.
 std::string job_name(const std::string& path) {
     std::string name = path == "-" ? "" : std::filesystem::path(path).stem().string();
     for (char& c : name) {
         const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
         c = plain || c == '-' || c == '.' ? c : '_';
     }
-    // Programs that read jobs pass over pictures that have this word in their names.
+    // Programs that read jobs ignore images with this word in their names.
     constexpr std::string_view passed_over = "thumbnail";
     for (std::size_t at = name.find(passed_over); at != std::string::npos; at = name.find(passed_over, at))
         name.replace(at, passed_over.size(), "thumb_nail");
@@ -142,7 +142,8 @@ class Sl1Writer final : public OrderedWriter {
         }
     }
 
-    /// The printer has one layer height, but for the first layer, and puts each layer on the one before it.
+    /// Counts a layer. The printer has a single layer height except for the first layer, and puts each layer
+    /// on the one before it.
     void count(const PlanePlace& place, double area_mm2) {
         const double thickness = place.top - place.bottom;
         if (place.position == 0)
@@ -172,7 +173,7 @@ class Sl1Writer final : public OrderedWriter {
                    (large ? printer_.large_pause_s : printer_.small_pause_s);
     }
 
-    /// What the printer reads.
+    /// Returns the settings that the printer reads.
     [[nodiscard]] Settings job() const {
         return {{"action", "print"},
                 {"expTime", number(normal_s_)},
@@ -195,7 +196,7 @@ class Sl1Writer final : public OrderedWriter {
                 {"usedMaterial", fmt::format("{:.6f}", volume_mm3_ / 1000)}};
     }
 
-    /// What programs read that show the job or take the layers out again.
+    /// Returns the settings for programs that show the job or extract its layers.
     [[nodiscard]] Settings profile() const {
         const auto flag = [](bool on) {
             return std::string(on ? "1" : "0");

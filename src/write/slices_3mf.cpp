@@ -1,6 +1,6 @@
-// One model part: for each part of the file a slice stack, and an object that uses it. The stacks come before
-// the objects, since readers go through the file once. A layer is formatted and compressed where it is
-// prepared and only joined to the others in order.
+// One model part with, for each part of the file, a slice stack and an object that uses it. The stacks come
+// before the objects, since readers go through the file once. A layer is formatted and compressed in
+// `prepare` and only appended in order.
 
 #include "lamella/contour/measure.hpp"
 
@@ -95,7 +95,7 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
     std::uint64_t bytes() const noexcept override { return PackageWriter::bytes() + waiting_; }
 
   private:
-    /// A piece of a stack in store_.
+    /// A chunk of a stack in store_.
     struct Later {
         std::uint64_t place;
         std::size_t bytes;
@@ -103,7 +103,7 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
         std::uint32_t crc;
     };
 
-    /// A height as nine decimals tell it.
+    /// Returns a height rounded to nine decimals, in billionths of a millimetre.
     static double in_text(double mm) { return std::nearbyint(mm * 1e9); }
 
     static constexpr std::string_view stack_end = "</s:slicestack>\n";
@@ -168,9 +168,9 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
     LayerFileInfo info_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
     ByteStore store_;
-    /// The stacks of all parts but the first, which wait for the end of the first one.
+    /// The stacks of all parts but the first, which wait until the first one is complete.
     std::vector<std::vector<Later>> later_;
-    std::uint64_t waiting_ = 0; ///< bytes of these
+    std::uint64_t waiting_ = 0; ///< bytes of later_
     WrittenHeights heights_{"billionths of a millimetre", 1e-9, rounding_loss()};
 };
 

@@ -1,6 +1,5 @@
 // One part of the package for each layer, then the model, which has the profiles and lists the layers. Layers
-// name the parts on the plate and the profiles by identifiers that are made of what the head of the file
-// says.
+// refer to the parts on the plate and to the profiles by identifiers derived from the header of the file.
 
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
@@ -31,7 +30,7 @@ namespace {
 constexpr std::string_view xml_begin = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
 constexpr std::int64_t most_coordinate = std::numeric_limits<std::int32_t>::max();
 
-/// A hash of a text (FNV-1a), from a start of one's choice.
+/// Returns a hash of a text (FNV-1a) from a given start value.
 std::uint64_t hash_of(std::string_view text, std::uint64_t start) {
     std::uint64_t hash = start;
     for (const char c : text)
@@ -39,7 +38,7 @@ std::uint64_t hash_of(std::string_view text, std::uint64_t start) {
     return hash;
 }
 
-/// An identifier of version 8: made in a way of one's own. The same text has the same one.
+/// Returns an identifier of version 8 (custom). Equal texts have equal identifiers.
 std::string uuid_of(std::string_view text) {
     std::uint64_t high = hash_of(text, 0xCBF29CE484222325);
     std::uint64_t low = hash_of(text, high);
@@ -53,12 +52,13 @@ std::string attribute(std::string_view name, double value) {
     return fmt::format(" {}=\"{}\"", name, exact_decimal_text(value));
 }
 
-/// Speeds and lengths of 0 are not allowed; they say nothing.
+/// Omits speeds and lengths of 0, which are not allowed and carry no information.
 std::string positive_attribute(std::string_view name, double value) {
     return value > 0 ? attribute(name, value) : std::string();
 }
 
-/// What the extension has no attribute for is in one of ours, which others pass over.
+/// Properties without an attribute in the extension are in attributes of our own namespace, which others
+/// ignore.
 std::string profile_text(const std::string& uuid, const std::string& name, const Exposure& exposure) {
     const ParameterSet& set = exposure.parameters;
     return fmt::format(
@@ -72,7 +72,7 @@ std::string profile_text(const std::string& uuid, const std::string& name, const
         attribute("l:markdelay", set.mark_delay_us), attribute("l:jumpdelay", set.jump_delay_us));
 }
 
-/// All that the head of a file says, for identifiers of which no two files should have the same.
+/// Returns the whole content of the header of a file, for identifiers that should be unique to the file.
 std::string head_text(const LayerFileInfo& info) {
     std::string text = fmt::format("{} {}", info.layers, info.bottom);
     const auto add_box = [&](const Box3& box) {
@@ -148,12 +148,12 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
         return static_cast<std::int64_t>(units);
     }
 
-    /// Of a part of ours, its profile, counted from 0; the last one has no parameters.
+    /// Returns the index of the profile of a part; the last profile has no parameters.
     [[nodiscard]] std::size_t profile_of(std::size_t part) const {
         return keys_.keys[part].exposure.value_or(keys_.exposures.size());
     }
 
-    /// The parts and profiles of vectors on a layer, which counts them from 1.
+    /// Writes the parts and profiles of vectors on a layer, which counts them from 1.
     void put_head(std::span<const Layer> parts, ByteBuffer& out) const {
         std::set<std::size_t> of_parts;
         std::set<std::size_t> profiles;
@@ -194,7 +194,8 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
         out.append("</segments>\n</layer>\n");
     }
 
-    /// `before` the numbers of each element; two of them are a point.
+    /// Writes a segment. `before` holds the texts before the numbers of each element; two numbers are a
+    /// point.
     static void put_segment(std::string_view type, std::string_view refers, std::span<const GridPoint> points,
                             std::initializer_list<std::string_view> before, const Layer& layer,
                             ByteBuffer& out) {
@@ -220,7 +221,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
         out.append("</segment>\n");
     }
 
-    /// Names must differ.
+    /// Returns the profiles; their names must differ.
     [[nodiscard]] std::string profiles() const {
         std::string text;
         std::set<std::string> names;
@@ -275,12 +276,12 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     ExposureKeys keys_;
     double units_;
     WriterGrid grid_;
-    std::string uuid_;                       ///< of what is known before any layer is
-    std::string content_;                    ///< checksums of the layers, for the identifier of the whole
+    std::string uuid_;                       ///< derived from data known before the first layer
+    std::string content_;                    ///< checksums of the layers, for the identifier of the file
     std::vector<std::string> item_uuids_;    ///< of the parts of keys_
-    std::vector<std::string> profile_uuids_; ///< of its exposures, then of what has no parameters
-    std::string layers_;                     ///< of the model
-    std::string relations_;                  ///< likewise
+    std::vector<std::string> profile_uuids_; ///< of its exposures, then of vectors without parameters
+    std::string layers_;                     ///< list of layers in the model
+    std::string relations_;                  ///< their relationships
     std::int64_t bottom_;
     WrittenHeights heights_;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// Pages to look at: layers and meshes with what is known of them, in one HTML file that needs nothing else.
+// Viewer pages: layers and meshes with their figures and defects, in one self-contained HTML file.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
@@ -19,7 +19,7 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// How something told on a page is meant; the page shows it by a sign and a colour.
+/// Tone of a fact; the page shows it by an icon and a colour.
 enum class Tone { plain, good, warning, bad };
 
 /// A line of a page: "volume", "3,128.4 mm3".
@@ -34,55 +34,57 @@ struct PageSection {
     std::vector<PageFact> facts;
 };
 
-/// A place on or in the part that a page marks and lists, such as the rim of a hole.
+/// A location on or in the part that a page marks and lists, such as the rim of a hole.
 struct PagePlace {
-    std::string kind;           ///< of one kind are those with equal texts, such as "boundary loop"
-    std::string text;           ///< what is told of this one
+    std::string kind;           ///< locations with equal texts are of one kind, such as "boundary loop"
+    std::string text;           ///< describes this location
     std::vector<Point3> points; ///< one point, or a line through several; at least one
     bool closed = false;        ///< the line leads back to its first point
-    std::uint64_t found = 0;    ///< so many there are of its kind, listed or not; 0: not told
+    std::uint64_t found = 0;    ///< number of its kind, listed or not; 0 if not reported
 };
 
-/// What steps made of a plane before it came to the page.
+/// Changes that layer steps made to a plane before it was added to the page.
 struct PageChange {
-    std::uint64_t index = 0; ///< of its layers
+    std::uint64_t index = 0; ///< of the plane's layers
     LayerChanges changes;
 };
 
-/// Told beside the data themselves.
+/// Facts and locations that a page shows besides the data.
 struct PageNotes {
     std::vector<PageSection> sections;
     std::vector<PagePlace> places;
-    /// One or more for each plane that was changed, in any order. Where there are none, the page says nothing
-    /// of steps.
+    /// One or more for each plane that was changed, in any order. If empty, the page does not mention layer
+    /// steps.
     std::vector<PageChange> changes = {};
 };
 
-/// The places that a diagnosis lists, with what they mean for slicing. O(points).
+/// Returns the locations that a diagnosis lists, with their meaning for slicing. O(points).
 [[nodiscard]] std::vector<PagePlace> places_of(const Diagnosis& diagnosis);
 
-/// Writes the page of a stack of layers. docs/viewer.md has what it holds, how far coordinates are rounded,
-/// and what is thinned out beyond PageOptions::budget_bytes.
+/// Writes the page of a stack of layers. docs/viewer.md describes its content, the rounding of coordinates,
+/// and the thinning of layers beyond PageOptions::budget_bytes.
 class LayerPageWriter : public LayerWriter {
   public:
-    /// What else the page shall tell, in this order. At any time before `finish`, for one thread at a time.
+    /// Adds notes to the page, in this order. May be called at any time before `finish`, by one thread at a
+    /// time.
     virtual void tell(PageNotes notes) = 0;
 };
 
-/// Throws as open_layer_writer does, and Error{usage} where there is no viewer in the options.
+/// Opens a page writer. Throws as open_layer_writer does, and Error{usage} if the options have no viewer.
 [[nodiscard]] std::unique_ptr<LayerPageWriter>
 open_layer_page(const std::string& path, const LayerFileInfo& info, const PageOptions& options);
 
-/// Triangles that the page of a mesh shows at most.
+/// Upper bound on the triangles that the page of a mesh shows.
 inline constexpr std::size_t page_triangles = 300'000;
 
-/// Writes the page of a mesh: its surface, the shells and the places that the diagnosis lists, and the notes.
-/// Vertices are moved to the middles of cubes: of the smallest of 1/65536, 1/32768, ... of the longest edge
-/// of the mesh's box with which no more than `page_triangles` triangles keep three different corners. The
-/// other triangles are left out, and the page says so. "-" is standard output.
+/// Writes the page of a mesh: its surface, its shells, the locations listed in the diagnosis, and the notes.
+/// Vertices are moved to the centres of the cells of a cubic grid. The cell edge is the smallest of 1/65536,
+/// 1/32768, ... of the longest edge of the mesh's box for which at most `page_triangles` triangles keep three
+/// different corners. The other triangles are left out, and the page reports their number. "-" is standard
+/// output.
 ///
-/// O(n) for each size tried. Throws Error{output}, Error{cancelled}, and Error{usage} where there is no
-/// viewer in the options.
+/// Throws Error{output}, Error{cancelled}, and Error{usage} if the options have no viewer. O(n) for each cell
+/// edge that is tried.
 void write_mesh_page(const std::string& path, const IndexedMesh& mesh, const Diagnosis& diagnosis,
                      const PageNotes& notes, const PageOptions& options, const Execution& execution = {});
 
