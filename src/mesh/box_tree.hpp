@@ -1,11 +1,11 @@
 #pragma once
 
-// Which triangles of a mesh come close to one another? A tree of boxes over the triangles in the order of a
-// space-filling curve.
+// A tree of boxes over triangles in the order of a space-filling curve (a BVH). It finds triangles of a mesh
+// that are close to one another.
 //
-// Boxes are kept in single precision, in the frame of the whole mesh. The way there (subtract, multiply,
-// round) never swaps two numbers, so boxes that overlap still do: a box may only seem to overlap a little
-// more.
+// Boxes are stored in single precision, relative to the box of the whole mesh. The conversion (subtract,
+// multiply, round) preserves the order of numbers, so boxes that overlap still do; boxes may only overlap a
+// little more.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
@@ -22,20 +22,20 @@ namespace lamella {
 
 class BoxTree {
   public:
-    /// Of the triangles that use(i) says; triangles name vertices that exist.
+    /// Builds the tree of the triangles for which use(i) is true. All vertex indices must be valid.
     template <class Use>
     BoxTree(Executor& executor, const IndexedMesh& mesh, const Box3& box, const Use& use);
 
-    /// Leaves have the triangles of `leaf_size` places each.
+    /// Number of leaves; a leaf has up to `leaf_size` positions.
     [[nodiscard]] std::size_t leaves() const noexcept { return levels_.empty() ? 0 : levels_[0].size(); }
-    /// The triangle at a place.
+    /// The triangle at a position in the order of the curve.
     [[nodiscard]] std::uint32_t triangle(std::size_t place) const noexcept { return order_[place]; }
 
-    /// The places of a leaf, from the first one to before the last one.
+    /// The positions of a leaf, as a half-open interval.
     [[nodiscard]] std::pair<std::size_t, std::size_t> places(std::size_t leaf) const noexcept {
         return {leaf * leaf_size, std::min((leaf + 1) * leaf_size, order_.size())};
     }
-    /// visit(place_a, place_b) with place_a < place_b and place_a in the leaf, for boxes that overlap.
+    /// Calls visit(place_a, place_b) for overlapping boxes with place_a < place_b and place_a in the leaf.
     template <class Visit>
     void close_to_leaf(std::size_t leaf, const Visit& visit) const;
 
@@ -51,7 +51,7 @@ class BoxTree {
             }
         }
         [[nodiscard]] bool overlaps(const Bounds& other) const noexcept {
-            // Without branches: which of the six decides is a toss-up.
+            // Without branches: which of the six comparisons decides is unpredictable.
             int apart = 0;
             for (std::size_t k = 0; k < 3; ++k)
                 apart |= static_cast<int>(min[k] > other.max[k]) | static_cast<int>(other.min[k] > max[k]);
@@ -62,7 +62,7 @@ class BoxTree {
     static constexpr std::size_t children = 4;
     static constexpr std::size_t chunk = std::size_t{1} << 14;
 
-    /// The coordinate's place in the whole box, from 0 to 1.
+    /// Coordinates relative to the whole box, from 0 to 1.
     struct Frame {
         std::array<double, 3> low{};
         double scale = 0;
@@ -77,7 +77,7 @@ class BoxTree {
         }
     };
 
-    /// Bits of three numbers of 21 bits, in turns.
+    /// Interleaves the bits of three numbers of 21 bits (Morton order).
     static std::uint64_t curve_place(const Bounds& bounds) noexcept {
         std::uint64_t code = 0;
         for (std::size_t k = 0; k < 3; ++k) {
@@ -94,7 +94,7 @@ class BoxTree {
     }
 
     std::vector<std::uint32_t> order_;
-    std::vector<Bounds> boxes_;               ///< by place
+    std::vector<Bounds> boxes_;               ///< by position
     std::vector<std::vector<Bounds>> levels_; ///< leaves first; the last one has one box
 };
 
@@ -154,7 +154,7 @@ void BoxTree::close_to_leaf(std::size_t leaf, const Visit& visit) const {
                     visit(a, b);
         }
     };
-    // A node is (level, number); only leaves from `leaf` on are of interest.
+    // A node is (level, number); only leaves from `leaf` on are visited.
     std::array<std::pair<std::uint32_t, std::size_t>, children * 24> stack; // 4^24 leaves at most
     std::size_t size = 0;
     stack[size++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};

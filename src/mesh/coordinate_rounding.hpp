@@ -7,10 +7,9 @@
 
 namespace lamella {
 
-/// How far a vertex of a mesh in this box may be from where it is meant to be, by rounding alone. Coordinates
-/// of files are most often of single precision: 2^-21 of the largest one is four units in the last place, as
-/// much as a rotation makes of the half units of three coordinates; and 1e-6 mm at least, the last digit of
-/// many text files.
+/// Returns the largest error of a vertex of a mesh in this box due to rounding alone. Most files have single
+/// precision: 2^-21 of the largest coordinate is four units in the last place, which is what a rotation makes
+/// of half a unit in each of three coordinates. At least 1e-6 mm, the last digit of many text files.
 [[nodiscard]] inline double coordinate_rounding(const Box3& box) noexcept {
     double largest = 0;
     for (const double length : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})

@@ -25,22 +25,22 @@ namespace lamella {
 
 namespace {
 
-/// Joins directed edges, ascending, end to end into loops that pass no vertex twice, and into chains where
-/// they do not return. visit(vertices, closed).
+/// Joins directed edges, given in ascending order, end to end into loops that pass no vertex twice, and into
+/// chains where they do not return. Calls visit(vertices, closed).
 template <class Visit>
 void for_each_loop(const std::vector<VertexPair>& edges, const Visit& visit) {
-    // Edges of one vertex are neighbours; next[i]: the first of them that is not used yet, kept at the first.
+    // Edges that start at the same vertex are consecutive; data of a vertex is stored at the first of them.
     const auto first_of = [&](std::uint32_t vertex) {
         return static_cast<std::size_t>(std::lower_bound(edges.begin(), edges.end(), VertexPair{vertex, 0}) -
                                         edges.begin());
     };
-    std::vector<std::uint32_t> used(edges.size(), 0); // of a vertex's edges, kept at the first of them
+    std::vector<std::uint32_t> used(edges.size(), 0); // number of used edges of a vertex
     std::vector<std::uint32_t> arrivals;
     for (const VertexPair& edge : edges)
         arrivals.push_back(edge.second);
     std::sort(arrivals.begin(), arrivals.end());
     std::vector<std::uint32_t> path;
-    // Where a vertex stands in the path, at the first of its edges; a vertex without edges ends the path.
+    // Position of a vertex in the path; a vertex without outgoing edges ends the path.
     constexpr std::uint32_t nowhere = 0xffffffff;
     std::vector<std::uint32_t> place(edges.size(), nowhere);
     const auto walk_from = [&](std::uint32_t start) {
@@ -70,7 +70,7 @@ void for_each_loop(const std::vector<VertexPair>& edges, const Visit& visit) {
         if (path.size() > 1)
             visit(std::span<const std::uint32_t>(path), false);
     };
-    // Chains first: from vertices that more edges leave than arrive at.
+    // Chains come first: they start at vertices with more outgoing than incoming edges.
     for (std::size_t begin = 0; begin < edges.size();) {
         const std::uint32_t vertex = edges[begin].first;
         std::size_t end = begin;
@@ -134,8 +134,8 @@ void find_loops(const IndexedMesh& mesh, const std::vector<VertexPair>& edges, D
                      });
 }
 
-/// Joins the corners of triangles at the same vertex over their common edges; vertices with more than one
-/// group of corners are where parts of the surface touch.
+/// Joins the corners of triangles at the same vertex over their common edges. At vertices with more than one
+/// group of corners, parts of the surface touch.
 void find_nonmanifold_vertices(Executor& executor, const IndexedMesh& mesh, std::size_t keep,
                                Diagnosis& found) {
     const std::size_t n = mesh.triangles.size();

@@ -16,7 +16,7 @@ DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& exec
     std::vector<bool> dropped(mesh.triangles.size(), false);
     DroppedDuplicates result;
     for (const std::vector<TriangleOverEdge>& group : find_same_vertices(executor, mesh)) {
-        // The most frequent way round has one survivor, where there is one.
+        // One triangle of the more frequent orientation is kept, if there is a majority.
         const auto up = static_cast<std::size_t>(
             std::count_if(group.begin(), group.end(), [](const TriangleOverEdge& t) { return t.upwards; }));
         const std::size_t down = group.size() - up;

@@ -19,8 +19,8 @@ struct Worker {
     std::vector<TriangleOverEdge> triangles;
 };
 
-/// visit(group) for the triangles with the same three vertices among those whose two lowest vertices these
-/// sides join: two or more of them, in ascending order. `work`: memory to work in.
+/// Calls visit(group) for triangles with the same three vertices, two or more in ascending order, among those
+/// whose two lowest vertices are the ends of the edge in `uses`. `work` is scratch memory.
 template <class Visit>
 void for_each_same(const IndexedMesh& mesh, std::span<const EdgeUse> uses,
                    std::vector<TriangleOverEdge>& work, const Visit& visit) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// One pass over all edges of a mesh: their defects counted, where somebody asks listed, and what connects.
+// One pass over all edges of a mesh: counts their defects, lists them on request, and joins connected
+// triangles.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/inspect.hpp"
@@ -22,36 +23,36 @@ using VertexPair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// In ascending order.
 struct EdgePlaces {
-    std::vector<VertexPair> boundary;    ///< directed against the triangle's way
+    std::vector<VertexPair> boundary;    ///< directed against the triangle
     std::vector<VertexPair> nonmanifold; ///< low, high
     std::vector<VertexPair> conflicts;   ///< low, high
     std::vector<std::uint32_t> duplicates;
 };
 
 struct EdgeSurvey {
-    Inspection counts = {};                    ///< what edges tell: of edges, and duplicate triangles
-    std::uint64_t opposite_pairs = 0;          ///< as a Diagnosis has them
-    UnionFind parts;                           ///< of triangles connected over edges
-    PageArray<std::atomic<std::uint8_t>> open; ///< 1 for some triangle at each edge that is not balanced
+    Inspection counts = {};                    ///< counts of edges and of duplicate triangles
+    std::uint64_t opposite_pairs = 0;          ///< as in Diagnosis
+    UnionFind parts;                           ///< sets of triangles connected by edges
+    PageArray<std::atomic<std::uint8_t>> open; ///< 1 for one triangle at each edge that is not balanced
     EdgePlaces places = {};
 };
 
-/// Counts and sizes of another mesh, or of another piece of one, with those of `sum`.
+/// Adds counts and sizes of another mesh, or of another part of the same mesh, to `sum`.
 void add(Inspection& sum, const Inspection& other) noexcept;
 
 [[nodiscard]] EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_places);
 
-/// A triangle by its highest vertex, among those whose two lowest vertices one edge joins.
+/// A triangle, named by its highest vertex among triangles whose two lowest vertices are the same.
 struct TriangleOverEdge {
     std::uint32_t highest;
     std::uint32_t triangle;
-    bool upwards; ///< which way round, compared with the others
+    bool upwards; ///< orientation, compared with the others
 
     friend auto operator<=>(const TriangleOverEdge&, const TriangleOverEdge&) noexcept = default;
 };
 
-/// All groups of two or more triangles with the same three vertices, each in ascending order; their own order
-/// is any.
+/// Returns all groups of two or more triangles with the same three vertices, each group in ascending order;
+/// the groups are in any order.
 [[nodiscard]] std::vector<std::vector<TriangleOverEdge>> find_same_vertices(Executor& executor,
                                                                             const IndexedMesh& mesh);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// All edges of a mesh, each with the triangles that use it: in parallel, in expected linear time.
+// Visits all edges of a mesh, each with the triangles that use it: in parallel, in expected linear time.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
@@ -23,21 +23,22 @@ namespace lamella {
 
 /// One side of one triangle, on the edge between the vertices `low` < `high`.
 struct EdgeUse {
-    std::uint32_t place; ///< of `low` in its partition, and the two flags
+    std::uint32_t place; ///< index of `low` in its partition, and the two flags
     std::uint32_t high;
     std::uint32_t triangle;
 
     static constexpr std::uint32_t upwards_bit = 1U << 31;
     static constexpr std::uint32_t lowest_bit = 1U << 30;
 
-    /// The triangle runs from `low` to `high`.
+    /// Returns true if the triangle runs from `low` to `high`.
     [[nodiscard]] bool upwards() const noexcept { return (place & upwards_bit) != 0; }
-    /// These are the two lowest vertices of the triangle: true for exactly one of its sides.
+    /// Returns true if these are the two lowest vertices of the triangle: this holds for exactly one of its
+    /// sides.
     [[nodiscard]] bool lowest_side() const noexcept { return (place & lowest_bit) != 0; }
     [[nodiscard]] std::uint32_t low_in_partition() const noexcept { return place & (lowest_bit - 1); }
 };
 
-/// The vertices of a side, the lower one first.
+/// Returns the vertices of a side, the lower one first.
 [[nodiscard]] inline std::pair<std::uint32_t, std::uint32_t> ends_of(const IndexedMesh& mesh,
                                                                      const EdgeUse& use) noexcept {
     const auto& t = mesh.triangles[use.triangle];
@@ -45,16 +46,16 @@ struct EdgeUse {
     return {t[(at + (use.upwards() ? 2 : 1)) % 3], use.high};
 }
 
-/// visit(uses, worker) once for each edge; `uses` in no particular order. Triangles with a repeated vertex
-/// have no edges.
+/// Calls visit(uses, worker) once for each edge; `uses` is in no particular order. Triangles with a repeated
+/// vertex have no edges.
 ///
-///     scatter   sides go to the partition of their lower vertex; neighbouring vertices share one, so that a
+///     scatter   sides go to the partition of their lower vertex; nearby vertices share one, so that a
 ///               mesh with locality is read and written almost in order
 ///     sort      within a partition by lower vertex (counting), then by upper vertex (few each)
 template <class Visit>
 void for_each_edge(Executor& executor, const IndexedMesh& mesh, const Visit& visit) {
-    // 2^14 vertices have some 10^5 sides: about a megabyte, half a second-level cache. At most 2^12
-    // partitions; so a place fits its 30 bits.
+    // The sides of 2^14 vertices, some 10^5, take about a megabyte, half a second-level cache. There are at
+    // most 2^12 partitions, so an index fits its 30 bits.
     const unsigned shift = std::max(14U, static_cast<unsigned>(std::bit_width(mesh.vertices.size() / 4096)));
     const std::size_t partitions = (mesh.vertices.size() >> shift) + 1;
     const std::size_t ranges = std::min<std::size_t>(executor.workers(), mesh.triangles.size() / 32768 + 1);
@@ -118,7 +119,8 @@ void for_each_edge(Executor& executor, const IndexedMesh& mesh, const Visit& vis
             work.begin[v] += work.begin[v - 1];
         work.sorted.resize(uses.size());
         for (const EdgeUse& use : uses)
-            work.sorted[work.begin[use.low_in_partition()]++] = use; // leaves the end of each vertex's sides
+            // Afterwards begin[v] is the end of the sides of v.
+            work.sorted[work.begin[use.low_in_partition()]++] = use;
         std::size_t from = 0;
         for (std::size_t v = 0; v + 1 < work.begin.size(); ++v) {
             const std::size_t to = work.begin[v];

@@ -1,7 +1,7 @@
 #pragma once
 
-// Sums and boxes over many elements: in parallel, and with the same bits for any number of threads, because
-// the pieces have a fixed size and are put together in order.
+// Sums and boxes over many elements, in parallel. The bits are the same for any number of threads because
+// chunks have a fixed size and are merged in order.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
@@ -14,10 +14,11 @@
 
 namespace lamella {
 
-/// Elements per piece.
+/// Elements per chunk.
 inline constexpr std::size_t fold_piece = std::size_t{1} << 15;
 
-/// piece(begin, end) -> Value over pieces of [0, n), then merge(total, value) in ascending order.
+/// Computes piece(begin, end) -> Value for chunks of [0, n), then calls merge(total, value) in ascending
+/// order.
 template <class Value, class Piece, class Merge>
 [[nodiscard]] Value fold(Executor& executor, std::size_t n, Value total, const Piece& piece,
                          const Merge& merge) {
@@ -40,7 +41,7 @@ template <class Value, class Piece, class Merge>
     return fold(executor, points.size(), Box3{}, piece, [](Box3& total, const Box3& box) { total.add(box); });
 }
 
-/// Six times the signed volume between a triangle and a point.
+/// Returns six times the signed volume of the tetrahedron of a triangle and a point.
 [[nodiscard]] inline double six_volumes(const Triangle3& t, const Point3& origin) noexcept {
     const Point3 a{t[0].x - origin.x, t[0].y - origin.y, t[0].z - origin.z};
     const Point3 b{t[1].x - origin.x, t[1].y - origin.y, t[1].z - origin.z};
@@ -48,8 +49,8 @@ template <class Value, class Piece, class Merge>
     return a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
 }
 
-/// Signed volume of n triangles, corners(i) -> Triangle3. Measured from the first corner, so that a part far
-/// from the origin does not drown in rounding.
+/// Returns the signed volume of n triangles, corners(i) -> Triangle3. Measured from the first corner, so that
+/// the volume of a part far from the origin is not lost to rounding.
 template <class Corners>
 [[nodiscard]] double fold_volume(Executor& executor, std::size_t n, const Corners& corners) {
     if (n == 0)

@@ -61,7 +61,7 @@ Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places) {
     all.boxes = shell_boxes(mesh, shells);
     all.depth.assign(shells.size(), 0);
     all.inside.assign(shells.size(), no_shell);
-    // Tells cavities from shells that are turned inside out: a cavity lies in the material of the others.
+    // Distinguishes cavities from shells that are inside out: a cavity lies in the material of others.
     std::vector<int> around(shells.size(), 0);
     const auto note = [&](const Enclosure& enclosure) {
         around[enclosure.shell] += enclosure.winding;

@@ -7,8 +7,7 @@
 
 namespace lamella {
 
-/// The mesh with its equal vertices joined, as `weld` of an IndexedMesh has it; nothing where no two are
-/// equal.
+/// Returns the mesh with equal vertices joined, as `weld` of an IndexedMesh; nullopt if no two are equal.
 [[nodiscard]] std::optional<IndexedMesh> joined_vertices(const IndexedMesh& mesh, const Execution& execution);
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// A triangle of a mesh, and its size.
+// Measures of a triangle of a mesh.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
@@ -9,8 +9,7 @@
 
 namespace lamella {
 
-/// Across the triangle, to the side from which its corners are seen counter-clockwise; as long as twice its
-/// area.
+/// Returns the normal on the side from which the corners are counter-clockwise; its length is twice the area.
 [[nodiscard]] inline Point3 normal(const Triangle3& t) noexcept {
     const Point3 u{t[1].x - t[0].x, t[1].y - t[0].y, t[1].z - t[0].z};
     const Point3 v{t[2].x - t[0].x, t[2].y - t[0].y, t[2].z - t[0].z};
@@ -30,20 +29,20 @@ namespace lamella {
     return {box.min.x / 2 + box.max.x / 2, box.min.y / 2 + box.max.y / 2, box.min.z / 2 + box.max.z / 2};
 }
 
-/// The same corners, the lexicographically smallest one first: what is computed from these depends neither on
-/// which corner came first nor on the way round.
+/// Returns the same corners sorted lexicographically. Results computed from these depend neither on the first
+/// corner nor on the orientation.
 [[nodiscard]] inline Triangle3 in_order(Triangle3 t) noexcept {
     std::sort(t.begin(), t.end());
     return t;
 }
 
-/// Whether it runs through its corners as `in_order` gives them, or the other way round.
+/// Returns whether the triangle runs through its corners in the order of `in_order`, up to rotation.
 [[nodiscard]] inline bool runs_in_order(const Triangle3& t) noexcept {
     return (t[1] < t[0]) == ((t[2] < t[0]) != (t[2] < t[1]));
 }
 
-/// The same bits on every processor, as by `hypotenuse` of contour/distance: the way round of shells depends
-/// on it. No square of a coordinate is too large (core/farthest).
+/// Returns the distance with the same bits on every processor, as `hypotenuse` of contour/distance: the
+/// orientation of shells depends on it. No square of a coordinate overflows (core/farthest).
 [[nodiscard]] inline double distance(const Point3& a, const Point3& b) noexcept {
     const double x = a.x - b.x;
     const double y = a.y - b.y;

@@ -1,12 +1,12 @@
 // Consistent orientation, in four steps:
 //
-//     flood   from the first triangle of each patch over edges of two triangles, noting which triangles run
-//             against it; the smaller of both sets is turned
-//     fit     patches over edges of more triangles: those that balance there stay as they are to one another,
-//             and two that would balance if one of them were turned are tied so
-//     close   which patches tied to one another are closed now, and what is around the edges where others
-//             are not
-//     turn    them as a whole, by their volumes and by what they lie in
+//     flood   starts at the first triangle of each patch, crosses edges of two triangles, and notes which
+//             triangles run against the first; the smaller of both sets is flipped
+//     fit     looks at patches at edges of more triangles: patches that balance there keep their relative
+//             orientation, and two that would balance if one of them were flipped are tied with opposite ones
+//     close   finds the groups of tied patches that are closed now, and the box around the open edges of
+//             the others
+//     turn    flips groups as a whole, by their volumes and by the shells that enclose them
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/repair.hpp"
@@ -37,8 +37,8 @@ namespace lamella {
 
 namespace {
 
-/// Over each side of a triangle its neighbour, where the edge has two triangles; the lowest bit tells that
-/// both run the same way through it.
+/// The neighbour over each side of a triangle, if the edge has two triangles, times 2; the lowest bit is set
+/// if both run through the edge in the same direction.
 constexpr std::uint32_t no_neighbour = 0xffffffff;
 
 PageArray<std::uint32_t> find_neighbours(Executor& executor, const IndexedMesh& mesh) {
@@ -63,7 +63,7 @@ PageArray<std::uint32_t> find_neighbours(Executor& executor, const IndexedMesh& 
 
 struct Patches {
     Shells shells;            ///< the patches, as if they were shells
-    std::vector<bool> turned; ///< triangles
+    std::vector<bool> turned; ///< triangles flipped
     std::vector<bool> one_sided;
 };
 
@@ -107,16 +107,16 @@ Patches flood(const IndexedMesh& mesh, const PageArray<std::uint32_t>& neighbour
     return patches;
 }
 
-/// Of a shell of which just half is turned.
+/// A triangle of a shell of which exactly half is flipped.
 struct TiedTriangle {
     std::uint32_t shell;
     Triangle3 corners; ///< the lexicographically smallest first
-    int way;           ///< 1 where it runs through them in this order, or -1
+    int way;           ///< 1 if the triangle runs through them in this order, otherwise -1
 };
 
-/// Of each shell turns back what was turned, and the rest instead, where more than half is turned.
-/// A tie is decided by the way round of the lexicographically smallest triangle that is not there the other
-/// way, too: so the order of triangles does not matter, nor which corner of one comes first.
+/// Swaps flipped and unflipped triangles in each shell of which more than half is flipped. If exactly half
+/// is, the lexicographically smallest triangle that does not occur in both orientations decides. So neither
+/// the order of triangles nor their first corner matters.
 void turn_the_minority(const IndexedMesh& mesh, const Shells& shells, std::vector<bool>& turned) {
     const std::size_t n = mesh.triangles.size();
     std::vector<std::int64_t> lead(shells.size(), 0);
@@ -150,7 +150,7 @@ void turn_the_minority(const IndexedMesh& mesh, const Shells& shells, std::vecto
 
 using Balance = std::pair<std::uint32_t, int>;
 
-/// Sorts by the first and adds up the second of equal ones; leaves out those of 0.
+/// Sorts by the first member, adds up the second of equal ones, and drops sums of 0.
 void add_up(std::vector<Balance>& balances) {
     std::sort(balances.begin(), balances.end());
     std::size_t kept = 0;
@@ -164,14 +164,14 @@ void add_up(std::vector<Balance>& balances) {
     balances.resize(kept);
 }
 
-/// A patch uses an edge so many times oftener upwards than downwards.
+/// States how many times more often a patch uses an edge upwards than downwards.
 struct UnevenUse {
     VertexPair edge;
-    std::uint32_t patch; ///< or what is tied together
+    std::uint32_t patch; ///< or the first patch of a group
     int balance;         ///< not 0
 };
 
-/// In ascending order; without one-sided patches.
+/// Returns the uneven uses in ascending order; without non-orientable patches.
 std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& mesh, const Patches& patches) {
     std::vector<std::vector<UnevenUse>> found(executor.workers());
     for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned worker) {
@@ -193,14 +193,14 @@ std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& m
         all.insert(all.end(), part.begin(), part.end());
         let_go(part);
     }
-    // Not in the order of workers: areas are added up.
+    // The order must not depend on workers: areas are added up.
     std::sort(all.begin(), all.end(), [](const UnevenUse& a, const UnevenUse& b) {
         return std::tie(a.edge, a.patch) < std::tie(b.edge, b.patch);
     });
     return all;
 }
 
-/// visit(uses) for those of each edge.
+/// Calls visit(uses) with the uses of each edge.
 template <class Visit>
 void for_each_uneven_edge(const std::vector<UnevenUse>& uneven, const Visit& visit) {
     for (std::size_t begin = 0; begin < uneven.size();) {
@@ -212,12 +212,12 @@ void for_each_uneven_edge(const std::vector<UnevenUse>& uneven, const Visit& vis
     }
 }
 
-/// Patches that are tied to one another, each the way round of the first of them or the other way.
+/// Groups of tied patches: each patch is oriented as the first one of its group, or opposite to it.
 class Ties {
   public:
     struct Place {
-        std::uint32_t first; ///< names those tied to one another
-        bool against;        ///< turned, compared with the first
+        std::uint32_t first; ///< identifies the group
+        bool against;        ///< opposite to the first
     };
 
     explicit Ties(std::size_t patches) : ways_(2 * patches) {}
@@ -227,7 +227,7 @@ class Ties {
         return {lowest / 2, lowest % 2 != 0};
     }
 
-    /// False where they are tied the other way already.
+    /// Returns false if they are already tied with the other relative orientation.
     bool tie(std::uint32_t a, std::uint32_t b, bool against) const noexcept {
         const std::uint32_t turn = against ? 1 : 0;
         if (ways_.find(2 * a) == ways_.find(2 * b + 1 - turn))
@@ -238,10 +238,10 @@ class Ties {
     }
 
   private:
-    UnionFind ways_; ///< of patch p, 2p is p as it is, and 2p + 1 p turned
+    UnionFind ways_; ///< 2p is patch p as it is, and 2p + 1 is p flipped
 };
 
-/// Of an edge, by the first of those tied to one another, as it runs.
+/// Returns the balances of an edge by groups of tied patches, each in the orientation of its first patch.
 std::vector<Balance> tied_balances(std::span<const UnevenUse> uses, const Ties& ties) {
     std::vector<Balance> all;
     for (const UnevenUse& use : uses) {
@@ -252,9 +252,9 @@ std::vector<Balance> tied_balances(std::span<const UnevenUse> uses, const Ties& 
     return all;
 }
 
-/// Ties the patches at an edge that balances as they are; and where just two, or two such groups, would
-/// balance if one of them were turned, ties them so. Where such turns contradict one another, none of those
-/// that hang together is made.
+/// Ties the patches at each balanced edge as they are. Where exactly two patches or groups would balance if
+/// one of them were flipped, ties them with opposite orientations. Where such flips contradict one another,
+/// none of the connected flips is made.
 Ties fit(std::size_t patches, const std::vector<UnevenUse>& uneven) {
     Ties ties(patches);
     for_each_uneven_edge(uneven, [&](std::span<const UnevenUse> uses) {
@@ -287,7 +287,7 @@ Ties fit(std::size_t patches, const std::vector<UnevenUse>& uneven) {
     return ties;
 }
 
-/// What is tied together, as shells; all of them closed so far.
+/// Returns the groups of tied patches as shells; all are marked closed for now.
 Shells tied_shells(const Shells& patches, const Ties& ties) {
     Shells shells;
     shells.of_triangle = PageArray<std::uint32_t>(patches.of_triangle.size());
@@ -307,20 +307,22 @@ Shells tied_shells(const Shells& patches, const Ties& ties) {
     return shells;
 }
 
-/// Of a shell; an open one is measured as if fans from the middle of the box around its open edges closed it.
+/// Content of a shell. An open one is measured as if fans from the centre of the box around its open edges
+/// closed it.
 struct Content {
     ShellContent shell;
-    double area = 0; ///< of an open one
-    double fans = 0; ///< likewise, theirs
+    double area = 0; ///< of an open shell
+    double fans = 0; ///< total area of its fans
 
-    /// Which sign the volume has is certain, and mostly by what is there. (Not by more than half of it: a box
-    /// four times as wide as high, without a lid, would have just that, and rounding the last word.)
+    /// Returns true if the sign of the volume is certain, and is mostly due to existing triangles. (The limit
+    /// is below one half: a box four times as wide as high, without a lid, has exactly half, and rounding
+    /// would decide.)
     [[nodiscard]] bool certain() const noexcept {
         return shell.certain() && (fans == 0 || fans < 0.45 * area);
     }
 };
 
-/// Marks shells that are not closed.
+/// Marks the shells that are not closed, and measures all of them.
 std::vector<Content> measure_shells(Executor& executor, const IndexedMesh& mesh,
                                     const std::vector<Box3>& boxes, const std::vector<UnevenUse>& uneven,
                                     const Shells& patches, const Ties& ties, Shells& shells) {
@@ -359,8 +361,9 @@ bool holds(const Box3& outer, const Box3& inner) noexcept {
 
 using ShellPair = std::pair<std::uint32_t, std::uint32_t>;
 
-/// Of the involved shells those that have points in common and one of which has its box in that of the other,
-/// which is closed: by (inner, outer), true where triangles cross. What they share by a vertex counts, too.
+/// Returns pairs (inner, outer) of the involved shells that have points in common, where the outer shell is
+/// closed and its box contains the inner box. The value is true if triangles cross. Shared vertices count as
+/// common points.
 std::map<ShellPair, bool> find_contacts(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
                                         const std::vector<Box3>& boxes, const std::vector<bool>& involved) {
     Box3 box;
@@ -406,10 +409,10 @@ std::map<ShellPair, bool> find_contacts(Executor& executor, const IndexedMesh& m
     return all;
 }
 
-/// Which way a shell is to run.
+/// The orientation that a shell should get.
 enum class Sense : std::uint8_t { as_it_is, outward, inward };
 
-/// Of the shells asked for.
+/// Finds the orientations of the shells in `asked`.
 std::vector<Sense> find_senses(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
                                const std::vector<Box3>& boxes, const std::vector<bool>& asked) {
     const std::size_t count = shells.size();
@@ -427,7 +430,8 @@ std::vector<Sense> find_senses(Executor& executor, const IndexedMesh& mesh, cons
             ++depth[shell];
             involved[shell] = involved[encloser] = any = true;
         });
-    // What has been seen of a shell was one point of it. Where surfaces meet, others may lie elsewhere.
+    // So far one point of each shell was examined. Where surfaces touch or cross, other points may lie
+    // elsewhere.
     std::vector<bool> touching(count, false);
     if (any) {
         const std::map<ShellPair, bool> contacts = find_contacts(executor, mesh, shells, boxes, involved);
@@ -459,7 +463,7 @@ IndexedMesh turned_where(IndexedMesh mesh, const std::vector<bool>& turned) {
     return mesh;
 }
 
-/// Shells as a whole, as far as their volumes are certain.
+/// Flips shells as a whole if the sign of their volume is certain.
 void turn_by_volume(Executor& executor, const IndexedMesh& mesh, Patches& patches,
                     const std::vector<UnevenUse>& uneven, const Ties& ties, Shells& shells,
                     OrientedMesh& result) {
@@ -506,7 +510,7 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
         const Ties ties = fit(count, uneven);
         Shells shells = tied_shells(patches.shells, ties);
         if (shells.size() == settled)
-            break; // what was turned last made nothing fit that did not before
+            break; // the last flips made no further patches fit
         std::vector<bool> before;
         bool fitted = false;
         for (std::size_t p = 0; p < count; ++p) {
@@ -519,7 +523,7 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
         turn_the_minority(mesh, shells, turned);
         if (!fitted) {
             settled = shells.size();
-            result.turned_outward = result.turned_inward = 0; // those of the largest groups count
+            result.turned_outward = result.turned_inward = 0; // only the flips of the largest groups count
             turn_by_volume(executor, mesh, patches, uneven, ties, shells, result);
         }
         for (UnevenUse& use : uneven)

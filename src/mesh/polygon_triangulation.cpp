@@ -13,15 +13,15 @@ namespace {
 
 using Triangle2 = std::array<Point2, 3>;
 
-/// Twice the area of the polygon's shadows on the planes across x, y and z (Newell's sum), in some scale:
-/// measured from its first corner, so that a polygon far from the origin loses no digits.
+/// Returns twice the areas of the projections of the polygon along x, y and z (Newell's sum), up to scale.
+/// Measured from the first corner, so that a polygon far from the origin loses no digits.
 Point3 facing(std::span<const Point3> corners) {
     const Point3 origin = corners[0];
     double largest = 0;
     for (const Point3& p : corners)
         largest =
             std::max({largest, std::abs(p.x - origin.x), std::abs(p.y - origin.y), std::abs(p.z - origin.z)});
-    // Products must neither overflow nor vanish. Where the differences overflow, any direction will do.
+    // Products must neither overflow nor underflow. If the differences overflow, any direction will do.
     const double unit = largest > 0 && std::isfinite(largest) ? 1 / largest : 0;
     if (!(unit > 0) || !std::isfinite(unit))
         return {0, 0, 1};
@@ -40,8 +40,8 @@ Point3 facing(std::span<const Point3> corners) {
     return sum;
 }
 
-/// Whether q lies strictly between the directions from `at` to `right` and to `left`, which are less than
-/// half a turn apart.
+/// Returns whether q lies strictly between the directions from `at` to `right` and to `left`, which are less
+/// than 180 degrees apart.
 bool between(const Point2& at, const Point2& right, const Point2& left, const Point2& q) {
     return orientation(at, right, q) > 0 && orientation(at, q, left) > 0;
 }
@@ -50,8 +50,8 @@ std::size_t cell_of(double place, std::size_t cells) {
     return place > 0 ? std::min(static_cast<std::size_t>(std::min(place, 1e9)), cells - 1) : 0;
 }
 
-/// The least and the largest x of a triangle between y = row and y = row + 1, and a little more: corners are
-/// looked for in cells, but whether they are in the way is decided on the points as they are.
+/// Returns the least and the largest x of a triangle between y = row and y = row + 1, with a margin. The grid
+/// only selects candidates; whether a corner is in the way is decided on the exact points.
 std::pair<double, double> extent_in_row(const Triangle2& triangle, double row) {
     constexpr double margin = 0x1p-6;
     const double low = row - margin;
@@ -74,7 +74,7 @@ std::pair<double, double> extent_in_row(const Triangle2& triangle, double row) {
         left = std::min({left, bottom, top});
         right = std::max({right, bottom, top});
     }
-    // Far outside the grid, positions are too coarse for the margin.
+    // Far outside the grid, coordinates are too coarse for the margin.
     constexpr double far = 0x1p40;
     for (const Point2& p : triangle)
         if (!(std::abs(p.x) < far && std::abs(p.y) < far))
@@ -101,7 +101,7 @@ PolygonTriangulator::triangulate(std::span<const Point3> corners) {
     return triangles_;
 }
 
-/// Drops the coordinate along which the polygon is seen largest, so that the others stay as they are.
+/// Drops the coordinate along which the projected area is largest, so that the others stay exact.
 void PolygonTriangulator::flatten(std::span<const Point3> corners) {
     const Point3 normal = facing(corners);
     const double x = std::abs(normal.x);
@@ -126,7 +126,7 @@ int PolygonTriangulator::turn(std::uint32_t corner) const {
     return orientation(corners_[b.previous].at, b.at, corners_[b.next].at);
 }
 
-/// Turns left everywhere, and goes round once: it changes between rightwards and leftwards twice.
+/// Returns true if the polygon turns left at every corner and winds once: its x direction changes twice.
 bool PolygonTriangulator::convex() const {
     int changes = 0;
     for (std::uint32_t i = 0; i < corners_.size(); ++i) {
@@ -140,7 +140,7 @@ bool PolygonTriangulator::convex() const {
     return changes == 2;
 }
 
-/// Of what is left of the polygon, from one of its corners.
+/// Cuts the remaining polygon into a fan from one of its corners.
 void PolygonTriangulator::make_fan(std::uint32_t first, std::size_t corners) {
     std::uint32_t b = corners_[first].next;
     for (; corners > 2; --corners) {
@@ -158,9 +158,9 @@ void PolygonTriangulator::cut_ears() {
         corners_[i].in_the_way = turn(i) <= 0;
     build_grid();
 
-    // To cut an ear off changes whether its two neighbours are ears, and of no other corner. First come,
-    // first cut: that goes round the polygon again and again, so that triangles do not all meet in one
-    // corner.
+    // Cutting off an ear changes the state of its two neighbours only. Candidates are processed in the order
+    // in which they were added, which goes around the polygon repeatedly, so that triangles do not all meet
+    // in one corner.
     std::uint32_t some = 0;
     for (const Ear wanted : {Ear::needle, Ear::clean, Ear::touched}) {
         candidates_.clear();
@@ -184,12 +184,12 @@ void PolygonTriangulator::cut_ears() {
     make_fan(some, left_);
 }
 
-/// Where a point lies in the grid, in cells.
+/// Converts a point to grid coordinates, in cells.
 Point2 PolygonTriangulator::cells(const Point2& p) const {
     return {(p.x - grid_min_.x) * cells_per_mm_.x, (p.y - grid_min_.y) * cells_per_mm_.y};
 }
 
-/// About as many cells as corners in the way.
+/// Builds a grid with about as many cells as corners in the way.
 void PolygonTriangulator::build_grid() {
     Point2 max;
     std::size_t count = 0;
@@ -207,7 +207,7 @@ void PolygonTriangulator::build_grid() {
     const double width = max.x - grid_min_.x;
     const double height = max.y - grid_min_.y;
     if (count > few && std::isfinite(width) && std::isfinite(height) && width + height > 0) {
-        // Square cells, but not more rows or columns than corners.
+        // Cells are square, but there are no more rows or columns than corners.
         const auto most = static_cast<double>(count);
         const double size = std::max(std::sqrt(width / most) * std::sqrt(height), (width + height) / most);
         columns_ = static_cast<std::size_t>(std::clamp(width / size, 1.0, most));
@@ -221,7 +221,7 @@ void PolygonTriangulator::build_grid() {
         const Point2 place = cells(p);
         return cell_of(place.y, rows_) * columns_ + cell_of(place.x, columns_);
     };
-    // Sorted by counting: how many in each cell, where each begins, and then each to its place.
+    // A counting sort: count per cell, find where each cell begins, then distribute.
     cell_begin_.assign(columns_ * rows_ + 2, 0);
     for (const Corner& corner : corners_)
         if (corner.in_the_way)
@@ -234,7 +234,7 @@ void PolygonTriangulator::build_grid() {
             cell_corners_[cell_begin_[cell(corners_[i].at) + 1]++] = i;
 }
 
-/// Whether the triangle of a corner and its two neighbours can be cut off the polygon.
+/// Returns whether the triangle of a corner and its two neighbours can be cut off the polygon.
 bool PolygonTriangulator::is_ear(std::uint32_t corner, Ear wanted) {
     const Corner& b = corners_[corner];
     const Triangle2 ear{corners_[b.previous].at, b.at, corners_[b.next].at};
@@ -242,8 +242,8 @@ bool PolygonTriangulator::is_ear(std::uint32_t corner, Ear wanted) {
     if (bend < 0)
         return false;
     if (bend == 0) {
-        // Nothing can enter what has no area. A needle or a repeated corner is best cut at once; a corner
-        // along a side may still become that of a triangle.
+        // Nothing can enter a triangle without area. A needle or a repeated corner is best cut at once; a
+        // collinear corner may still become the corner of a triangle.
         const bool along_a_side =
             (ear[0] < ear[1]) == (ear[1] < ear[2]) && ear[0] != ear[1] && ear[1] != ear[2];
         return !along_a_side || wanted == Ear::touched;
@@ -260,8 +260,8 @@ bool PolygonTriangulator::is_ear(std::uint32_t corner, Ear wanted) {
     for (std::size_t row = cell_of(cells({x0, y0}).y, rows_); row <= last_row; ++row) {
         const auto [left, right] = extent_in_row(in_cells, static_cast<double>(row));
         if (!(left <= right))
-            continue; // the ear lies beside the grid
-        // The cells of a row lie one after the other.
+            continue; // the ear lies outside the grid
+        // The cells of a row are consecutive.
         const std::size_t row_begin = row * columns_;
         const std::uint32_t begin = cell_begin_[row_begin + cell_of(left, columns_)];
         const std::uint32_t end = cell_begin_[row_begin + cell_of(right, columns_) + 1];
@@ -283,7 +283,7 @@ bool PolygonTriangulator::is_ear(std::uint32_t corner, Ear wanted) {
     return true;
 }
 
-/// Whether the outline, in this corner, comes into the ear.
+/// Returns whether the outline enters the ear at this corner.
 bool PolygonTriangulator::enters(std::uint32_t corner, const Triangle2& ear, Ear wanted) const {
     const Point2& p = corners_[corner].at;
     const std::array<Point2, 2> neighbours{corners_[corners_[corner].previous].at,
@@ -320,7 +320,7 @@ void PolygonTriangulator::cut(std::uint32_t corner) {
     c.previous = b.previous;
     b.cut = true;
     --left_;
-    // A corner only ever gets out of the way.
+    // A convex corner never becomes an obstacle again.
     a.in_the_way = a.in_the_way && turn(b.previous) <= 0;
     c.in_the_way = c.in_the_way && turn(b.next) <= 0;
 }

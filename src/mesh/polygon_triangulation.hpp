@@ -1,6 +1,6 @@
 #pragma once
 
-// Triangles of a polygon in space, as mesh files have them: with any number of corners, convex or not.
+// Triangulates polygons in space, as mesh files contain them: with any number of corners, convex or not.
 
 #include "lamella/core/point.hpp"
 
@@ -12,27 +12,27 @@
 
 namespace lamella {
 
-/// Cuts polygons into triangles without adding corners. Keeps its working memory from one polygon to the
-/// next.
+/// Cuts polygons into triangles without adding corners. Reuses its working memory for the next polygon.
 class PolygonTriangulator {
   public:
-    /// Places in the list of corners.
+    /// Indices into the list of corners.
     using Triangle = std::array<std::uint32_t, 3>;
 
-    /// The triangles of a polygon of n finite corners, n - 2 of them (none for fewer than three), each with
-    /// its corners in the order of the polygon. They are valid until the next call. Whatever the polygon, its
-    /// edges are edges of one triangle each, and all others of two: a closed surface of polygons stays
-    /// closed.
+    /// Returns the n - 2 triangles of a polygon of n finite corners (none for fewer than three), each with
+    /// its corners in the order of the polygon. They are valid until the next call. For every polygon, each
+    /// of its edges is an edge of one triangle, and all other edges have two: a closed surface of polygons
+    /// stays closed.
     ///
-    /// A convex polygon becomes a fan from its first corner. Of any other one that does not cross itself in
-    /// its plane, each triangle faces as the polygon does, or has no area where corners are collinear. It may
-    /// touch itself: holes may hang on the outline by bridges that are walked both ways. Decisions are exact
-    /// for the corners as they are, seen along the axis that the polygon faces most; so a polygon that is not
-    /// quite flat is treated as its shadow. One that crosses itself becomes triangles that overlap.
+    /// A convex polygon becomes a fan from its first corner. For any other polygon whose projection does not
+    /// cross itself, each triangle faces as the polygon does, or has no area where corners are collinear. The
+    /// polygon may touch itself: holes may be attached to the outline by bridges that are walked in both
+    /// directions. Decisions are exact for the given corners, projected along the axis that the polygon faces
+    /// most; a polygon that is not quite flat is treated as its projection. One that crosses itself becomes
+    /// overlapping triangles.
     ///
-    /// O(n) for convex polygons; else by ears (Meisters 1975), with a grid of the corners that can be in the
-    /// way: O(n) as a rule. At most 1000 n + 10^6 corners are looked at, which is enough for any polygon of
-    /// up to 500 corners; after that the rest becomes a fan, so that nobody can slow a reader down.
+    /// O(n) for convex polygons; otherwise by ears (Meisters 1975), with a grid of the corners that can be in
+    /// the way: O(n) as a rule. At most 1000 n + 10^6 corners are examined, which is enough for any polygon
+    /// of up to 500 corners; then the rest becomes a fan, so that hostile files cannot slow down a reader.
     std::span<const Triangle> triangulate(std::span<const Point3> corners);
 
   private:
@@ -40,13 +40,13 @@ class PolygonTriangulator {
         Point2 at;
         std::uint32_t previous;
         std::uint32_t next;
-        bool in_the_way; ///< its turn is not to the left: it can lie in the ear of another corner
+        bool in_the_way; ///< it does not turn left here: it can lie in the ear of another corner
         bool cut;        ///< no longer part of the polygon
     };
 
-    /// How much an ear is asked for.
+    /// The conditions that an ear has to meet.
     enum class Ear {
-        needle, ///< there and back, without an area
+        needle, ///< folds back on itself, without area
         clean,  ///< with an area, and nothing on the edge that cuts it off
         touched ///< nothing enters it
     };
@@ -65,9 +65,9 @@ class PolygonTriangulator {
     std::vector<Corner> corners_;
     std::vector<Triangle> triangles_;
     std::size_t left_ = 0;        ///< corners that are not cut
-    std::uint64_t allowance_ = 0; ///< how many corners may still be looked at
+    std::uint64_t allowance_ = 0; ///< number of corners that may still be examined
 
-    // The corners in the way, by the cells of a grid.
+    // The corners in the way, sorted by the cells of a grid.
     std::vector<std::uint32_t> cell_begin_;
     std::vector<std::uint32_t> cell_corners_;
     std::size_t columns_ = 0;

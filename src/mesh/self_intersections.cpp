@@ -32,7 +32,7 @@ struct Pair {
     }
 };
 
-/// Adds a pair to the lowest few of all that are added, a heap with the last of them on top.
+/// Keeps the lowest `keep` of all pairs added, as a heap with the greatest on top.
 void add_to(std::vector<Pair>& first, const Pair& pair, std::size_t keep) {
     if (first.size() >= keep) {
         if (keep == 0 || !(pair < first.front()))
@@ -44,11 +44,11 @@ void add_to(std::vector<Pair>& first, const Pair& pair, std::size_t keep) {
     std::push_heap(first.begin(), first.end());
 }
 
-/// Of pairs of parts; without parts, all triangles are of part 0.
+/// Pairs found so far. Without parts, all triangles are of part 0.
 struct Found {
     std::vector<Pair> through; ///< the first that cross or overlap
     std::vector<Pair> beside;  ///< the first that touch
-    /// How many of each kind.
+    /// Number of pairs of each kind.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::array<std::uint64_t, 3>> parts;
 
     void add(const Pair& pair, const MeetingOptions& options) {

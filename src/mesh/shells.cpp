@@ -21,7 +21,7 @@ Shells find_shells(Executor& executor, const IndexedMesh& mesh, const EdgeSurvey
             shells.of_triangle[i] =
                 degenerate(mesh.triangles[i]) ? no_shell : survey.parts.find(static_cast<std::uint32_t>(i));
     });
-    // A set is named by its lowest member, so that comes first, and can hand its number to the others.
+    // A set is named by its lowest member, which comes first and can pass its number to the others.
     for (std::size_t i = 0; i < n; ++i) {
         std::uint32_t& shell = shells.of_triangle[i];
         if (shell == no_shell)
@@ -58,7 +58,7 @@ std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& 
         return {runs_in_order(corners(mesh, i)) ? six : -six,
                 distance(t[0], origin) * distance(t[0], t[1]) * distance(t[0], t[2]), 1};
     };
-    // In half the time, of sizes that are no smaller, which will do for nearly all shells.
+    // Takes half the time. The sizes are upper bounds, which is sufficient for nearly all shells.
     const auto roughly = [&](std::size_t i) -> ShellContent {
         const auto way = [](const Point3& a, const Point3& b) {
             return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z);
@@ -68,7 +68,8 @@ std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& 
         const double side = std::max({way(t[0], t[1]), way(t[1], t[2]), way(t[2], t[0])});
         return {six_volumes_by_normal(t, origin), (way(t[0], origin) + side) * side * side, 1};
     };
-    using Contents = std::vector<std::pair<std::uint32_t, ShellContent>>; // stretches of one shell, in order
+    // Consecutive triangles of one shell each.
+    using Contents = std::vector<std::pair<std::uint32_t, ShellContent>>;
     const auto piece = [&](std::size_t begin, std::size_t end) {
         Contents runs;
         for (std::size_t i = begin; i < end; ++i) {
@@ -86,7 +87,7 @@ std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& 
         for (const auto& [shell, some] : runs)
             contents[shell].add(some);
     });
-    // Another order of summands moves a sum by up to twice its rounding: what is so close is added up in
+    // Another order of summands changes a sum by up to twice its rounding: sums close to 0 are added up in
     // order.
     std::vector<bool> close(shells.size());
     for (std::size_t s = 0; s < shells.size(); ++s)
@@ -116,7 +117,8 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
                         const std::vector<Box3>& boxes, const std::vector<bool>& asked,
                         const std::function<void(const Enclosure&)>& visit) {
     std::vector<double> largest(shells.size(), -1);
-    std::vector<Triangle3> first(shells.size()); // of those
+    // The largest triangle of each shell; of equal ones, the lexicographically smallest.
+    std::vector<Triangle3> first(shells.size());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const std::uint32_t shell = shells.of_triangle[i];
         if (shell == no_shell || !asked[shell])
@@ -139,8 +141,7 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
         return box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y &&
                box.min.z <= p.z && p.z <= box.max.z;
     };
-    // Shells in one another have as many hits as pairs. So many are kept at a time; of one point there are
-    // never more.
+    // Nested shells have as many hits as pairs. This many are kept at a time; one point never has more.
     const std::uint64_t most_hits = std::max<std::uint64_t>(std::uint64_t{1} << 20, mesh.triangles.size());
     std::vector<std::vector<Enclosure>> hits(executor.workers());
     std::vector<std::atomic<std::uint32_t>> hits_of_point(points.size());
@@ -179,7 +180,7 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
         tell();
         return;
     }
-    // Too many for once, but now it is known how many each point has.
+    // There are too many for one pass, but now the number of hits of each point is known.
     const std::vector<std::uint32_t> counts(hits_of_point.begin(), hits_of_point.end());
     std::size_t end = 0;
     for (std::size_t begin = 0; begin < points.size(); begin = end) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The parts of a mesh that are connected over edges: their volumes, and which lies in which.
+// The connected components of a mesh: their volumes, and which lies in which.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
@@ -25,23 +25,24 @@ constexpr std::uint32_t no_shell = 0xffffffff;
 struct Shells {
     PageArray<std::uint32_t> of_triangle; ///< no_shell for a degenerate triangle
     std::vector<std::uint32_t> first;     ///< triangle of each shell
-    std::vector<bool> closed;             ///< every edge is used as often one way as the other
+    std::vector<bool> closed;             ///< every edge is used equally often in both directions
 
     [[nodiscard]] std::size_t size() const noexcept { return first.size(); }
 };
 
 [[nodiscard]] Shells find_shells(Executor& executor, const IndexedMesh& mesh, const EdgeSurvey& survey);
 
-/// What the triangles of a shell bound together with an origin.
+/// The signed content between the triangles of a shell and an origin.
 struct ShellContent {
     double six_volumes = 0; ///< signed
-    double sizes = 0;       ///< of the summands of that, as far as rounding goes
+    double sizes = 0;       ///< sum of the sizes of the summands, for the bound on rounding
     double triangles = 0;
 
     [[nodiscard]] double volume() const noexcept { return six_volumes / 6; }
-    /// The volume has a sign that rounding did not give it.
+    /// Returns true if rounding cannot have changed the sign of the volume.
     [[nodiscard]] bool certain() const noexcept { return std::abs(six_volumes) > rounding(); }
-    /// A sum of k terms is off by no more than k epsilons of their sizes; 32 more are what one term rounds.
+    /// A sum of k terms has an error of at most k epsilons of their sizes; the rounding of one term is 32
+    /// more.
     [[nodiscard]] double rounding() const noexcept {
         return std::numeric_limits<double>::epsilon() * (triangles + 32) * sizes;
     }
@@ -50,26 +51,26 @@ struct ShellContent {
     friend auto operator<=>(const ShellContent&, const ShellContent&) = default;
 };
 
-/// Of every shell, measured from its own origin: near the shell, so that a small one far away keeps its sign.
-/// Whether it is certain, and then which sign it has, depends neither on the order of triangles nor on which
-/// corner of one comes first.
+/// Measures every shell from its own origin, which lies near the shell, so that a small one far away keeps
+/// its sign. Whether it is certain, and its sign if so, depend neither on the order of triangles nor on their
+/// first corners.
 [[nodiscard]] std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& mesh,
                                                        const Shells& shells, std::span<const Point3> origins);
 
 [[nodiscard]] std::vector<Box3> shell_boxes(const IndexedMesh& mesh, const Shells& shells);
 
-/// Around a place on the surface of one shell, another winds so many times.
+/// States that the encloser winds around a point on the surface of a shell.
 struct Enclosure {
     std::uint32_t shell;
     std::uint32_t encloser;
-    int winding; ///< not 0
+    int winding; ///< winding number of the encloser around the point, not 0
 
     friend auto operator<=>(const Enclosure&, const Enclosure&) = default;
 };
 
-/// Visits which shells lie around which, ascending; of the shells that asked(shell) says. A shell is judged
-/// by the middle of its largest triangle: well away from edges where shells touch. Where many shells lie in
-/// one another, the time grows with the square of their number, but memory does not.
+/// Visits which shells lie around which, in ascending order, for the shells in `asked`. The centroid of the
+/// largest triangle represents a shell: it is well away from edges where shells touch. For many nested
+/// shells, time grows with the square of their number, but memory does not.
 void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
                         const std::vector<Box3>& boxes, const std::vector<bool>& asked,
                         const std::function<void(const Enclosure&)>& visit);

@@ -1,6 +1,6 @@
 #pragma once
 
-// All that `inspect` counts and `diagnose` tells of.
+// All data that `inspect` counts and `diagnose` reports.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/inspect.hpp"
@@ -19,12 +19,12 @@ struct Survey {
     std::uint64_t opposite_pairs = 0;
     EdgePlaces places = {};
     Shells shells;
-    std::vector<ShellContent> contents = {}; ///< of the shells, from a corner of each
+    std::vector<ShellContent> contents = {}; ///< of the shells, each measured from one of its corners
     std::vector<Box3> boxes = {};
     std::vector<bool> inward = {}; ///< closed, and certainly of negative volume
-    std::vector<bool> cavity = {}; ///< and in the material of others
-    /// Of each shell, in how many others it lies, and the smallest of them, or no_shell. With places of all
-    /// shells, without of those that may be cavities.
+    std::vector<bool> cavity = {}; ///< inward, and in the material of others
+    /// Number of other shells that contain each shell, and the smallest of them or no_shell. With places for
+    /// all shells, otherwise for those that may be cavities.
     std::vector<std::uint32_t> depth = {};
     std::vector<std::uint32_t> inside = {};
 };

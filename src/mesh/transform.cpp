@@ -49,7 +49,7 @@ Transform inverse(const Transform& map) {
     Transform out;
     for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) {
-            // The cofactor of element (c, r), with the sign taken care of by cyclic indices.
+            // The cofactor of element (c, r); cyclic indices give the sign.
             const int r1 = (c + 1) % 3;
             const int r2 = (c + 2) % 3;
             const int c1 = (r + 1) % 3;
@@ -104,7 +104,7 @@ Transform upright(const Point3& direction) {
                     fmt::format("cannot slice along the direction ({}, {}, {}): expected three finite "
                                 "numbers, not all 0",
                                 direction.x, direction.y, direction.z));
-    // By the largest component first: no square overflows, and a coordinate axis stays exact.
+    // Dividing by the largest component first avoids overflow and keeps a coordinate axis exact.
     double x = direction.x / largest;
     double y = direction.y / largest;
     double z = direction.z / largest;
@@ -115,12 +115,13 @@ Transform upright(const Point3& direction) {
     const double radius = std::sqrt(x * x + y * y);
     Transform out;
     if (radius == 0) {
-        if (z < 0) // upside down: half a turn about x
+        if (z < 0) // upside down: rotate by 180 degrees about x
             out.linear = {{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
         return out;
     }
-    // The shortest rotation: about the horizontal axis across `direction`. In Rodrigues' formula x^2 / (1 +
-    // z) is written c^2 (1 - z), which loses nothing when `direction` points almost straight down.
+    // The shortest rotation, about the horizontal axis perpendicular to `direction`. Rodrigues' formula
+    // contains x^2 / (1 + z); c^2 (1 - z) equals it and loses nothing when `direction` points almost straight
+    // down.
     const double c = x / radius;
     const double s = y / radius;
     const double lean = z > 0 ? radius * radius / (1 + z) : 1 - z;

@@ -15,7 +15,7 @@ namespace {
 using Signs = std::array<int, 3>;
 using Flat = std::array<Point2, 3>;
 
-/// Without the coordinate `axis`.
+/// Drops the coordinate `axis`.
 Point2 projected(const Point3& p, int axis) noexcept {
     return axis == 0 ? Point2{p.y, p.z} : axis == 1 ? Point2{p.z, p.x} : Point2{p.x, p.y};
 }
@@ -33,9 +33,9 @@ bool both_sides(const Signs& s) noexcept {
     return least < 0 && most > 0;
 }
 
-/// Turns both so that corner 0 of `t` is alone on the side of the other's plane to which that plane's corners
-/// are seen counter-clockwise, or in the plane: t by rotation, the other by reversal. Each comes with the
-/// signs of its corners by the plane of the other.
+/// Reorders both triangles so that corner 0 of `t` is the only one in the other's plane, or on the side of it
+/// from which the other's corners are counter-clockwise: rotates t, and flips the other if needed. The signs
+/// of each one's corners relative to the other's plane are reordered, too.
 void put_lone_corner_first(Triangle3& t, const Signs& signs, Triangle3& other, Signs& other_signs) noexcept {
     const auto lone = [&]() -> std::pair<std::size_t, bool> {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -47,7 +47,7 @@ void put_lone_corner_first(Triangle3& t, const Signs& signs, Triangle3& other, S
             if (a < 0 && b >= 0 && c >= 0)
                 return {k, true};
         }
-        for (std::size_t k = 0; k < 3; ++k) // a corner in the plane, the others on one side
+        for (std::size_t k = 0; k < 3; ++k) // one corner in the plane, the others on one side
             if (signs[k] == 0)
                 return {k, signs[(k + 1) % 3] > 0};
         return {0, false};
@@ -59,13 +59,13 @@ void put_lone_corner_first(Triangle3& t, const Signs& signs, Triangle3& other, S
     }
 }
 
-/// One corner in the other's plane and the others on one side: nothing in common but that point.
+/// True if one corner is in the other's plane and the others are on one side: only that point can be shared.
 bool in_a_point(const Signs& s) noexcept {
     return std::count(s.begin(), s.end(), 0) == 1 && !both_sides(s);
 }
 
-/// For triangles in different planes that are no neighbours over an edge. `p_signs`: of p's corners by the
-/// plane of q.
+/// For triangles in different planes that share no edge. `p_signs` are the signs of p's corners relative to
+/// the plane of q.
 std::optional<MeetingKind> contact_in_a_line(Triangle3 p, Triangle3 q, Signs p_signs, Signs q_signs,
                                              bool share_a_corner) noexcept {
     put_lone_corner_first(p, p_signs, q, q_signs);
@@ -93,7 +93,7 @@ bool all_outside(const Flat& edges_of, const Flat& corners, bool strictly) noexc
     return false;
 }
 
-/// Of a corner that both have: whether an edge of each leads from it in the same direction.
+/// Returns whether an edge of each triangle leads in the same direction from a common corner.
 bool edges_together(const Flat& p, std::size_t at_p, const Flat& q, std::size_t at_q) noexcept {
     const Point2& o = p[at_p];
     for (std::size_t i = 1; i < 3; ++i)
@@ -110,7 +110,7 @@ bool edges_together(const Flat& p, std::size_t at_p, const Flat& q, std::size_t 
 
 struct Shared {
     int count = 0;
-    std::size_t at_p = 0; ///< the place of the last one found
+    std::size_t at_p = 0; ///< index of the last one found
     std::size_t at_q = 0;
 };
 
@@ -125,7 +125,7 @@ Shared shared_corners(const NamedTriangle& p, const NamedTriangle& q) noexcept {
 
 std::optional<MeetingKind> contact_in_a_plane(const Triangle3& p, const Triangle3& q,
                                               const Shared& shared) noexcept {
-    // Any projection in which p keeps an area will do; the largest part of its normal is the safest one.
+    // Any projection in which p keeps an area will do; the largest component of its normal is the safest one.
     const Point3 n = normal(p);
     const std::array<double, 3> sizes{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
     int axis = static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
@@ -149,8 +149,8 @@ std::optional<MeetingKind> contact_in_a_plane(const Triangle3& p, const Triangle
         turn(fq, at_q);
     if (!all_outside(fp, fq, false) && !all_outside(fq, fp, false))
         return MeetingKind::overlapping;
-    // Apart but for the line between them. Where it holds a common corner, it holds more when edges run along
-    // each other from there.
+    // The triangles are separate, except for the line between them. If they share a corner there, they have
+    // more in common if edges run along each other from there.
     const bool touch = shared.count == 0 ? !all_outside(fp, fq, true) && !all_outside(fq, fp, true)
                                          : shared.count == 1 && edges_together(fp, at_p, fq, at_q);
     return touch ? std::optional(MeetingKind::touching) : std::nullopt;
@@ -167,9 +167,9 @@ bool flat(const Triangle3& t) noexcept {
     return true;
 }
 
-// Triangles in different planes follow Guigue and Devillers (2003): with the corner that is alone on its side
-// of the other's plane first, each triangle meets the line of both planes in an interval whose ends are
-// compared by the orientation of four corners.
+// Triangles in different planes follow Guigue and Devillers (2003). With the lone corner of each triangle
+// first (the one alone on its side of the other's plane), each triangle intersects the common line of both
+// planes in an interval; the ends of the intervals are compared by orientations of four corners.
 std::optional<MeetingKind> ContactSeeker::with_close_one(const NamedTriangle& other) const noexcept {
     const Shared shared = shared_corners(triangle_, other);
     if (shared.count >= 3)
@@ -201,8 +201,8 @@ std::optional<MeetingKind> ContactSeeker::with_close_one(const NamedTriangle& ot
 
 Point3 contact_place(const Triangle3& p, const Triangle3& q, MeetingKind kind) noexcept {
     if (kind == MeetingKind::crossing) {
-        // Where edges of one pass through the plane of the other: four points on a line, of which the middle
-        // two are the ends of what is common.
+        // The edges of each triangle intersect the plane of the other in four points on a line; the middle
+        // two are the ends of the intersection.
         std::array<Point3, 4> ends;
         std::size_t n = 0;
         const auto add_ends = [&](const Triangle3& t, const Triangle3& plane) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What two triangles of a mesh have in common beyond the vertices that they share: decided exactly.
+// Decides exactly what two triangles of a mesh have in common beyond the vertices that they share.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/self_intersections.hpp"
@@ -14,28 +14,28 @@
 
 namespace lamella {
 
-/// A triangle with the names of its corners: corners of equal name are one vertex.
+/// A triangle with the names of its corners: corners of equal name are the same vertex.
 struct NamedTriangle {
     Triangle3 corners;
     std::array<std::uint32_t, 3> names;
 };
 
-/// Its corners lie on a line (or in a point).
+/// Returns true if the corners lie on a line (or in a point).
 [[nodiscard]] bool flat(const Triangle3& t) noexcept;
 
-/// A triangle that is compared with others.
+/// A triangle that is to be compared with others.
 class ContactSeeker {
   public:
     explicit ContactSeeker(const NamedTriangle& t) noexcept
         : triangle_(t), plane_(t.corners[0], t.corners[1], t.corners[2]) {}
 
-    /// None where they have nothing in common but vertices, or an edge. Neither triangle is flat. Symmetric,
-    /// and the same whichever way round they run. Exact for all finite coordinates.
+    /// Returns nullopt if the triangles have nothing in common except vertices or an edge. Neither triangle
+    /// may be flat. Symmetric, and independent of orientation. Exact for all finite coordinates.
     [[nodiscard]] std::optional<MeetingKind> with(const NamedTriangle& other) const noexcept {
         const int side = plane_.likely_side(other.corners[0]);
         if (side != 0 && side == plane_.likely_side(other.corners[1]) &&
             side == plane_.likely_side(other.corners[2]))
-            return std::nullopt; // mostly
+            return std::nullopt; // the usual case
         return with_close_one(other);
     }
 
@@ -46,14 +46,14 @@ class ContactSeeker {
     Plane plane_;
 };
 
-/// Of two triangles alone: see ContactSeeker::with.
+/// Compares two triangles: see ContactSeeker::with.
 [[nodiscard]] inline std::optional<MeetingKind> contact(const NamedTriangle& p,
                                                         const NamedTriangle& q) noexcept {
     return ContactSeeker(p).with(q);
 }
 
-/// About where: the middle of what triangles that cross have in common, or of the part of their boxes in
-/// common.
+/// Returns an approximate location: the middle of the common segment of triangles that cross, otherwise of
+/// the intersection of their boxes.
 [[nodiscard]] Point3 contact_place(const Triangle3& p, const Triangle3& q, MeetingKind kind) noexcept;
 
 } // namespace lamella

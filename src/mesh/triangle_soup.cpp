@@ -14,7 +14,7 @@ namespace lamella {
 
 namespace {
 
-/// The box in single precision, at the speed of memory: six chains of minima and maxima, no stores.
+/// Returns the box in single precision at the speed of memory: six chains of minima and maxima, no stores.
 Box3 stored_box(const TriangleSoup& soup, std::size_t begin, std::size_t end) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     Point3f low{infinity, infinity, infinity};
@@ -32,7 +32,7 @@ Box3 stored_box(const TriangleSoup& soup, std::size_t begin, std::size_t end) {
             add(p.z, low.z, high.z);
         }
     }
-    // Adding zero turns -0 into +0, as everywhere.
+    // Adding zero turns -0 into +0.
     return {{low.x + 0.0, low.y + 0.0, low.z + 0.0}, {high.x + 0.0, high.y + 0.0, high.z + 0.0}};
 }
 
@@ -44,14 +44,14 @@ Box3 placed_box(const TriangleSoup& soup, std::size_t begin, std::size_t end) {
     return box;
 }
 
-/// One pass without a branch; then the culprit is looked for.
+/// Makes one pass without a branch; only if that fails, searches for the triangle.
 void require_finite(const TriangleSoup& soup) {
     const auto is_finite = [&](std::size_t i) {
         std::array<float, 9> numbers;
         std::memcpy(&numbers, soup.data() + i * soup.stride(), sizeof numbers);
         float sum = 0;
         for (const float number : numbers)
-            sum += number * 0.0F; // which is 0 for finite ones only
+            sum += number * 0.0F; // 0 only for finite numbers
         return sum == 0;
     };
     bool all = true;
@@ -59,7 +59,7 @@ void require_finite(const TriangleSoup& soup) {
         all &= is_finite(i);
     if (all)
         return;
-    for (std::size_t i = 0; i < soup.size(); ++i) // to name it
+    for (std::size_t i = 0; i < soup.size(); ++i) // finds the triangle to name
         if (!is_finite(i))
             throw Error(ErrorKind::input,
                         fmt::format("triangle {} (numbered from 0) has a corner that is not finite", i));

@@ -17,14 +17,14 @@ class UnionFind {
     /// Numbers below `size`, each a set of its own.
     explicit UnionFind(std::size_t size) : up_(size, Fill::zero) {}
 
-    /// The lowest member of i's set, once all joining is done; some member of it before.
+    /// Returns the lowest member of i's set once all joins are done; before that, some member of it.
     [[nodiscard]] std::uint32_t find(std::uint32_t i) const noexcept {
         for (;;) {
             const std::uint32_t parent = above(i);
             if (parent == i)
                 return i;
             const std::uint32_t grandparent = above(parent);
-            // Halve the way for whoever comes next. A lost race only leaves a longer way.
+            // Halve the path for later searches. A lost race only leaves a longer path.
             if (grandparent != parent)
                 up_[i].store(i - grandparent, std::memory_order_relaxed);
             i = grandparent;
@@ -50,7 +50,7 @@ class UnionFind {
         return i - up_[i].load(std::memory_order_relaxed);
     }
 
-    /// How far below the member the next one up is; 0 at the top.
+    /// Difference between a member and its parent; 0 at the root.
     PageArray<std::atomic<std::uint32_t>> up_;
 };
 

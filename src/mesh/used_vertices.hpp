@@ -1,6 +1,6 @@
 #pragma once
 
-// Vertices that triangles name.
+// Vertices that triangles use.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
@@ -8,7 +8,7 @@
 
 namespace lamella {
 
-/// As the public one, on workers that are there already.
+/// Like the public function, with an existing executor.
 void drop_unused_vertices(IndexedMesh& mesh, Executor& executor);
 
 } // namespace lamella

@@ -1,13 +1,14 @@
 // The exact weld, in four steps:
 //
-//     gather     each worker goes through one range of the file and replaces corners by local vertices. A
-//                small table of recent corners already joins most of them: triangles that share a corner are
+//     gather     each worker reads one range of the file and replaces corners by local vertices. A small
+//                table of recent corners already joins most of them: triangles that share a corner are
 //                mostly near each other in a file.
 //     join       local vertices with equal coordinates are found by partitions (core/key_groups)
 //     number     the first of each kind becomes a vertex, in the order of the file
-//     rewrite    triangles are rewritten from local vertices to vertices, and those get their coordinates
+//     rewrite    triangles refer to vertices instead of local vertices, and vertices get their coordinates
 //
-// The order in the file decides all numbers, so the ranges, and with them the number of workers, do not show.
+// The order in the file determines all numbers, so the result does not depend on the ranges or on the number
+// of workers.
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
@@ -30,7 +31,7 @@ namespace lamella {
 
 namespace {
 
-/// Bits of coordinates that are not -0: equal bits, equal point.
+/// Bits of coordinates without -0: points are equal if their bits are.
 template <class Bits>
 struct CornerKey {
     Bits x;
@@ -43,7 +44,7 @@ struct CornerKey {
     friend auto operator<=>(const CornerKey&, const CornerKey&) noexcept = default;
 };
 
-using SingleKey = CornerKey<std::uint32_t>; // of a soup without placement
+using SingleKey = CornerKey<std::uint32_t>; // for a soup without placement
 using DoubleKey = CornerKey<std::uint64_t>;
 
 std::uint64_t hash(const SingleKey& key) noexcept {
@@ -62,7 +63,7 @@ Point3 point(const DoubleKey& key) noexcept {
     return {std::bit_cast<double>(key.x), std::bit_cast<double>(key.y), std::bit_cast<double>(key.z)};
 }
 
-/// The corners of triangle i.
+/// Returns the corners of triangle i.
 template <class Key>
 std::array<Key, 3> keys_of(const TriangleSoup& soup, std::size_t i) noexcept {
     if constexpr (std::is_same_v<Key, SingleKey>)
@@ -76,12 +77,12 @@ template <class Key>
 struct Range {
     std::size_t begin = 0;
     std::size_t end = 0;
-    PageArray<Key> keys; ///< room for all corners; only the pages in use exist
+    PageArray<Key> keys; ///< sized for all corners; only the pages in use are allocated
     std::size_t locals = 0;
     std::size_t first_local = 0; ///< of this range among those of all ranges
 };
 
-/// Triangles between two looks at the clock.
+/// Triangles between two checks for cancellation.
 constexpr std::size_t block = std::size_t{1} << 15;
 
 template <class Key>
@@ -113,7 +114,7 @@ void gather(const TriangleSoup& soup, Range<Key>& range, std::vector<std::array<
     range.locals = locals;
 }
 
-/// Numbers those of n things, in order, that are the first of their kind (`first[i] == 0`). Returns how many.
+/// Numbers the items, in order, that are the first of their kind (`first[i] == 0`). Returns their number.
 std::uint32_t number_firsts(Executor& executor, std::span<const std::uint32_t> first,
                             std::span<std::uint32_t> number) {
     // Count, prefix sum, fill.
@@ -141,7 +142,7 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
     IndexedMesh mesh;
     ProgressMeter progress(execution, Stage::weld, soup.size());
     Executor executor(execution);
-    // A range below a block is not worth a thread.
+    // A range smaller than this is not worth a thread.
     const std::size_t ranges_wanted = std::min<std::size_t>(executor.workers(), soup.size() / block + 1);
     resize_in_huge_pages(executor, mesh.triangles, soup.size());
 
@@ -167,7 +168,7 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
                     fmt::format("cannot weld {} triangles: more than 2^32 - 1 corners are left to compare",
                                 soup.size()));
 
-    // first[i]: the first local vertex equal to local vertex i, + 1; 0 when that is itself.
+    // first[i] is 1 + the first local vertex equal to local vertex i, or 0 if that is i itself.
     const PageArray<std::uint32_t> first(locals, Fill::zero);
     join_equal_keys<Key>(
         executor, parts, [](const Key& key) { return hash(key); },
@@ -179,7 +180,7 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
     const std::uint32_t kinds = number_firsts(executor, first.span(), number.span());
     mesh.vertices.reserve(kinds);
     make_pages_ready(executor, mesh.vertices.data(), kinds * sizeof(Point3));
-    // To resize a vector is one thread's work: it is the first chunk, beside those of the triangles.
+    // Resizing a vector takes one thread: it is the first chunk, in parallel with those of the triangles.
     executor.for_chunks(block + soup.size(), block, [&](std::size_t begin, std::size_t end, unsigned) {
         if (begin == 0) {
             mesh.vertices.resize(kinds);

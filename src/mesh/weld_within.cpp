@@ -1,10 +1,10 @@
 // Welding with a tolerance, in four steps:
 //
-//     points   equal vertices are one point; points are numbered in lexicographic order, so that nothing
-//              that follows depends on the order of the mesh
-//     pairs    points no further apart than the tolerance, found by a grid of cells that wide
-//     join     the closest pair first, as long as a group fits a box of that diagonal
-//     rewrite  triangles, from vertices to the first point of their groups
+//     points   equal vertices become one point; points are numbered in lexicographic order, so that the
+//              following steps do not depend on the order of the mesh
+//     pairs    a grid of cells as wide as the tolerance finds the points no farther apart than that
+//     join     groups are joined, the closest pair first, if the box of both has at most that diagonal
+//     rewrite  triangles refer to the first point of each group instead of vertices
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/repair.hpp"
@@ -47,8 +47,8 @@ struct PointPair {
     }
 };
 
-/// Points by cells about as wide as the tolerance. Each axis is divided from point to point, not evenly:
-/// numbers of even cells have no end where one vertex is far away.
+/// Points sorted by cells about as wide as the tolerance. Each axis is divided from point to point, not
+/// evenly: with even cells, one vertex far away would make the cell numbers unbounded.
 class CellGrid {
   public:
     CellGrid(std::span<const Point3> points, double tolerance) : places_(points.size()) {
@@ -57,7 +57,7 @@ class CellGrid {
             for (std::uint32_t i = 0; i < points.size(); ++i)
                 along[i] = {points[i].*axis, i};
             std::sort(along.begin(), along.end());
-            // What is within the tolerance of a point is in its own stretch or in one next to it.
+            // All points within the tolerance of a point are in its own interval or in an adjacent one.
             std::uint64_t stretch = 1;
             double start = along.empty() ? 0 : along.front().first;
             for (const auto& [x, i] : along) {
@@ -74,9 +74,9 @@ class CellGrid {
 
     [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
 
-    /// How many pairs within the tolerance there are at least: an eighth of a cell is smaller than that
-    /// across, so c points in a cell make (c^2 - 8 c) / 16. Those that `after` visits are no more than 14
-    /// times c^2.
+    /// Returns a lower bound on the number of pairs within the tolerance. An eighth of a cell has a diagonal
+    /// below the tolerance, so c points in a cell make at least (c^2 - 8 c) / 16 pairs. `after` visits at
+    /// most 14 times the sum of c^2.
     [[nodiscard]] std::size_t least_pairs() const noexcept {
         std::size_t squares = 0;
         for (std::size_t i = 0, begin = 0; i < places_.size(); ++i) {
@@ -88,14 +88,14 @@ class CellGrid {
         return squares / 16 - std::min(squares / 16, places_.size() / 2);
     }
 
-    /// visit(point, other) for the i-th point in the order of the grid and all that come after it in its own
-    /// cell and in the half of the neighbours that come after it.
+    /// Calls visit(point, other) for the i-th point in the order of the grid and all that follow it in its
+    /// own cell and in the half of the neighbouring cells that follow it.
     template <class Visit>
     void after(std::size_t i, const Visit& visit) const {
         constexpr std::uint64_t next = std::uint64_t{1} << 32;
         const auto from = places_.begin() + static_cast<std::ptrdiff_t>(i);
         const std::uint64_t cell = from->second & ~(next - 1);
-        // The three cells of a row are neighbours in the order.
+        // The three cells of a row are consecutive in the order.
         const auto visit_row = [&](auto k, std::uint64_t row) {
             for (; k != places_.end() && k->first == row && k->second < cell + 2 * next; ++k)
                 visit(static_cast<std::uint32_t>(from->second), static_cast<std::uint32_t>(k->second));
@@ -107,7 +107,8 @@ class CellGrid {
     }
 
   private:
-    using Place = std::pair<std::uint64_t, std::uint64_t>; ///< cells along x and y; along z, and the point
+    /// The cells along x and y; the cell along z, and the point.
+    using Place = std::pair<std::uint64_t, std::uint64_t>;
 
     std::vector<Place> places_;
 };
@@ -122,7 +123,7 @@ Error too_coarse(double tolerance) {
 std::vector<PointPair> close_pairs(Executor& executor, std::span<const Point3> points, double tolerance) {
     const CellGrid grid(points, tolerance);
     const std::size_t most = 64 * points.size() + (std::size_t{1} << 16);
-    if (grid.least_pairs() > most) // else few are looked at, too
+    if (grid.least_pairs() > most) // otherwise few pairs are examined, too
         throw too_coarse(tolerance);
     std::vector<std::vector<PointPair>> found(executor.workers());
     std::atomic<std::size_t> count{0};
@@ -168,7 +169,7 @@ ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm, const Ex
     }
 
     const UnionFind groups(points.size());
-    std::vector<Box3> boxes(points.size()); // of each group, at its lowest member
+    std::vector<Box3> boxes(points.size()); // of each group, stored at its lowest member
     for (std::size_t i = 0; i < points.size(); ++i)
         boxes[i].add(points[i]);
     const std::vector<PointPair> pairs = close_pairs(executor, points, tolerance_mm);
@@ -199,7 +200,7 @@ ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm, const Ex
     for (std::size_t i = 0; i < std::min(places.size(), repair_places); ++i)
         result.places.push_back(points[places[i]]);
 
-    // Vertices are numbered in the order in which the mesh had the first of each group.
+    // Vertices are numbered in the order of the first vertex of each group in the mesh.
     constexpr std::uint32_t none = 0xffffffff;
     std::vector<std::uint32_t> number(points.size(), none);
     std::vector<std::uint32_t> vertex(mesh.vertices.size());

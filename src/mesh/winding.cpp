@@ -13,9 +13,9 @@ namespace lamella {
 
 namespace {
 
-/// How often the projection of a triangle to the x-y plane winds around p: -1, 0 or 1. Each side counts where
-/// a ray from p to the right crosses it, and is evaluated from its lower end, so that two triangles always
-/// agree on the side that they share.
+/// Returns how many times the projection of a triangle onto the x-y plane winds around p: -1, 0 or 1. A side
+/// counts if a ray from p to the right crosses it. It is evaluated from its lower end, so that two triangles
+/// always agree on the side that they share.
 int projected_winding(const std::array<Point3, 3>& t, const Point3& p) {
     int winding = 0;
     for (int k = 0; k < 3; ++k) {
@@ -32,7 +32,7 @@ int projected_winding(const std::array<Point3, 3>& t, const Point3& p) {
     return winding;
 }
 
-/// For a triangle whose projection holds p.
+/// Returns whether a triangle whose projection contains p lies above p.
 bool above(const Triangle3& triangle, const Point3& p) {
     const auto [low, high] = std::minmax({triangle[0].z, triangle[1].z, triangle[2].z});
     if (low > p.z)
@@ -46,7 +46,7 @@ bool above(const Triangle3& triangle, const Point3& p) {
     return (side < 0) == (n.z > 0);
 }
 
-/// Points by cells of a square grid over the x-y plane.
+/// Points sorted by the cells of a square grid over the x-y plane.
 class PointGrid {
   public:
     explicit PointGrid(std::span<const Point3> points) {
@@ -68,7 +68,7 @@ class PointGrid {
             members_[next[cells[i]]++] = i;
     }
 
-    /// visit(point) for all points whose cells the triangle's box covers.
+    /// Calls visit(point) for all points in cells that the triangle's box covers.
     template <class Visit>
     void under(const std::array<Point3, 3>& t, const Visit& visit) const {
         const auto [left, right] = std::minmax({t[0].x, t[1].x, t[2].x});
@@ -85,7 +85,7 @@ class PointGrid {
 
   private:
     [[nodiscard]] std::size_t cell(double v, double low, double high) const {
-        if (!(v > low)) // also where all points share a coordinate
+        if (!(v > low)) // also if all points share a coordinate
             return 0;
         const double at = (v - low) / (high - low) * static_cast<double>(side_);
         return at < static_cast<double>(side_) ? static_cast<std::size_t>(at) : side_ - 1;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Is a point inside a mesh?
+// Winding numbers of a mesh around points.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
@@ -12,14 +12,13 @@
 
 namespace lamella {
 
-/// visit(point, triangle, winding, worker) for every triangle above a point: the sum of the windings is how
-/// often the mesh winds around it: 1 inside a closed surface that is counter-clockwise seen from outside, 0
-/// outside, -1 inside one that is turned inside out. Calls come from all workers at once.
+/// Calls visit(point, triangle, winding, worker) for every triangle above a point. The sum of the windings is
+/// the winding number of the mesh around the point: 1 inside a closed surface that is counter-clockwise seen
+/// from outside, 0 outside, -1 inside one that is inside out. Calls come from all workers at once.
 ///
-/// Where the ray up from a point meets an edge or a vertex, it is decided by a half-open rule that all
-/// triangles at the edge share, so nothing is counted twice or missed; only whether a triangle is above a
-/// point depends on rounding, for a point on it. O(triangles + points) for points that few triangles lie
-/// above or below.
+/// If the vertical ray from a point hits an edge or a vertex, a half-open rule decides that all triangles at
+/// the edge share, so nothing is counted twice or missed. Only whether a triangle lies above a point on it
+/// depends on rounding. O(triangles + points) if few triangles lie above or below each point.
 void for_triangles_above(
     Executor& executor, const IndexedMesh& mesh, std::span<const Point3> points,
     const std::function<void(std::size_t point, std::size_t triangle, int winding, unsigned worker)>& visit);

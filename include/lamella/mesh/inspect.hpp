@@ -1,6 +1,6 @@
 #pragma once
 
-// What is wrong with a mesh, counted. Nothing is repaired.
+// Counts the defects of a mesh. Nothing is repaired.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -25,40 +25,41 @@ struct Inspection {
     std::uint64_t boundary_edges = 0;
     /// Edges with more than two triangles.
     std::uint64_t nonmanifold_edges = 0;
-    /// Edges that triangles run through one way more often than the other; without boundary edges.
+    /// Edges through which triangles run more often in one direction than in the other; without boundary
+    /// edges.
     std::uint64_t orientation_conflicts = 0;
-    /// Triangles beyond the first with the same three vertices, whichever way round.
+    /// Triangles beyond the first with the same three vertices, in either orientation.
     std::uint64_t duplicate_triangles = 0;
-    /// Triangles that name a vertex twice: lines or points. They have no edges and belong to no shell.
+    /// Triangles that use a vertex twice: lines or points. They have no edges and belong to no shell.
     std::uint64_t degenerate_triangles = 0;
-    /// Parts connected over edges.
+    /// Connected components: triangles connected by edges.
     std::uint64_t shells = 0;
-    /// Closed shells of negative volume that lie in the material of the others: hollows, as they should be.
+    /// Closed shells of negative volume inside the material of others: hollows that are oriented correctly.
     std::uint64_t cavities = 0;
-    /// Closed shells of negative volume that do not: turned inside out.
+    /// Closed shells of negative volume that are not inside material: inside out.
     std::uint64_t inverted_shells = 0;
 
-    /// Every edge is used as often one way as the other: slices have no open chains.
+    /// Returns true if every edge is used equally often in both directions: slices have no open chains.
     [[nodiscard]] bool closed() const noexcept { return boundary_edges == 0 && orientation_conflicts == 0; }
-    /// Closed, and nothing else counted above.
+    /// Returns true if `defect_kinds` finds nothing: all counts of defects are 0.
     [[nodiscard]] bool sound() const noexcept;
 };
 
-/// How a kind of defect is called wherever it is told.
+/// The words for a kind of defect in all reports.
 struct DefectWords {
-    std::string_view key;     ///< as its count is called, here and in JSON
-    std::string_view one;     ///< of them
-    std::string_view many;    ///< of them
-    std::string_view meaning; ///< what it is, and what comes of it in slices
+    std::string_view key;     ///< name of its count, here and in JSON
+    std::string_view one;     ///< singular
+    std::string_view many;    ///< plural
+    std::string_view meaning; ///< explains the defect and its effect on slices
 };
 
 struct DefectKind {
     std::uint64_t Inspection::*count;
-    bool spoils_contours; ///< they stay open or run the wrong way round
+    bool spoils_contours; ///< contours stay open or run in the wrong direction
     DefectWords words;
 };
 
-/// All that an inspection counts.
+/// All defects that an inspection counts.
 inline constexpr std::array<DefectKind, 6> defect_kinds{
     {{&Inspection::boundary_edges,
       true,
@@ -85,7 +86,7 @@ inline constexpr std::array<DefectKind, 6> defect_kinds{
       {"inverted_shells", "inverted shell", "inverted shells",
        "inside out; contours run the wrong way round there"}}}};
 
-/// The words for what this member of Inspection counts.
+/// Returns the words for the defect that this member of Inspection counts.
 [[nodiscard]] constexpr const DefectWords& words_of(std::uint64_t Inspection::*count) {
     const auto* kind = defect_kinds.begin();
     while (kind->count != count)
@@ -98,10 +99,10 @@ inline bool Inspection::sound() const noexcept {
                        [this](const DefectKind& kind) { return this->*kind.count == 0; });
 }
 
-/// Counts the defects of a mesh. Expected O(n), for shells that few triangles lie above or below (n shells in
-/// one another take O(n^2) of time, but no more memory than others); parallel where it pays; the same result
-/// for any number of threads. Degenerate triangles (equal corners) are counted and otherwise ignored, as
-/// slicing ignores them.
+/// Counts the defects of a mesh. Degenerate triangles (equal corners) are counted and otherwise ignored, as
+/// in slicing. Expected O(n) if few triangles lie above or below each shell; n nested shells take O(n^2)
+/// time, but no more memory than others. Runs in parallel where it pays; the result is the same for any
+/// number of threads.
 [[nodiscard]] Inspection inspect(const IndexedMesh& mesh, const Execution& execution = {});
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// A mesh of either kind, as files hold them.
+// A mesh of either kind: a soup or an indexed mesh, as files contain them.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -15,49 +15,49 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// A TriangleSoup or an IndexedMesh: immutable, shared, cheap to copy. It is what all functions take that do
-/// not care which of the two it is. Its coordinates are finite, and its indices those of vertices.
+/// A TriangleSoup or an IndexedMesh: immutable, shared, cheap to copy. Functions that accept both kinds take
+/// a Mesh. Its coordinates are finite, and its indices are those of existing vertices.
 ///
-/// Vertices with equal coordinates are the same vertex, in either kind: an indexed mesh may repeat them, as
-/// files do whose faces share none, and is sliced, welded and inspected as if it did not.
+/// Vertices with equal coordinates are the same vertex, in either kind: an indexed mesh may repeat vertices,
+/// as files do whose faces share none, and it is sliced, welded and inspected as if it did not.
 class Mesh {
   public:
     /// An empty soup.
     Mesh() = default;
     Mesh(TriangleSoup soup); // NOLINT(google-explicit-constructor): a soup is a mesh
-    /// Throws Error{input} that names the first triangle with a vertex that is not there, or the first vertex
-    /// that is not finite or too far away (see `check`).
+    /// Throws Error{input} that names the first triangle with a vertex that does not exist, or the first
+    /// vertex that is not finite or too far away (see `check`).
     Mesh(IndexedMesh mesh); // NOLINT(google-explicit-constructor): so is this; move it in to save a copy
 
-    /// What it is; the other one is null.
+    /// The soup or the indexed mesh; the other of the two is null.
     [[nodiscard]] const TriangleSoup* soup() const noexcept { return indexed_ ? nullptr : &soup_; }
     [[nodiscard]] const IndexedMesh* indexed() const noexcept { return indexed_.get(); }
 
-    /// body(soup) or body(indexed mesh).
+    /// Returns body(soup) or body(indexed mesh).
     template <class Body>
     decltype(auto) visit(const Body& body) const {
         return indexed_ ? body(*indexed_) : body(soup_);
     }
 
-    /// How many triangles.
+    /// Number of triangles.
     [[nodiscard]] std::size_t size() const noexcept {
         return indexed_ ? indexed_->triangles.size() : soup_.size();
     }
     [[nodiscard]] bool empty() const noexcept { return size() == 0; }
 
-    /// The corners of triangle i, counter-clockwise seen from outside.
+    /// Returns the corners of triangle i, counter-clockwise seen from outside.
     [[nodiscard]] Triangle3 triangle(std::size_t i) const noexcept {
         return indexed_ ? corners(*indexed_, i) : soup_.placed(i);
     }
 
-    /// The same mesh with each vertex once (see `weld` of an IndexedMesh); a soup as it is. Found when it is
-    /// asked for the first time, and then shared by all copies of the mesh, as long as one of them lives.
-    /// Expected O(n) the first time. From any number of threads.
+    /// Returns the same mesh with equal vertices joined (see `weld` of an IndexedMesh); a soup is returned as
+    /// it is. The result is computed on the first call and shared by all copies of the mesh. May be called
+    /// from any number of threads. Expected O(n) for the first call.
     [[nodiscard]] Mesh with_joined_vertices(const Execution& execution = {}) const;
 
-    /// The same mesh under a map, still counter-clockwise seen from outside when that mirrors. O(1) for a
-    /// soup and for the identity; an indexed mesh is copied. Throws Error{usage} when the map is not finite,
-    /// or moves vertices of an indexed mesh beyond 1e100 mm.
+    /// Returns the mesh under a map, still counter-clockwise seen from outside if the map mirrors. Throws
+    /// Error{usage} if the map is not finite, or moves vertices of an indexed mesh beyond 1e100 mm. O(1) for
+    /// a soup and for the identity; an indexed mesh is copied.
     [[nodiscard]] Mesh transformed(const Transform& map) const;
 
   private:
@@ -71,11 +71,11 @@ class Mesh {
 [[nodiscard]] Box3 bounding_box(const Mesh& mesh, const Execution& execution = {});
 [[nodiscard]] double volume(const Mesh& mesh, const Execution& execution = {});
 
-/// All equal corners joined, exactly; see `weld` of a TriangleSoup and of an IndexedMesh.
+/// Joins all equal corners exactly; see `weld` of a TriangleSoup and of an IndexedMesh.
 [[nodiscard]] IndexedMesh weld(const Mesh& mesh, const Execution& execution = {});
 
-/// All meshes as one, in this order, sharing no vertices; a soup among several is welded by itself. One mesh
-/// is passed through as it is. Throws Error{limit} beyond 2^32 - 1 vertices or triangles.
+/// Returns all meshes as one, in this order; they share no vertices, and each soup among several is welded by
+/// itself. A single mesh is returned as it is. Throws Error{limit} beyond 2^32 - 1 vertices or triangles.
 [[nodiscard]] Mesh joined(std::span<const Mesh> meshes, const Execution& execution = {});
 
 } // namespace lamella

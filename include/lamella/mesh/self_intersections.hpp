@@ -1,6 +1,6 @@
 #pragma once
 
-// Triangles of a mesh that meet where they should not: found and counted, never mended.
+// Finds and counts triangles of a mesh that intersect where they should not. Nothing is repaired.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -16,21 +16,21 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// How two triangles meet beyond the vertices and the edge that they share.
+/// The kind of an intersection of two triangles beyond the vertices and the edge that they share.
 enum class MeetingKind {
     crossing,    ///< each passes through the other
-    overlapping, ///< they lie in one plane and have a piece of area in common
-    touching,    ///< they have a point or a segment in common, and one of them ends there
+    overlapping, ///< they lie in one plane and their areas overlap
+    touching,    ///< they share a point or a segment, and one of them ends there
 };
 
 struct Meeting {
     std::uint32_t triangle_a = 0; ///< below triangle_b
     std::uint32_t triangle_b = 0;
     MeetingKind kind = MeetingKind::crossing;
-    Point3 at; ///< about where
+    Point3 at; ///< approximate location
 };
 
-/// Pairs of triangles of two parts of a mesh (or of one, where a == b).
+/// Numbers of intersecting pairs of triangles of two parts of a mesh (or of one, where a == b).
 struct PartMeetings {
     std::uint32_t part_a = 0; ///< not above part_b
     std::uint32_t part_b = 0;
@@ -40,20 +40,20 @@ struct PartMeetings {
 };
 
 struct SelfIntersections {
-    std::uint64_t crossing = 0;    ///< pairs of triangles, all of them
+    std::uint64_t crossing = 0;    ///< number of pairs of triangles; complete
     std::uint64_t overlapping = 0; ///< likewise; two triangles with the same three vertices are such a pair
     std::uint64_t touching = 0;    ///< likewise
-    /// Triangles without area (degenerate, or with all corners on a line): they were left out.
+    /// Triangles without area (degenerate, or with all corners on a line), which are ignored.
     std::uint64_t flat_triangles = 0;
-    /// The first few that cross or overlap, by (triangle_a, triangle_b); after them the first few that touch.
+    /// The first few pairs that cross or overlap, by (triangle_a, triangle_b); then the first few that touch.
     std::vector<Meeting> first;
-    /// By (part_a, part_b), where parts were given.
+    /// By (part_a, part_b), if parts were given.
     std::vector<PartMeetings> parts;
 
     [[nodiscard]] std::uint64_t pairs() const noexcept { return crossing + overlapping + touching; }
 };
 
-/// How meetings are called wherever they are told, in the order of MeetingKind.
+/// The words for intersections in all reports, in the order of MeetingKind.
 struct MeetingWords {
     std::uint64_t SelfIntersections::*count;
     DefectWords words;
@@ -70,18 +70,18 @@ inline constexpr std::array<MeetingWords, 3> meeting_words{
 }
 
 struct MeetingOptions {
-    std::size_t keep = 16; ///< bounds SelfIntersections::first, for each half of it
-    /// The part that each triangle belongs to, such as its shell; empty: no parts are told.
+    std::size_t keep = 16; ///< largest number of pairs in each half of SelfIntersections::first
+    /// The part of each triangle, such as its shell; if empty, `SelfIntersections::parts` stays empty.
     std::span<const std::uint32_t> parts = {};
 };
 
-/// Finds all pairs of triangles that have a point in common which is not theirs by a shared vertex or edge.
-/// Decided exactly, for the coordinates as they are. Sharing is taken at its word: vertices of equal
-/// coordinates are two vertices, and their triangles touch. Flat triangles are left out.
+/// Finds all pairs of triangles that have a point in common other than a shared vertex or edge. The decision
+/// is exact for the given coordinates. Vertices are compared by index: two vertices of equal coordinates are
+/// different, and their triangles touch. Flat triangles are ignored. Throws Error{usage} unless `parts` is
+/// empty or has one entry per triangle.
 ///
-/// O(n log n + pairs of triangles whose boxes overlap), on all threads; the same result for any number of
-/// them. Long triangles aslant in boxes full of others are the slow case. Throws Error{usage} for `parts` of
-/// more or fewer triangles than there are.
+/// O(n log n + pairs of triangles with overlapping boxes), on all threads; the result is the same for any
+/// number of threads. The slow case is long slanted triangles whose boxes contain many others.
 [[nodiscard]] SelfIntersections find_self_intersections(const IndexedMesh& mesh,
                                                         const MeetingOptions& options = {},
                                                         const Execution& execution = {});

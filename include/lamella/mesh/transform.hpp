@@ -1,6 +1,6 @@
 #pragma once
 
-// Affine maps: placing a part, its unit, and the direction in which it is sliced.
+// Affine maps: position, scale and orientation of a part, and the direction in which it is sliced.
 
 #include "lamella/core/point.hpp"
 
@@ -23,30 +23,30 @@ struct Transform {
         return {row(0) + 0.0, row(1) + 0.0, row(2) + 0.0};
     }
 
-    /// Negative when the map mirrors.
+    /// Returns the determinant, which is negative if the map mirrors.
     [[nodiscard]] double determinant() const noexcept;
 
     friend bool operator==(const Transform&, const Transform&) = default;
 };
 
-/// No entry is infinite or NaN.
+/// Returns true if no entry is infinite or NaN.
 [[nodiscard]] bool finite(const Transform& map) noexcept;
 
-/// First `inner`, then `outer`.
+/// Returns the map that applies `inner` first, then `outer`.
 [[nodiscard]] Transform compose(const Transform& outer, const Transform& inner) noexcept;
 
-/// Throws Error{usage} when the map flattens (determinant 0) or is not finite.
+/// Returns the inverse. Throws Error{usage} if the map flattens (determinant 0) or is not finite.
 [[nodiscard]] Transform inverse(const Transform& map);
 
 [[nodiscard]] Transform translation(double x, double y, double z) noexcept;
 [[nodiscard]] Transform scaling(double x, double y, double z) noexcept;
 
-/// Right-handed rotation about a coordinate axis ('x', 'y' or 'z') by degrees. Multiples of 90 degrees are
-/// exact: no rounded sine moves a flat face off its plane. Throws Error{usage} for another axis.
+/// Returns the right-handed rotation about a coordinate axis ('x', 'y' or 'z') by degrees. Multiples of 90
+/// degrees are exact: no rounded sine moves a flat face off its plane. Throws Error{usage} for another axis.
 [[nodiscard]] Transform rotation(char axis, double degrees);
 
-/// The rotation that turns `direction` (any length, not zero) to +z, so that slicing the mapped mesh is
-/// slicing along `direction`. Coordinate axes give exact maps. Throws Error{usage} for a zero or non-finite
+/// Returns the rotation from `direction` (any length, not zero) to +z: slicing the mapped mesh is slicing
+/// along `direction`. Coordinate axes give exact maps. Throws Error{usage} for a zero or non-finite
 /// direction.
 [[nodiscard]] Transform upright(const Point3& direction);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Triangles as STL files hold them: corners in single precision, nothing shared.
+// Triangles as in STL files: corners in single precision, without shared vertices.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -31,12 +31,12 @@ struct Point3f {
 using Triangle3f = std::array<Point3f, 3>;
 using Triangle3 = std::array<Point3, 3>;
 
-/// An immutable view of n triangles with equal spacing in memory, that keeps its memory alive. It is cheap to
-/// copy. The records of a binary STL file are such a view (spacing 50 bytes).
+/// An immutable view of n triangles with equal spacing in memory, which it keeps alive. It is cheap to copy.
+/// The records of a binary STL file are such a view (spacing 50 bytes).
 ///
-/// A soup may carry a placement: an affine map that is applied to each corner, in double, when it is read.
-/// Corners are finite: constructors throw Error{input} that names the first triangle with one that is not.
-/// Equal corners are meant to be the same vertex, with -0 equal to +0.
+/// A soup may carry a placement: an affine map applied in double precision to each corner when it is read.
+/// Corners are finite: constructors throw Error{input} that names the first triangle with a corner that is
+/// not. Equal corners are the same vertex, with -0 equal to +0.
 class TriangleSoup {
   public:
     TriangleSoup() = default;
@@ -44,15 +44,15 @@ class TriangleSoup {
     /// A soup that owns its triangles. O(n).
     explicit TriangleSoup(std::vector<Triangle3f> triangles);
 
-    /// A view of `count` triangles of nine consecutive floats; the i-th starts at `first + i * stride` (no
-    /// alignment needed). `owner` keeps that memory alive as long as any copy of the soup. O(n).
+    /// A view of `count` triangles of nine consecutive floats; the i-th starts at `first + i * stride`,
+    /// without alignment. `owner` keeps that memory alive as long as any copy of the soup. O(n).
     TriangleSoup(std::shared_ptr<const void> owner, const std::byte* first, std::size_t stride,
                  std::size_t count);
 
-    /// The corners have been checked: all of them are finite.
+    /// States that all corners have been checked to be finite.
     struct KnownFinite {};
 
-    /// The same view, without a second look at the corners. `box` is that of all corners, where it is known.
+    /// The same view without the check of the corners. `box` is the box of all corners, if known.
     TriangleSoup(KnownFinite, std::shared_ptr<const void> owner, const std::byte* first, std::size_t stride,
                  std::size_t count, const std::optional<Box3>& box = std::nullopt)
         : owner_(std::move(owner)), first_(first), stride_(stride), count_(count), stored_box_(box) {}
@@ -60,7 +60,7 @@ class TriangleSoup {
     [[nodiscard]] std::size_t size() const noexcept { return count_; }
     [[nodiscard]] bool empty() const noexcept { return count_ == 0; }
 
-    /// Triangle i as stored: no placement, but with -0 turned into +0.
+    /// Returns triangle i as stored: without placement, but with -0 replaced by +0.
     [[nodiscard]] Triangle3f stored(std::size_t i) const noexcept {
         Triangle3f t;
         std::memcpy(&t, first_ + i * stride_, sizeof t);
@@ -69,8 +69,8 @@ class TriangleSoup {
         return t;
     }
 
-    /// Triangle i with the placement applied, still counter-clockwise seen from outside when the placement
-    /// mirrors.
+    /// Returns triangle i with the placement applied, counter-clockwise seen from outside even if the
+    /// placement mirrors.
     [[nodiscard]] Triangle3 placed(std::size_t i) const noexcept {
         const Triangle3f t = stored(i);
         const auto corner = [&](std::size_t k) {
@@ -83,14 +83,14 @@ class TriangleSoup {
     [[nodiscard]] const Transform& placement() const noexcept { return placement_; }
     [[nodiscard]] bool has_placement() const noexcept { return has_placement_; }
 
-    /// The placement mirrors: `placed` swaps corners 1 and 2.
+    /// Returns true if the placement mirrors: `placed` swaps corners 1 and 2.
     [[nodiscard]] bool mirrored() const noexcept { return mirrored_; }
 
-    /// The same triangles under a further map (applied after the present placement). Shares the memory.
-    /// Throws Error{usage} when the map is not finite.
+    /// Returns the same triangles under a further map, applied after the present placement. Shares the
+    /// memory. Throws Error{usage} if the map is not finite.
     [[nodiscard]] TriangleSoup transformed(const Transform& map) const;
 
-    /// The triangles [begin, end). Shares the memory.
+    /// Returns the triangles [begin, end). Shares the memory.
     [[nodiscard]] TriangleSoup part(std::size_t begin, std::size_t end) const {
         TriangleSoup some = *this;
         some.first_ += begin * stride_;
@@ -99,11 +99,11 @@ class TriangleSoup {
         return some;
     }
 
-    /// Where the triangles lie: for code that streams over them.
+    /// Address and spacing of the triangles, for code that streams over them.
     [[nodiscard]] const std::byte* data() const noexcept { return first_; }
     [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
 
-    /// The box of all corners as stored, where whoever made the soup knew it.
+    /// The box of all corners as stored, if the creator of the soup supplied it.
     [[nodiscard]] const std::optional<Box3>& stored_box() const noexcept { return stored_box_; }
 
   private:
@@ -117,12 +117,13 @@ class TriangleSoup {
     bool mirrored_ = false;
 };
 
-/// The box of all corners, placement applied. Empty for an empty soup. O(n), parallel; O(1) for a binary STL
-/// file without a placement, whose box was found while it was read.
+/// Returns the box of all corners with the placement applied. Empty for an empty soup. O(n), parallel; O(1)
+/// for a binary STL file without a placement, because reading computes its box.
 [[nodiscard]] Box3 bounding_box(const TriangleSoup& soup, const Execution& execution = {});
 
-/// Signed volume in mm^3: positive when closed and counter-clockwise seen from outside (divergence theorem;
-/// meaningless for a mesh that is not closed). O(n), parallel, the same bits for any number of threads.
+/// Returns the signed volume in mm^3: positive if the soup is closed and counter-clockwise seen from outside
+/// (divergence theorem), meaningless if it is not closed. O(n), parallel; the same bits for any number of
+/// threads.
 [[nodiscard]] double volume(const TriangleSoup& soup, const Execution& execution = {});
 
 } // namespace lamella
