@@ -1,6 +1,6 @@
 #pragma once
 
-// How a job says where its parts are cut.
+// Layerings: the settings by which a job cuts its parts.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -15,22 +15,22 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Cuts at exactly these z; see plan_listed.
+/// Cuts at exactly these heights; see plan_listed.
 struct ListedPlanes {
     std::vector<double> z = {};
-    double single_height = UniformLayers{}.layer_height; ///< of the layer of a single cut
+    double single_height = UniformLayers{}.layer_height; ///< height of the layer if there is a single cut
 };
 
-/// Layers of the heights of these ranges, and of `layer_height` elsewhere; see plan_by_ranges.
+/// Layers with the heights of these ranges, and of `layer_height` outside them; see plan_by_ranges.
 struct HeightRanges {
     std::vector<HeightRange> ranges = {};
     double layer_height = UniformLayers{}.layer_height;
 };
 
-/// The ways to cut; a job has one of them.
+/// The methods of cutting; a job uses one of them.
 using Cut = std::variant<UniformLayers, ListedPlanes, HeightRanges, AdaptiveLayers>;
 
-/// Where parts are cut: in which way, where within the thickness of each layer, and which of the layers.
+/// The method of cutting, the position of each cut within its layer, and the selected layers.
 struct Layering {
     Cut cut = {};
     SliceAt at = SliceAt::middle;
@@ -38,8 +38,8 @@ struct Layering {
     double snap_mm = 0; ///< see Plan
 };
 
-/// The planes that cut what lies in `box`. `mesh` makes it: it is called only where the layers are adaptive.
-/// Throws Error{usage} for an impossible plan, and for one whose planes all miss the box.
+/// Returns the plan for a part with the bounding box `box`. Calls `mesh` only for adaptive layers. Throws
+/// Error{usage} for an impossible plan, and if no plane meets the box.
 [[nodiscard]] Plan plan_of(const Layering& layering, const Box3& box, const std::function<Mesh()>& mesh,
                            const Execution& execution = {});
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Mesh and plan in, layers out.
+// Slicing: from a mesh and a plan to layers.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
@@ -16,76 +16,76 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// What the engines of the EECC paper (King, Rennie, Bennett 2021) count while they sort intersections into
-/// contours; its Tables 2, 3 and 4 and its section 4.1 are made of these. An intersection is one triangle on
-/// one plane; for `conventional` it is one segment that is longer than nothing.
+/// Counts of the engines of the EECC paper (King, Rennie, Bennett 2021) while they sort intersections into
+/// contours, from which its Tables 2, 3 and 4 and its section 4.1 follow. An intersection is one triangle on
+/// one plane; for `conventional` it is one segment of non-zero length.
 struct MatchingCounts {
-    /// What became of intersections when they were inserted.
+    /// Number of intersections by the case of their insertion.
     struct Cases {
-        std::uint64_t new_list = 0; ///< no match: a contour of its own
-        std::uint64_t front = 0;    ///< put before the first one of a contour
-        std::uint64_t back = 0;     ///< put behind the last one of a contour
-        std::uint64_t link = 0;     ///< put between two contours, which it made one
-        std::uint64_t close = 0;    ///< put behind the last one of a contour that it completed
+        std::uint64_t new_list = 0; ///< no match: started a contour
+        std::uint64_t front = 0;    ///< inserted before the first one of a contour
+        std::uint64_t back = 0;     ///< appended to a contour
+        std::uint64_t link = 0;     ///< inserted between two contours, which it joined
+        std::uint64_t close = 0;    ///< appended to a contour, which it completed
 
         [[nodiscard]] std::uint64_t total() const noexcept { return new_list + front + back + link + close; }
         Cases& operator+=(const Cases& other) noexcept;
     };
 
-    /// How often the lists of a plane were gone through for a match (Table 2; "requires sorting" in Table 3).
+    /// Number of searches through the lists of a plane (Table 2; "requires sorting" in Table 3).
     std::uint64_t searches = 0;
-    /// How many lists all searches together looked at, each for a match with its first and its last
-    /// intersection; for `conventional`, how many segments.
+    /// Number of lists examined in all searches, each at both ends; for `conventional`, number of segments.
     std::uint64_t comparisons = 0;
     /// All intersections (Table 4).
     Cases inserted;
-    /// Those among them that were placed by an edge link, without a search (the other columns of Table 3).
-    /// inserted.total() == by_edge_link.total() + searches, but for `conventional`.
+    /// Intersections placed by an edge link, without a search (the other columns of Table 3). Except for
+    /// `conventional`, inserted.total() == by_edge_link.total() + searches.
     Cases by_edge_link;
-    /// Size of the node of one intersection: what section 4.1 counts.
+    /// Size of the node of one intersection, which section 4.1 counts.
     std::uint64_t node_bytes = 0;
-    /// The most memory that nodes, lists and edges together took, as allocated.
+    /// Peak memory of nodes, lists and edges together, as allocated.
     std::uint64_t bytes = 0;
 
-    /// Of two runs, one after the other: the larger `bytes`, the sum of all else.
+    /// Adds the counts of a second slicing: maximum of `bytes`, `node_bytes` of the second, sum of the rest.
     MatchingCounts& operator+=(const MatchingCounts& other) noexcept;
 };
 
-/// What was sliced and how long it took; the statistics of the program are made from it.
+/// Sizes and times of one slicing; the statistics of the program are made from it.
 struct SliceReport {
-    double weld_seconds = 0;  ///< joining vertices; and in engines that need an indexed mesh, welding a soup
-    double link_seconds = 0;  ///< sweep: ranks and cut graph; the paper's: ranks, intersections and lists
-    double slice_seconds = 0; ///< sweep: walk and points; the paper's: reading the lists off
+    double weld_seconds = 0; ///< joining vertices; for engines that need an indexed mesh, also welding a soup
+    double link_seconds = 0; ///< sweep: ranks, cut graph; others: ranks, intersections, lists
+    double slice_seconds = 0; ///< sweep: walk and points; others: reading the lists
     std::uint64_t layers = 0;
     std::uint64_t contours = 0;
     std::uint64_t open_chains = 0;
     std::uint64_t points = 0;
-    std::optional<MatchingCounts> matching; ///< of the engines of the paper
+    std::optional<MatchingCounts> matching; ///< only from the engines of the paper
 
-    /// Of two runs, one after the other.
+    /// Adds the report of a second slicing.
     SliceReport& operator+=(const SliceReport& other) noexcept;
 };
 
 /// Receives layers while slicing goes on. It is called once for every layer, from several threads at once and
-/// in any order: the place for work that can run in parallel, such as formatting. The function it returns (or
-/// an empty one) is called later, one at a time and in ascending z: the place for what must be in order, such
-/// as writing. Either may throw: slicing stops and the exception reaches the caller.
+/// in any order, and does the work that can run in parallel, such as formatting. The function it returns,
+/// which may be empty, is called later, one at a time and in ascending z, and does the work that must be in
+/// order, such as writing. If either throws, slicing stops and the exception reaches the caller.
 using LayerSink = std::function<std::function<void()>(Layer&&)>;
 
-/// Sees each triangle of a mesh once, while slicing passes over them: the triangles [begin, end), called from
-/// several threads at once. A look at triangles that are in the cache costs less than a pass of its own.
+/// Sees each triangle of a mesh once while slicing reads them: the triangles [begin, end), from several
+/// threads at once. A visit while the triangles are in the cache costs less than a separate pass.
 using TriangleVisitor = std::function<void(const Mesh& mesh, std::uint64_t begin, std::uint64_t end)>;
 
-/// What an engine is given.
+/// Input and output of an engine.
 struct SliceJob {
     const Mesh& mesh;
     const Plan& plan;
     const LayerSink& sink;
     const Execution& execution;
-    /// How many points may be under way between the engine and the sink's last word on them; 0: any number.
+    /// Upper bound on the points handed to the sink and not yet released by its ordered function; 0:
+    /// unbounded here, unlike in slice_to.
     std::uint64_t points_in_flight;
     SliceReport& report;
-    /// Null where nobody wants to see triangles. Engines that weld have no part in it.
+    /// Null if no visitor is wanted. Only the sweep calls it; for engines that weld, slice() does.
     const TriangleVisitor* visitor = nullptr;
 };
 
@@ -94,7 +94,7 @@ struct Engine {
     std::string_view name;    ///< as in `--engine`
     std::string_view summary; ///< one line for help texts
     std::string_view source;  ///< the publication it follows, or ""
-    /// It works on an indexed mesh and welds a soup first: who has welded already gives it that mesh.
+    /// True if the engine needs an indexed mesh. It welds a soup first; pass the welded mesh if there is one.
     bool welds;
     void (*slice)(const SliceJob& job);
 };
@@ -102,31 +102,32 @@ struct Engine {
 /// All engines; the first is the default.
 [[nodiscard]] std::span<const Engine> engines() noexcept;
 
-/// Throws Error{usage} that lists the names there are.
+/// Returns the engine of this name. Throws Error{usage} that lists the known names.
 [[nodiscard]] const Engine& engine(std::string_view name);
 
-/// Slices into memory: one layer per plane of the plan, in order, each in normal form, empty where the plane
-/// misses the mesh. On a closed, consistently oriented mesh every contour is a ring, whatever the
-/// coordinates. Elsewhere what cannot be closed is kept as open chains.
+/// Returns one layer per plane of the plan, in order, each in normal form, empty where the plane misses the
+/// mesh. On a closed, consistently oriented mesh every contour is a ring, for any coordinates. Elsewhere
+/// contours that do not close are kept as open chains. `visitor`, if given, sees the mesh with joined
+/// vertices.
 ///
 /// Default engine: O(triangles + points + c log c) for c contours in a layer, on all threads; the same bytes
-/// for any number of threads and any order of the triangles. Throws Error{limit} beyond 2^32 / 3 triangles,
-/// Error{cancelled}, and what the progress function throws.
-/// `visitor`, where there is one, sees the mesh with joined vertices.
+/// for any number of threads and any order of the triangles. Throws Error{limit} for about 2^32 / 3 triangles
+/// or more, Error{cancelled}, and the exceptions of the progress function.
 [[nodiscard]] LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution = {},
                                SliceReport* report = nullptr, const Engine& engine = engines().front(),
                                const TriangleVisitor& visitor = {});
 
-/// Slices into a sink: the same layers, each handed over when it is done, with a bounded number of points in
-/// flight (some 56 MB per thread, 112 MB at least, or two layers per thread where those are more). Layers
-/// that the sink has let go of take no memory. `points_in_flight` overrides this bound; 0 keeps it.
+/// Slices into a sink: hands over the same layers as `slice`, each as soon as it is complete. The number of
+/// points in flight is bounded: to about 56 MB per thread and at least 112 MB, or to one layer if that is
+/// larger; `points_in_flight` overrides this bound and 0 keeps it. Layers that the sink has released take no
+/// memory.
 void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution = {},
               SliceReport* report = nullptr, const Engine& engine = engines().front(),
               std::uint64_t points_in_flight = 0, const TriangleVisitor& visitor = {});
 
-/// The area of the section at each plane of the plan, in mm^2, straight from the triangles: no linking, no
-/// contours. For closed meshes it equals the area of the layers, whichever engine made them: the check that
-/// `lamella verify --mesh` and the tests rest on. O(triangles + points).
+/// Returns the area of the section at each plane of the plan, mm^2, computed from the triangles without
+/// linking them to contours. For closed meshes it equals the area of the layers of every engine; `lamella
+/// verify --mesh` and the tests rely on this. O(triangles + points).
 [[nodiscard]] std::vector<double> section_areas(const Mesh& mesh, const Plan& plan,
                                                 const Execution& execution = {});
 

@@ -11,7 +11,7 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// From `from` to `to`, in mm above the bottom of the part, layers are so high.
+/// Height of the layers between `from` and `to`, mm above the bottom of the part.
 struct HeightRange {
     double from = 0;
     double to = 0;
@@ -20,14 +20,14 @@ struct HeightRange {
     friend bool operator==(const HeightRange&, const HeightRange&) = default;
 };
 
-/// Layers stacked from z_min, each of the height of the range that its bottom lies in, and of `layer_height`
-/// where there is none: a layer is not cut short where a range ends. A bottom that is less than a thousandth
-/// of a layer below the end of a range counts as at it. Which last layer exists is decided as in
+/// Returns layers stacked from z_min. Each has the height of the range that contains its bottom, or
+/// `layer_height` if no range does. A layer is not cut short at the end of a range. A bottom less than a
+/// thousandth of a layer below the end of a range counts as at the end. The last layer is chosen as in
 /// `plan_uniform`.
 ///
-/// Throws Error{usage} when ranges are empty, overlap or do not ascend, naming the first offender, for
-/// heights that are not positive finite numbers, when no layer is left, or when there would be more than 2^31
-/// - 2.
+/// Throws Error{usage} if ranges are empty, begin below 0, overlap or do not ascend, naming the first
+/// offender; if a height is not a positive finite number; if no layer remains; if the layers are too low for
+/// double precision; or if there were more than 2^31 - 2 layers.
 [[nodiscard]] Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& ranges,
                                   double layer_height, SliceAt slice_at = SliceAt::middle);
 
@@ -35,19 +35,20 @@ struct HeightRange {
 struct AdaptiveLayers {
     double min_height = 0.05;
     double max_height = 0.3;
-    /// How far the steps between layers may stand off the surface, measured across it. A layer of height h
-    /// makes cusps of h |n.z| on a triangle of the unit normal n: none on an upright wall, h on a level one.
+    /// Largest distance between the steps of the layers and the surface, measured across the surface. A layer
+    /// of height h makes cusps of h |n.z| on a triangle with unit normal n: 0 on a vertical wall, h on a
+    /// horizontal face.
     double cusp_mm = 0.05;
 };
 
-/// Layers stacked from the bottom of the mesh, each as high as `max_height` and `cusp_mm` allow for every
-/// triangle that reaches into it, but never below `min_height`, even where its cusps are larger then. The
-/// last one ends at the top, where that leaves it no lower than `min_height`.
+/// Returns layers stacked from the bottom of the mesh. Each is as high as `max_height` and `cusp_mm` allow
+/// for every triangle that reaches into it, but never below `min_height`, even if its cusps are then larger.
+/// The last layer ends at the top of the mesh unless that made it lower than `min_height`.
 ///
-/// Slopes are gathered in one pass over the triangles, by height, in steps of min_height / 4 (of a 2^20th of
-/// the part's height, where that is more): next to a step a layer may come out a little lower than it could
-/// be. O(triangles + height / min_height), the same for any number of threads. Throws Error{usage} as
-/// `plan_uniform`, and unless 0 < min_height <= max_height and 0 < cusp_mm.
+/// One pass over the triangles gathers their slopes by height, in steps of min_height / 4, or of a 2^20th of
+/// the part's height if that is more. Next to a change of slope a layer may therefore be slightly lower than
+/// necessary. The result is the same for any number of threads. Throws Error{usage} like `plan_uniform`, and
+/// unless 0 < min_height <= max_height and 0 < cusp_mm. O(triangles + s log s) for s steps.
 [[nodiscard]] Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers,
                                  SliceAt slice_at = SliceAt::middle, const Execution& execution = {});
 
