@@ -1,7 +1,7 @@
 #pragma once
 
-// The one formula for the point in which a plane cuts an edge. Every path, scalar or vector, computes exactly
-// these operations in this order, so that a cut point has the same bits whoever computes it.
+// The only formula for the point where a plane cuts an edge. All implementations, scalar and vector, compute
+// exactly these operations in this order, so that a cut point has the same bits everywhere.
 
 #include "lamella/core/point.hpp"
 
@@ -9,20 +9,21 @@
 
 namespace lamella {
 
-/// An edge prepared for being cut: from its base (the end that belongs to planes through it: the lower end
-/// under PlaneRule::section_above, the upper one under section_below) to its far end.
+/// An edge prepared for cutting, from its base to its far end. A plane through the base cuts the edge, a
+/// plane through the far end does not: the base is the lower end under PlaneRule::section_above, the upper
+/// end under section_below.
 ///
 ///     t = min((z - z0) * inverse_dz, 1)      x = x0 + t * dx      y = y0 + t * dy
 ///
-/// At the base t is 0 and the point is the base, bit for bit (but -0 becomes +0, as in all layers). dx and dy
-/// are shortened by one unit in the last place where x0 + dx would round beyond the far end; rounding is
-/// monotone, so no t in [0, 1] leads outside the edge's box. A plane so near both ends that inverse_dz
-/// overflows gives the far end (min(NaN, 1) is 1 as written below). Error: at most 6 units in the last place
-/// of the edge's extent (four for t, half of one each for the extent and the product, one for shortening it),
-/// plus half a unit of the result.
+/// At the base t is 0 and the point equals the base bit for bit (except that -0 becomes +0, as in all
+/// layers). dx is shortened by one unit in the last place if x0 + dx rounds beyond the far end; dy likewise.
+/// Rounding is monotone, so no t in [0, 1] gives a point outside the edge's box. If both ends are so near to
+/// the plane that inverse_dz overflows, the far end results (min(NaN, 1) is 1 in the code below). Error: at
+/// most 6 units in the last place of the edge's extent (four for t, half a unit each for the extent and the
+/// product, one for shortening it), plus half a unit of the result.
 ///
-/// A plane no further than the snap distance from the base goes through the base: t is 0 there, and where the
-/// base lies beyond the plane.
+/// If the plane is no further than the snap distance from the base, or the base lies beyond the plane, t is
+/// 0: the plane goes through the base.
 struct EdgeCut {
     double z0, inverse_dz, x0, dx, y0, dy, snap;
 

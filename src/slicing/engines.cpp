@@ -9,7 +9,7 @@
 
 namespace lamella {
 
-// Each is defined in the source that is named after it, which needs no header: nobody else calls it.
+// Each function is defined in the source named after it. It needs no header because only this table uses it.
 using SliceFunction = void(const SliceJob& job);
 SliceFunction slice_by_sweep;
 SliceFunction slice_by_conventional;
@@ -19,7 +19,7 @@ SliceFunction slice_by_eecc;
 
 namespace {
 
-// One row for each engine. Help texts, manuals, Python and the tests of all engines read this table.
+// One row per engine. Help texts, manuals, Python and the tests of all engines read this table.
 constexpr std::array table{
     Engine{"sweep", "links every cut edge once, then writes contours at memory speed", "", false,
            slice_by_sweep},

@@ -9,13 +9,13 @@
 namespace lamella {
 namespace {
 
-/// Whether a plane at z can cut anything of the box, by the rule of the plane.
+/// Returns whether a plane at z can cut anything in the box, by the rule of the plane.
 bool meets(double z, PlaneRule rule, double snap_mm, const Box3& box) {
     return rule == PlaneRule::section_above ? box.min.z <= z + snap_mm && z + snap_mm < box.max.z
                                             : box.min.z < z - snap_mm && z - snap_mm <= box.max.z;
 }
 
-/// Without the layers that nobody asked for.
+/// Returns the plan restricted to the selected layers. Throws Error{usage} if none of them meets the box.
 Plan selected(const Layering& layering, Plan plan, const Box3& box) {
     const PlaneSelection& only = layering.only;
     std::erase_if(plan.layers, [&](const PlannedLayer& layer) {
@@ -34,7 +34,7 @@ Plan selected(const Layering& layering, Plan plan, const Box3& box) {
     return plan;
 }
 
-/// Makes the plan of each way to cut.
+/// Makes the plan for each method of cutting.
 struct Planner {
     const Layering& layering;
     const Box3& box;

@@ -29,7 +29,8 @@ void NearFaces::add(const NearFaces& other) noexcept {
     farthest_mm = std::max(farthest_mm, other.farthest_mm);
 }
 
-/// What a thread finds: neighbours in a file mostly belong to the same face.
+/// Sums the faces that one thread finds. Most neighbours in a file belong to the same face, so the finder is
+/// locked only when the plane changes.
 class NearFaceFinder::Batch {
   public:
     explicit Batch(NearFaceFinder& finder)
@@ -38,30 +39,30 @@ class NearFaceFinder::Batch {
     Batch& operator=(const Batch&) = delete;
     ~Batch() { put_down(); }
 
-    /// Whether a triangle between these heights may be one.
+    /// Returns whether a triangle between these heights may be near a plane.
     [[nodiscard]] bool may_be(double low, double high) {
         if (!(high - low <= 2 * reach_))
             return false;
-        // The plane whose other side one of the corners is on.
+        // The candidate is the plane on whose opposite side one of the corners is.
         const bool above = ranks_.rule() == PlaneRule::section_above;
         const double wrong = above ? high : low;
         if (wrong != last_) {
             last_ = wrong;
             const std::uint32_t rank = ranks_(wrong);
-            plane_ = above ? rank - 1 : rank; // without one, the number is too large
+            plane_ = above ? rank - 1 : rank; // too large a number if there is no such plane
         }
         return plane_ < ranks_.count() && std::abs(high - ranks_.z(plane_)) <= reach_ &&
                std::abs(low - ranks_.z(plane_)) <= reach_;
     }
 
-    /// One that may be.
+    /// Adds a triangle for which `may_be` returned true.
     void add(const Triangle3& t, double low, double high) {
         const auto [ux, uy] = std::array{t[1].x - t[0].x, t[1].y - t[0].y};
         const auto [vx, vy] = std::array{t[2].x - t[0].x, t[2].y - t[0].y};
         const double twice = std::abs(ux * vy - uy * vx);
         const double longest = std::sqrt(
             std::max({ux * ux + uy * uy, vx * vx + vy * vy, (vx - ux) * (vx - ux) + (vy - uy) * (vy - uy)}));
-        // A steep one is no part of a level face, but so small that it lies near the plane.
+        // A steep triangle is not part of a horizontal face. It is near the plane because it is small.
         constexpr double steepest = 0.01;
         if (!(twice > 0 && (high - low) * longest <= steepest * twice))
             return;
@@ -84,7 +85,7 @@ class NearFaceFinder::Batch {
     const Ranks& ranks_;
     double reach_;
     double last_ = std::numeric_limits<double>::quiet_NaN();
-    std::uint32_t plane_ = 0; ///< of `last_`
+    std::uint32_t plane_ = 0; ///< the plane that belongs to `last_`
     NearFaces now_;
 };
 

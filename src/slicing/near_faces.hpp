@@ -1,6 +1,7 @@
 #pragma once
 
-// Faces that lie on a plane but for rounding: on which side of it they are cut is an accident.
+// Faces that would lie on a plane if coordinates were not rounded. Rounding decides on which side of the
+// plane they are.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -17,42 +18,42 @@
 
 namespace lamella {
 
-/// Triangles that are level but for rounding, near one plane.
+/// Triangles near one plane that are horizontal except for rounding.
 struct NearFaces {
     std::uint32_t plane = 0;
-    std::uint32_t unused = 0; ///< fills the gap: between processes nothing uninitialised is sent
-    std::uint64_t area = 0;   ///< in the units of a NearFaceFinder
-    double farthest_mm = 0;   ///< the largest distance of a corner from the plane
+    std::uint32_t unused = 0; ///< fills the gap: processes send no uninitialised bytes
+    std::uint64_t area = 0;   ///< in units of a NearFaceFinder
+    double farthest_mm = 0;   ///< largest distance of a corner from the plane
 
     void add(const NearFaces& other) noexcept;
 };
 
-/// Finds the triangles whose corners all lie within rounding of a plane, one of them at least on another side
-/// of it than a corner on the plane would (Ranks).
+/// Finds the triangles whose corners all lie within rounding of a plane, with at least one corner on the
+/// opposite side to a corner exactly on the plane (see Ranks).
 ///
-/// Rounding is that of coordinates (coordinate_rounding), and no more than a thousandth of the lowest layer,
-/// which counts as nothing where parts end, too.
+/// The rounding is that of coordinates (coordinate_rounding), but at most a thousandth of the lowest layer,
+/// which is also ignored at the top of a part.
 ///
-/// Areas are summed as integers, so that the order of triangles and threads cannot be seen in them.
+/// Areas are summed as integers, so the sums do not depend on the order of triangles and threads.
 class NearFaceFinder {
   public:
-    /// `box`: of the meshes, as they are placed.
+    /// `box` is the bounding box of the placed meshes.
     NearFaceFinder(const Plan& plan, const Box3& box);
 
-    /// False where no triangle can be found: vertices that near a plane count as on it.
+    /// Returns false if no triangle can be found because vertices this near to a plane snap to it.
     [[nodiscard]] bool any() const noexcept { return reach_mm_ > ranks_.snap_mm(); }
 
-    /// Triangles [begin, end). From any thread. O(end - begin).
+    /// Adds the triangles [begin, end). May be called from any thread. O(end - begin).
     void add(const Mesh& mesh, std::uint64_t begin, std::uint64_t end);
-    /// What was found so far, by ascending planes.
+    /// Returns the faces found so far, by ascending plane.
     [[nodiscard]] std::vector<NearFaces> found() const;
-    /// What other processes found of the same mesh.
+    /// Adds faces that other processes found in the same mesh.
     void add(std::span<const NearFaces> others);
 
     [[nodiscard]] double area_mm2(const NearFaces& faces) const noexcept {
         return static_cast<double>(faces.area) * unit_mm2_;
     }
-    /// Whether the area is more than what the rounding of walls all around the box may add or take away.
+    /// Returns whether the area exceeds the area that rounding of walls all around the box may add or remove.
     [[nodiscard]] bool matters(const NearFaces& faces) const noexcept {
         return area_mm2(faces) > reach_mm_ * perimeter_mm_;
     }
@@ -68,7 +69,7 @@ class NearFaceFinder {
     std::map<std::uint32_t, NearFaces> found_;
 };
 
-/// Adds a whole mesh, on all threads.
+/// Adds all triangles of a mesh, on all threads.
 void add_near_faces(NearFaceFinder& finder, const Mesh& mesh, const Execution& execution);
 
 } // namespace lamella

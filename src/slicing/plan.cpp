@@ -23,7 +23,7 @@ std::string text_of(const std::pair<std::uint64_t, std::uint64_t>& indices) {
     return fmt::format("{}:{}", indices.first, indices.second);
 }
 
-// An end as far away as a double can say is an open one.
+// An end at the largest double is an open end.
 std::string text_of(const std::pair<double, double>& z_range) {
     constexpr double far = std::numeric_limits<double>::max();
     if (z_range.first <= -far)
@@ -83,7 +83,7 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
                 "the part is {:.6g} mm high (z from {:.6g} to {:.6g} mm), no more than a thousandth of the "
                 "layer height of {} mm, which counts as nothing; choose a layer height below {:.6g} mm",
                 z_max - z_min, z_min, z_max, height, (z_max - z_min) / negligible));
-    // Layer i of the stack, without a look at the part.
+    // Layer i of the stack, whether the part reaches it or not.
     const auto layer_at = [&](std::uint64_t i) -> PlannedLayer {
         if (i == 0)
             return {0, z_min + f * first_height, z_min, z_min + first_height};
@@ -95,7 +95,7 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
         return meets_part(layer_at(i).z, height, z_max, slice_at);
     };
 
-    // The closed form is exact up to rounding; one step either way mends that.
+    // The closed form is exact except for rounding; at most one step in either direction corrects it.
     std::uint64_t count = 0;
     if (meets(0)) {
         const double above_first = z_max - (z_min + first_height) - f * height;
@@ -133,13 +133,13 @@ Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers, Slice
 
     Plan plan;
     plan.rule = rule_for(slice_at);
-    plan.layers.reserve(std::min<std::uint64_t>(end - begin, 1U << 20)); // a z range may leave few of many
-    // What z_min + i h may be off: four roundings of numbers up to twice the largest height.
+    plan.layers.reserve(std::min<std::uint64_t>(end - begin, 1U << 20)); // a z range may keep few layers
+    // Error of z_min + i h: four roundings of numbers up to twice the largest height.
     const double rounding =
         4 * std::numeric_limits<double>::epsilon() * std::max(std::abs(z_min), std::abs(z_max));
     for (std::uint64_t i = begin; i < end; ++i) {
         PlannedLayer layer = layer_at(i);
-        // Rounding must neither lift the last cut off the top face nor leave it just below.
+        // Rounding must not lift the last cut above the top face, nor leave it just below.
         if (at_top && i + 1 == count && layer.z >= z_max - rounding) {
             layer.z = z_max;
             layer.top = std::max(layer.top, z_max);

@@ -27,12 +27,13 @@ Ranks::Ranks(const Plan& plan) : rule_(plan.rule), snap_mm_(plan.snap_mm) {
     const std::size_t cells = z_.size() > 1 ? 2 * z_.size() : 1;
     cells_per_mm_ = static_cast<double>(cells) / height;
     if (!std::isfinite(cells_per_mm_))
-        cells_per_mm_ = 0; // a single plane, or planes closer than doubles can scale: one cell holds them all
+        cells_per_mm_ = 0; // one cell for a single plane, and for planes too close to scale
 
-    // The cell of a bound is computed with the very expression that looks up a vertex, and that expression is
-    // monotone. So a z in cell c lies above every bound of the cells before c, and below every bound after c.
+    // The cell of a bound is computed by the same expression that looks up a vertex, and this expression is
+    // monotone. Therefore a z in cell c lies above every bound of the cells before c, and below every bound
+    // after c.
     last_cell_ = std::trunc(height * cells_per_mm_);
-    if (!std::isfinite(last_cell_)) // no height that a double can hold
+    if (!std::isfinite(last_cell_)) // the height overflows
         last_cell_ = 0;
     cells_.assign(static_cast<std::size_t>(last_cell_) + 1, {infinity, 0, 0});
     for (std::size_t plane = 0; plane < z_.size(); ++plane) {
@@ -45,7 +46,7 @@ Ranks::Ranks(const Plan& plan) : rule_(plan.rule), snap_mm_(plan.snap_mm) {
     for (std::size_t c = 1; c < cells_.size(); ++c)
         cells_[c].below = cells_[c - 1].below + cells_[c - 1].planes;
     assert(cells_.back().below + cells_.back().planes == count());
-    // A vertex on a plane is above it or below it, as the rule says.
+    // A vertex on a plane counts as above it or below it, according to the rule.
     for ([[maybe_unused]] std::uint32_t plane = 0; plane < count(); ++plane)
         assert(rule_ == PlaneRule::section_below ? (*this)(z_[plane]) > plane : (*this)(z_[plane]) <= plane);
 }

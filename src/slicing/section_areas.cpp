@@ -12,7 +12,8 @@ namespace lamella {
 
 namespace {
 
-/// Sums what the directed cut segments of the triangles [begin, end) sweep from an origin.
+/// Adds the moments of the areas that the directed cut segments of the triangles [begin, end) sweep around
+/// `origin`.
 void add_sections(const Mesh& mesh, const Ranks& ranks, const Point2& origin, std::uint64_t begin,
                   std::uint64_t end, std::vector<AreaMoments>& sections) {
     const bool above = ranks.rule() == PlaneRule::section_above;
@@ -24,8 +25,8 @@ void add_sections(const Mesh& mesh, const Ranks& ranks, const Point2& origin, st
         const std::uint32_t first = std::min({rank[0], rank[1], rank[2]});
         const std::uint32_t last = std::max({rank[0], rank[1], rank[2]});
         for (std::uint32_t plane = first; plane < last; ++plane) {
-            // The segment leads from the edge that runs downwards to the one that runs upwards: that leaves
-            // the material on the left.
+            // The segment leads from the edge that runs downwards to the edge that runs upwards, so that
+            // material is on its left.
             Point2 from;
             Point2 to;
             for (std::size_t k = 0; k < 3; ++k) {
@@ -52,7 +53,8 @@ std::vector<AreaMoments> section_moments(const Mesh& mesh, const Plan& plan, con
     const Ranks ranks(plan);
     Executor executor(execution);
     std::vector<AreaMoments> sections(ranks.count());
-    // A fixed number of pieces, added up in their order: the same bits for any number of threads.
+    // The number of chunks and the order of their sums do not depend on the number of threads, and so neither
+    // do the bits of the result.
     constexpr std::uint64_t most = (std::uint64_t{32} << 20) / sizeof(AreaMoments); // 32 MB in all
     const std::uint64_t pieces = std::clamp<std::uint64_t>(most / (sections.size() + 1), 1, 64);
     const std::uint64_t n = mesh.size();
@@ -74,7 +76,7 @@ std::vector<double> section_areas(const Mesh& mesh, const Plan& plan, const Exec
     const Box3 box = bounding_box(mesh, execution);
     if (box.empty())
         return std::vector<double>(plan.layers.size());
-    // About the middle of the part, so that a part far from the origin loses no digits.
+    // Moments around the middle of the part lose no digits if the part is far from the origin.
     const Point2 origin{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2};
     std::vector<double> areas;
     for (const AreaMoments& section : section_moments(mesh, plan, origin, execution))

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where the sections of a mesh lie, straight from its triangles.
+// Area and moments of the sections of a mesh, computed from its triangles.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/mesh.hpp"
@@ -12,8 +12,8 @@
 
 namespace lamella {
 
-/// As `section_areas`, one for each layer of the plan. Moments are about `origin`, which should be near the
-/// part.
+/// Returns the moments of the section at each plane of the plan, around `origin`, which should be near the
+/// part. See `section_areas`.
 [[nodiscard]] std::vector<AreaMoments> section_moments(const Mesh& mesh, const Plan& plan,
                                                        const Point2& origin, const Execution& execution);
 

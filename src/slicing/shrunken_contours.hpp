@@ -1,7 +1,7 @@
 #pragma once
 
-// What a plane through vertices leaves behind: points that repeat, and rings that shrank to a point or a line
-// (docs/conventions.md, "Cut points").
+// Removes the degenerate results of planes through vertices: repeated points, and rings that shrank to a
+// point or a line (docs/conventions.md, "Cut points").
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
@@ -13,7 +13,7 @@
 
 namespace lamella {
 
-/// Drops points that equal the one before them and, on a ring, last points that equal the first. O(n).
+/// Drops points that equal their predecessor and, on a ring, last points that equal the first. O(n).
 inline void drop_repeated_points(std::vector<Point2>& contour, bool closed) {
     std::size_t kept = 0;
     for (const Point2& p : contour)
@@ -24,10 +24,11 @@ inline void drop_repeated_points(std::vector<Point2>& contour, bool closed) {
     contour.resize(kept);
 }
 
-/// Whether a ring without repeated points runs to and fro on a line, so that it bounds nothing. O(n).
+/// Returns whether a ring without repeated points runs back and forth along a line, so that it bounds
+/// nothing. O(n).
 inline bool folds_flat(const std::vector<Point2>& ring) {
-    // A point between equal neighbours is the tip of a fold; folding it in leaves two equal points, one of
-    // which goes. A ring that this eats up was a line.
+    // A point between two equal points is the tip of a fold. Removing it leaves two equal neighbours, one of
+    // which is removed too. If this removes the whole ring, the ring was a line.
     std::vector<Point2> rest;
     for (const Point2& p : ring) {
         if (!rest.empty() && rest.back() == p)
@@ -50,7 +51,8 @@ inline bool folds_flat(const std::vector<Point2>& ring) {
     return true;
 }
 
-/// Whether all points of a ring lie on one line, exactly. O(n), and O(1) for a ring that begins at a corner.
+/// Returns whether all points of a ring lie exactly on one line. O(n), and O(1) if the ring begins at a
+/// corner.
 inline bool lies_on_line(const std::vector<Point2>& ring) noexcept {
     for (std::size_t i = 2; i < ring.size(); ++i)
         if (orientation(ring[0], ring[1], ring[i]) != 0)
@@ -58,7 +60,7 @@ inline bool lies_on_line(const std::vector<Point2>& ring) noexcept {
     return true;
 }
 
-/// Gives a contour to a layer, unless it shrank to a point or a line. `contour` is used up. O(n).
+/// Adds a contour to a layer, unless it shrank to a point or a line. Modifies `contour`. O(n).
 inline void add_contour(LayerBuilder& layer, std::vector<Point2>& contour, bool closed) {
     drop_repeated_points(contour, closed);
     if (contour.size() < (closed ? 3U : 2U) || (closed && (folds_flat(contour) || lies_on_line(contour))))

@@ -18,7 +18,7 @@ namespace lamella {
 
 namespace {
 
-/// Calls body(i, ranks) for triangles [begin, end), with the ranks of its corners.
+/// Calls body(i, ranks) for the triangles [begin, end), with the ranks of their corners.
 template <class Body>
 void for_ranks(const Mesh& mesh, const Ranks& ranks, std::uint64_t begin, std::uint64_t end,
                const Body& body) {
@@ -57,7 +57,7 @@ PlaneCounts part_of(const PlaneCounts& counts, PlaneRange slab) {
     std::uint64_t* const begins = part.counts_.data();
     std::uint64_t* const ends = begins + slab.size() + 1;
     std::uint64_t* const turns = ends + slab.size() + 1;
-    // On the first plane begins what is cut by it, on the last one ends what is.
+    // Triangles cut by the first plane of the range begin there; those cut by its last plane end after it.
     std::uint64_t cut = 0;
     for (std::uint32_t p = 0; p < slab.end; ++p) {
         cut += counts.begins(p) - counts.ends(p);
@@ -125,7 +125,7 @@ SlabSurvey::SlabSurvey(const PlaneCounts& counts) : before_(counts.planes() + 1)
         next.begun = here.begun + counts.begins(p);
         next.ended = here.ended + counts.ends(p + 1);
         next.turned = here.turned + counts.turns(p);
-        assert(next.begun >= here.ended); // none ends that has not begun
+        assert(next.begun >= here.ended); // no triangle ends before it begins
         next.points = here.points + (next.begun - here.ended);
     }
 }
@@ -143,7 +143,7 @@ SlabNeeds SlabSurvey::needs(PlaneRange slab, std::uint64_t most_points) const no
         return {};
     SlabNeeds needs;
     needs.triangles = triangles(slab);
-    // Planes cut two edges of a triangle, and all three where the middle corner lies between two of them.
+    // Planes cut two edges of a triangle, or all three if its middle corner lies between two of the planes.
     needs.edges =
         2 * needs.triangles + before_[slab.end].turned - before_[slab.begin + std::size_t{1}].turned;
     needs.points = before_[slab.end].points - before_[slab.begin].points;
@@ -164,8 +164,8 @@ std::uint64_t SlabSurvey::work(PlaneRange slab) const noexcept {
 
 namespace {
 
-/// Slabs filled one after the other, each as long as fits(its needs) and its work is at most `most_work`; at
-/// least `wanted` slabs where there are so many planes.
+/// Fills ranges one after the other, each as long as fits(its needs) and its work is at most `most_work`.
+/// Returns at least `wanted` ranges if there are that many planes.
 template <class Fits>
 std::vector<PlaneRange> fill(const SlabSurvey& survey, std::uint64_t most_work, std::uint32_t wanted,
                              const Fits& fits) {
@@ -189,7 +189,7 @@ std::vector<PlaneRange> fill(const SlabSurvey& survey, std::uint64_t most_work, 
     return slabs;
 }
 
-/// No more slabs than `most`, and no fewer than `least`, with the smallest largest work that allows it.
+/// Divides into at least `least` and at most `most` ranges, with the smallest largest work that allows it.
 template <class Fits>
 std::vector<PlaneRange> level(const SlabSurvey& survey, std::uint32_t least, std::size_t most,
                               const Fits& fits) {
@@ -261,7 +261,7 @@ void SlabFinder::find(const TriangleSoup& triangles, std::vector<Touched>& touch
               [&](std::uint64_t i, const std::array<std::uint32_t, 3>& rank) {
                   const std::uint32_t low = std::min({rank[0], rank[1], rank[2]});
                   const std::uint32_t high = std::max({rank[0], rank[1], rank[2]});
-                  // A triangle between two slabs, or between two planes, gives begin > end: clamp it.
+                  // A triangle between two ranges, or between two planes, gives begin > end: clamp it.
                   const std::uint32_t begin = first_[low];
                   touched[i] = {begin, low == high ? begin : std::max(begin, behind_[high])};
               });

@@ -47,7 +47,7 @@ SliceReport& SliceReport::operator+=(const SliceReport& other) noexcept {
 
 namespace {
 
-/// Slices with the engine, and fills in what of the report is the same for all engines.
+/// Slices with the engine, and fills in the fields of the report that are common to all engines.
 void slice_and_count(const Engine& engine, const LayerSink& sink, const Mesh& mesh, const Plan& plan,
                      const Execution& execution, std::uint64_t points_in_flight, SliceReport* report,
                      const TriangleVisitor& visitor) {

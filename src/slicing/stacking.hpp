@@ -1,6 +1,6 @@
 #pragma once
 
-// What all plans that stack layers on one another have in common.
+// Helpers of all plans that stack layers.
 
 #include "lamella/core/error.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -16,26 +16,26 @@ namespace lamella {
 
 inline constexpr std::uint64_t max_layers = (std::uint64_t{1} << 31) - 2; // ranks are 31-bit numbers
 
-// What is left of a layer below this share of its height is rounding noise of the file, not material.
+// A part of a layer below this fraction of its height is rounding noise of the file, not material.
 inline constexpr double negligible = 1e-3;
 
-/// Where in its thickness a layer is cut, from 0 (bottom) to 1 (top).
+/// Returns the position of the cut within the thickness of a layer, from 0 (bottom) to 1 (top).
 [[nodiscard]] constexpr double fraction(SliceAt at) noexcept {
     return at == SliceAt::bottom ? 0.0 : at == SliceAt::top ? 1.0 : 0.5;
 }
 
-/// Whether a layer of this height, cut at z, meets a part that ends at z_max.
+/// Returns whether a layer of this height, cut at z, meets a part that ends at z_max.
 [[nodiscard]] constexpr bool meets_part(double z, double height, double z_max, SliceAt at) noexcept {
     return at == SliceAt::top ? z <= z_max + negligible * height : z < z_max - negligible * height;
 }
 
-/// Fails unless `what`, a height of layers in mm, is a number above 0.
+/// Throws Error{usage} unless `height`, mm, is a positive finite number. The message calls it `what`.
 inline void require_height(double height, const char* what) {
     if (!(std::isfinite(height) && height > 0))
         throw Error(ErrorKind::usage, fmt::format("{} is {} mm; it must be a number above 0", what, height));
 }
 
-/// Fails where there is nothing between the ends of a part.
+/// Throws Error{usage} unless the ends of a part are finite and z_min < z_max.
 inline void require_part(double z_min, double z_max) {
     if (z_min < z_max && !(std::isfinite(z_min) && std::isfinite(z_max)))
         throw Error(

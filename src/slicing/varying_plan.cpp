@@ -19,7 +19,7 @@ namespace lamella {
 
 namespace {
 
-/// Fails where there is nothing to stack layers on, and for more of them, about `count`, than can be
+/// Throws Error{usage} if the part has no height, or if there were more layers, about `count`, than can be
 /// numbered.
 void require_stack(double z_min, double z_max, double count, double lowest_height) {
     require_part(z_min, z_max);
@@ -31,8 +31,8 @@ void require_stack(double z_min, double z_max, double count, double lowest_heigh
                         lowest_height, count, z_max - z_min, max_layers));
 }
 
-/// Layers on one another: height_at(bottom) -> height, from z_min on as long as cuts meet the part. A height
-/// that rounding made 0 is told as the lowest.
+/// Returns layers stacked from z_min with heights height_at(bottom), as long as their cuts meet the part. An
+/// error reports a height that rounding made 0 as `lowest_height`.
 template <class HeightAt>
 Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at, const HeightAt& height_at) {
     Plan plan;
@@ -56,7 +56,7 @@ Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at,
             fmt::format("no layer: the first cut misses the part (z from {:.6g} to {:.6g} mm); choose layers "
                         "below {:.6g} mm",
                         z_min, z_max, z_max - z_min));
-    // A remainder that counts as nothing must not lift the last cut off the top face.
+    // A negligible remainder must not lift the last cut above the top face.
     PlannedLayer& last = plan.layers.back();
     if (slice_at == SliceAt::top && last.z > z_max - negligible * (last.top - last.bottom)) {
         last.z = z_max;
@@ -65,7 +65,7 @@ Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at,
     return plan;
 }
 
-/// The steepness |n.z| of the triangles at each height: the largest, in steps.
+/// The largest steepness |n.z| of the triangles in each step of height.
 class Slopes {
   public:
     Slopes(double z_min, double z_max, double wanted_step)
@@ -75,11 +75,12 @@ class Slopes {
             levels_.emplace_back(steps_);
     }
 
-    /// From any thread. The triangle's heights and |n.z|.
+    /// Adds a triangle by its heights and |n.z|. May be called from any thread.
     void add(double low, double high, float steepness) noexcept {
         const std::size_t first = step_at(low);
         const std::size_t last = step_at(high);
-        // Two stretches of 2^k steps that cover all; spread() hands them down.
+        // Two overlapping intervals of 2^k steps cover all steps of the triangle; spread() distributes their
+        // values.
         const std::size_t stretch = std::bit_floor(last - first + 1);
         std::vector<std::atomic<float>>& level = levels_[static_cast<std::size_t>(std::countr_zero(stretch))];
         raise(level[first], steepness);
@@ -115,10 +116,10 @@ class Slopes {
     double z_min_;
     double step_;
     std::size_t steps_;
-    std::vector<std::vector<std::atomic<float>>> levels_; ///< [k][i]: of the 2^k steps from i on
+    std::vector<std::vector<std::atomic<float>>> levels_; ///< [k][i]: largest of the 2^k steps from i on
 };
 
-/// |n.z|, rounded up; 0 for a triangle without area, which bounds nothing.
+/// Returns |n.z|, rounded up; 0 for a triangle without area, which limits no layer.
 float steepness(const Triangle3& t) noexcept {
     const Point3 n = normal(t);
     const double length = hypotenuse(hypotenuse(n.x, n.y), n.z);
@@ -134,7 +135,7 @@ Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& 
     require_height(layer_height, "the layer height");
     double lowest = layer_height;
     double count = 0;
-    double rest = z_max - z_min; // outside of all ranges
+    double rest = z_max - z_min; // height outside all ranges
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const HeightRange& range = ranges[i];
         require_height(range.layer_height, "a layer height of the ranges");
@@ -156,12 +157,12 @@ Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& 
         rest -= reach;
     }
     require_stack(z_min, z_max, count + rest / layer_height, lowest);
-    // Heights are base + i h within a stretch of equal heights, never a running sum.
+    // Heights are base + i h while the layer height stays the same, never a running sum.
     double base = z_min;
     double base_height = 0;
     std::uint64_t above_base = 0;
     double expected = z_min;
-    auto range = ranges.begin(); // the first that has not ended
+    auto range = ranges.begin(); // the first range that has not ended
     const auto height_at = [&](double bottom) {
         const auto reaches = [&](double end, double height) {
             return end - negligible * height <= bottom - z_min;
@@ -215,7 +216,7 @@ Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers, SliceAt slice
         double worst = 0;
         double height = layers.max_height;
         for (std::size_t step = slopes.step_at(bottom); step < slopes.steps(); ++step) {
-            const double below = slopes.start(step) - bottom; // what is free of this step's slopes
+            const double below = slopes.start(step) - bottom; // distance up to the slopes of this step
             if (below >= height)
                 break;
             worst = std::max(worst, slopes.steepness(step));
