@@ -7,7 +7,7 @@
 namespace lamella {
 namespace {
 
-/// The kind as one character, then the text; "" where nothing was thrown.
+/// Returns the kind as one character, then the text; "" if nothing was thrown.
 std::string outcome_of(const std::function<void()>& step) {
     const auto failed = [](ErrorKind kind, const std::string& text) {
         return static_cast<char>('a' + static_cast<int>(kind)) + text;

@@ -9,9 +9,9 @@
 
 namespace lamella {
 
-/// Runs a step in which processes do not talk to each other, and waits for all of them. Where it threw on any
-/// of them, all throw what the first of these threw (rather not, that it was cancelled), as Error. What is
-/// thrown on a process alone passes unchanged.
+/// Runs a step without communication, and waits for all processes. If it throws on some of them, all throw
+/// the error of the first of these (preferably not a cancellation), as Error. An exception on a single
+/// process passes unchanged.
 void in_agreement(Communicator& processes, const std::function<void()>& step);
 
 } // namespace lamella

@@ -25,7 +25,7 @@ namespace lamella {
 
 namespace {
 
-/// Of parts that have any, ascending.
+/// Returns the labels of parts with hatches, ascending.
 std::vector<std::string> hatched_labels(const LayerFile& file) {
     std::vector<std::string> labels;
     for (const LayerPart& part : file.parts)
@@ -37,7 +37,7 @@ std::vector<std::string> hatched_labels(const LayerFile& file) {
     return labels;
 }
 
-/// Which parts have hatches that are compared with one another: those of each label, or all.
+/// Parts whose hatches are compared with one another: those of each label, or all.
 using HatchedParts = std::vector<std::vector<const LayerPart*>>;
 
 HatchedParts hatched_parts(const LayerFile& file, const std::vector<std::string>& labels, bool by_label) {
@@ -59,7 +59,7 @@ std::vector<Point2> ends_of(const std::vector<const LayerPart*>& parts, std::siz
     return ends;
 }
 
-/// How far a format may have moved the ends of lines.
+/// Returns how far a format may have moved the ends of lines.
 double moved_ends(const LayerFile& file) {
     double most = 0;
     for (const LayerPart& part : file.parts)
@@ -99,7 +99,7 @@ void compare_parameters(const LayerPart& first, const LayerPart& second, bool on
     }
 }
 
-/// Those that expose anything: some formats have no others.
+/// Returns the parts that expose anything; in some formats these are all.
 std::vector<const LayerPart*> exposed_parts(const LayerFile& file) {
     std::vector<const LayerPart*> parts;
     for (const LayerPart& part : file.parts)
@@ -110,7 +110,7 @@ std::vector<const LayerPart*> exposed_parts(const LayerFile& file) {
     return parts;
 }
 
-/// Takes the pairs of equal keys out of both lists, each in its order: visit(one, other).
+/// Removes the pairs of equal keys from both lists, each in its order, and calls visit(one, other).
 template <class Key, class Visit>
 void take_pairs(std::vector<const LayerPart*>& first, std::vector<const LayerPart*>& second, const Key& key,
                 const Visit& visit) {
@@ -132,14 +132,14 @@ void take_pairs(std::vector<const LayerPart*>& first, std::vector<const LayerPar
 
 using PartPair = std::pair<const LayerPart*, const LayerPart*>;
 
-/// Whether the partners of the parts of one file come in the order of these.
+/// Returns whether the partners of the parts of one file are in the order of the parts.
 bool in_order(std::vector<PartPair> pairs) {
-    std::sort(pairs.begin(), pairs.end()); // parts of a file are in one array
+    std::sort(pairs.begin(), pairs.end()); // the parts of a file are in one array
     return std::is_sorted(pairs.begin(), pairs.end(),
                           [](const PartPair& a, const PartPair& b) { return a.second < b.second; });
 }
 
-/// The pairs of what is exposed; none where something has no partner.
+/// Returns the pairs of exposures; none if an exposure has no partner.
 std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile& second,
                                         FileComparison& result) {
     const bool one_format = first.format == second.format;
@@ -158,7 +158,7 @@ std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile&
             return std::tuple(part.exposure->region, part.exposure->kind, part.exposure->contour);
         },
         compare);
-    if (one_format) { // else not all keep labels and regions
+    if (one_format) { // else not all formats keep labels and regions
         for (const LayerPart* const part : ones)
             result.only_first.push_back(part->label);
         for (const LayerPart* const part : others)
@@ -178,7 +178,7 @@ bool has_other_hatches(const LayerFile& file) {
     });
 }
 
-/// Whether each exposure of a plane has the contours of its partner.
+/// Returns whether each exposure of a plane has the contours of its partner.
 bool exposed_alike(std::span<const PartPair> pairs, std::size_t first, std::size_t second,
                    double tolerance_mm) {
     return std::all_of(pairs.begin(), pairs.end(), [&](const PartPair& pair) {
@@ -186,7 +186,7 @@ bool exposed_alike(std::span<const PartPair> pairs, std::size_t first, std::size
     });
 }
 
-/// Whether the contours of each exposure of a plane, which agree with those of its partner, are followed in
+/// Returns whether the contours of each exposure of a plane, which agree with those of its partner, are in
 /// the same order, each from the same point.
 bool followed_alike(std::span<const PartPair> pairs, std::size_t first, std::size_t second,
                     double tolerance_mm) {
@@ -194,7 +194,7 @@ bool followed_alike(std::span<const PartPair> pairs, std::size_t first, std::siz
         const Layer& one = pair.first->layers[first];
         const Layer& other = pair.second->layers[second];
         if (one.contours() != other.contours())
-            return true; // some are so small that they agree with nothing
+            return true; // some are too small to be matched
         for (std::size_t i = 0; i < one.contours(); ++i)
             if (!one.contour(i).empty() && !other.contour(i).empty() &&
                 distance(one.contour(i).front(), other.contour(i).front()) > tolerance_mm)
@@ -237,7 +237,7 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
             others.push_back({other});
         }
     }
-    // Contours that differ all together are told anyway.
+    // Differences of all contours together are reported anyway.
     std::vector<char> alike(result.layers.planes.size(), 1);
     std::vector<char> followed(result.layers.planes.size(), 1);
     Executor executor(execution);

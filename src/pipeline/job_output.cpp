@@ -20,7 +20,7 @@
 namespace lamella {
 namespace {
 
-/// A file that several processes can write: there is none yet, or it is a regular one.
+/// Returns whether several processes can write a file: it does not exist, or is a regular one.
 bool can_be_shared(const std::string& path) {
     std::error_code ignored;
     const auto status = std::filesystem::status(path, ignored);
@@ -58,7 +58,7 @@ std::vector<Layer> unpacked(const std::string& message) {
     return parts;
 }
 
-/// Writes the bytes from `place` on, into a file that exists; errors call it by `name`.
+/// Writes the bytes at offset `place` of an existing file; errors call it `name`.
 void write_at(const std::string& path, std::uint64_t place, const ByteStore& bytes, const std::string& name) {
     FilePiece piece(path, place, name);
     std::string block;
@@ -89,7 +89,7 @@ JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Co
                           waiting_.add(bytes);
                       }};
             info.piece = &piece_;
-            options.most_bytes = 0; // the limit is that of all pieces
+            options.most_bytes = 0; // the limit applies to the whole file
         }
         in_agreement(processes, [&] {
             if (shared_ || processes.process() == 0)
@@ -134,7 +134,7 @@ JobOutput::Written JobOutput::finish_file() {
         written.bytes = shared_ ? 0 : writer_->bytes();
         written.warnings = writer_->warnings();
     });
-    // For all of them, also where one alone wrote.
+    // All processes get the warnings, even if only one wrote.
     const std::string mine = fmt::format("{}", fmt::join(std::exchange(written.warnings, {}), "\n"));
     for (const std::string& warnings : processes_.gather(mine)) {
         std::istringstream lines(warnings);
@@ -144,7 +144,7 @@ JobOutput::Written JobOutput::finish_file() {
     if (shared_) {
         written.bytes = write_shared();
     } else {
-        processes_.sum(std::span(&written.bytes, 1)); // those that did not write have 0
+        processes_.sum(std::span(&written.bytes, 1)); // others have 0
     }
     return written;
 }
@@ -167,7 +167,7 @@ void JobOutput::send_layers() {
     processes_.send(0, {});
 }
 
-/// In order. Should the writer fail, the rest of the messages is received nevertheless.
+/// Writes the layers in order. If the writer fails, the remaining messages are received nevertheless.
 void JobOutput::write_layers_of_others() {
     std::exception_ptr error;
     for (std::size_t from = 1; from < processes_.size(); ++from)
@@ -184,7 +184,7 @@ void JobOutput::write_layers_of_others() {
         std::rethrow_exception(error);
 }
 
-/// The pieces of all processes, each at its place, which follows from the sizes of those before.
+/// Writes the range of each process at its offset, which follows from the sizes of those before.
 std::uint64_t JobOutput::write_shared() {
     std::vector<std::uint64_t> sizes(processes_.size(), 0);
     sizes[processes_.process()] = waiting_.size();

@@ -1,6 +1,6 @@
 #pragma once
 
-// What becomes of the layers of a job.
+// Output of the layers of a job.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/pipeline/processes.hpp"
@@ -21,28 +21,30 @@
 
 namespace lamella {
 
-/// The slice file of a job, and the page beside it. A process alone writes as it slices. Of several, each
-/// writes its piece of a file whose layers lie one after the other (LayerFormat::pieces), once all know how
-/// long their pieces are; layers for other formats, and for standard output, go to process 0, which writes.
-/// Nothing has its name before all of it is written. For all processes together.
+/// The slice file of a job, and the page beside it. A single process writes while it slices. If there are
+/// several and the layers of the file lie one after the other (LayerFormat::pieces), each process writes its
+/// range of the file once all sizes are known. Layers for other formats, and for standard output, go to
+/// process 0, which writes. Nothing has its name before all of it is written. All processes must call these
+/// functions together.
 class JobOutput {
   public:
-    /// Creates what is written, so that nobody slices for hours what cannot be written. `mine`: the planes of
-    /// this process among those of `info`; it keeps up to `most_in_memory` bytes for the others in memory.
+    /// Creates the files, so that an unwritable path fails before hours of slicing. `mine` is the range of
+    /// planes of this process among those of `info`. Each process keeps up to `most_in_memory` bytes for the
+    /// others in memory.
     JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Communicator& processes,
               std::uint64_t most_in_memory);
 
-    /// As LayerWriter::prepare, for all that is written.
+    /// Works as LayerWriter::prepare, for all outputs.
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts);
 
-    /// What was written, once all layers of all processes are on their way.
+    /// Figures of the written file, once all layers of all processes have been passed on.
     struct Written {
         std::string format; ///< "" without a slice file
         std::uint64_t bytes = 0;
         std::vector<std::string> warnings;
     };
     [[nodiscard]] Written finish_file();
-    /// The page's warnings; `notes` is what it tells of the run.
+    /// Ends the page, with these notes about the run; returns its warnings.
     [[nodiscard]] std::vector<std::string> finish_page(const PageNotes& notes);
     [[nodiscard]] bool has_page() const noexcept { return page_ != nullptr; }
 
@@ -56,15 +58,15 @@ class JobOutput {
     std::uint64_t most_bytes_;
     const LayerFormat* format_ = nullptr;
     std::unique_ptr<LayerWriter>
-        writer_; ///< of the file or of this process's piece of it; null where another writes
+        writer_; ///< of the file or of this process's range of it; null if another process writes
     std::unique_ptr<LayerPageWriter> page_;
 
-    // Of several processes:
+    // For several processes:
     bool shared_ = false;            ///< all of them write the file
-    std::optional<AtomicFile> file_; ///< which process 0 creates
+    std::optional<AtomicFile> file_; ///< created by process 0
     std::string working_path_;
     LayerFilePiece piece_;
-    ByteStore waiting_;                   ///< the piece, or layers as messages to process 0
+    ByteStore waiting_;                   ///< the range's bytes, or layers as messages to process 0
     std::vector<std::uint64_t> messages_; ///< their lengths
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What is wrong with layers, and where first.
+// Defects of layers, with the location of the first.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
@@ -14,7 +14,7 @@
 
 namespace lamella {
 
-/// Of one kind of finding, in the order of the layers.
+/// Findings of one kind, in the order of the layers.
 struct Finding {
     std::uint64_t total = 0;
     std::string place; ///< of the first: "layer 12 (z 0.375 mm) at (1, 2)"
@@ -23,12 +23,12 @@ struct Finding {
     void add(const Finding& other);
 };
 
-/// What findings say of the contours of layers.
+/// Findings about the contours of layers.
 struct ContourFindings {
     Finding open_chains;
     Finding crossings;
-    Finding misoriented; ///< clockwise ones
-    Finding tangled;     ///< counter-clockwise ones that are misoriented all the same
+    Finding misoriented; ///< clockwise rings
+    Finding tangled;     ///< counter-clockwise rings that are misoriented nevertheless
     Finding overlapping;
 
     void add(const ContourFindings& other);
@@ -45,7 +45,7 @@ struct LayerCheck {
 /// "layer 12 (z 0.375 mm)"
 [[nodiscard]] std::string where(const Layer& layer);
 
-/// What is said of one of a kind, and of several, up to where the first one is.
+/// Texts for one finding of a kind, and for several, up to the location of the first.
 struct FindingWords {
     const char* one;
     const char* many;
@@ -63,8 +63,8 @@ inline constexpr FindingWords tangled_words{"ring bounds no material though its 
                                             "cross themselves or others, or lie within a ring that "
                                             "runs the wrong way round;"};
 
-/// Adds a line, such as "2 rings run the wrong way round, the first in layer 12 (z 0.375 mm) at (1, 2)",
-/// where there is anything to say.
+/// Adds a line, such as "2 rings run the wrong way round, the first in layer 12 (z 0.375 mm) at (1, 2)", if
+/// there is any finding.
 void tell(const Finding& finding, const FindingWords& words, std::vector<std::string>& lines);
 
 } // namespace lamella

@@ -25,7 +25,7 @@ std::vector<const Layer*> from_the_lowest(std::span<const Layer> layers) {
     return ascending;
 }
 
-/// By how much heights of two layers may be apart that are the same.
+/// Returns how far equal heights of two layers may be apart.
 double moved_heights(const Layer& below, const Layer& above, const Rounding& rounding) {
     return moved_cut(below, rounding) + moved_cut(above, rounding) + same_height_mm;
 }
@@ -77,7 +77,7 @@ std::optional<CoveredHeights> covered_heights(std::span<const Layer> layers, con
                          .mesh_bottom = box.min.z,
                          .mesh_top = box.max.z};
     for (const Layer& layer : layers) {
-        constexpr double nothing = 1e-6; // what rounding of heights leaves
+        constexpr double nothing = 1e-6; // rounding of heights
         found.layers_above += layer.bottom > found.mesh_top - nothing ? 1 : 0;
         found.layers_below += layer.top < found.mesh_bottom + nothing ? 1 : 0;
     }

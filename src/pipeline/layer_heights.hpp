@@ -1,6 +1,6 @@
 #pragma once
 
-// How layers lie on one another, and what they cover of the height of a mesh.
+// Checks of the heights of layers against one another and against the height of a mesh.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
@@ -16,13 +16,13 @@
 
 namespace lamella {
 
-/// How many layers, in any order, begin within the height of another one, by more than the format may have
-/// moved heights; not those that share all of it. Tells of them in `findings`.
+/// Returns the number of layers, in any order, that begin within the height of another one, by more than the
+/// format may have moved heights; layers that share all of it do not count. Describes them in `findings`.
 [[nodiscard]] std::uint64_t overlapping_heights(std::span<const Layer> layers, const Rounding& rounding,
                                                 std::vector<std::string>& findings);
 
-/// Of layers in any order; none without layers, and of a mesh without triangles. A gap is one of more
-/// than the format may have moved heights by, in the middle of which the mesh has material. Tells of gaps in
+/// Returns the heights covered by layers in any order; none if there are no layers, or no triangles. A gap is
+/// larger than the format may have moved heights, and the mesh has material in its middle. Describes gaps in
 /// `findings`.
 [[nodiscard]] std::optional<CoveredHeights> covered_heights(std::span<const Layer> layers, const Mesh& mesh,
                                                             const Rounding& rounding,

@@ -14,7 +14,7 @@
 namespace lamella {
 namespace {
 
-/// " of the part "ring"", " of the parts "a", "b" and 5 more"; "" for none, which means all.
+/// Returns " of the part "ring"", " of the parts "a", "b" and 5 more"; "" for none, which means all.
 std::string of_parts(std::span<const std::string> labels) {
     constexpr std::size_t few = 3;
     if (labels.empty())
@@ -27,17 +27,17 @@ std::string of_parts(std::span<const std::string> labels) {
     return text;
 }
 
-/// "in 3 of 20 layers, first at z = 0.25 mm".
+/// Returns "in 3 of 20 layers, first at z = 0.25 mm".
 std::string where(const AffectedLayers& affected, std::uint64_t layers,
                   std::span<const std::string> parts = {}) {
-    constexpr double nearly_0 = 1e-7; // what single precision leaves where 0 is meant
+    constexpr double nearly_0 = 1e-7; // rounding error of 0 in single precision
     const double z = std::abs(affected.first_z) < nearly_0 ? 0 : affected.first_z;
     return fmt::format("in {} of {}{}, first at z = {:.6g} mm", affected.layers, counted(layers, "layer"),
                        of_parts(parts), z);
 }
 
-/// "20 rings bound no material in 3 of 20 layers, first at z = 0.25 mm (360 mm3 lost): they run clockwise
-/// outside of material".
+/// Returns "20 rings bound no material in 3 of 20 layers, first at z = 0.25 mm (360 mm3 lost): they run
+/// clockwise outside of material".
 std::string inverted_text(const InvertedLayers& inverted, std::uint64_t layers,
                           std::span<const std::string> parts = {}) {
     const bool one = inverted.rings == 1;
@@ -46,7 +46,7 @@ std::string inverted_text(const InvertedLayers& inverted, std::uint64_t layers,
                        inverted.volume_mm3, one ? "it runs" : "they run");
 }
 
-/// What the planes of parts have.
+/// Returns the inverted rings on each plane of the parts.
 std::vector<InvertedRings> inverted_on_planes(std::span<const LayerStack> parts, const Rounding& rounding,
                                               InversionSearch search, const Execution& execution) {
     std::vector<InvertedRings> planes(parts.empty() ? 0 : parts.front().size());
@@ -61,9 +61,9 @@ std::vector<InvertedRings> inverted_on_planes(std::span<const LayerStack> parts,
 
 std::string power_of_ten_above(double length_mm);
 
-/// Why chains are open with such gaps, and what closes them.
+/// Returns the reason why chains are open with such gaps, and a remedy.
 std::string open_gaps_text(double longest_mm) {
-    // More than rounding leaves between the edge of a triangle and a vertex of its neighbours on it.
+    // More than the rounding error between the edge of a triangle and a vertex of its neighbours on it.
     constexpr double slit = 1e-3;
     return longest_mm <= slit
                ? fmt::format(
@@ -77,9 +77,9 @@ std::string open_gaps_text(double longest_mm) {
                              longest_mm);
 }
 
-/// "1e-5": what an option takes where so much is to be within it.
+/// Returns a value for an option that covers this length, such as "1e-5".
 std::string power_of_ten_above(double length_mm) {
-    constexpr double least = 1e-6; // what is less is rounding
+    constexpr double least = 1e-6; // smaller lengths are rounding errors
     return fmt::format("1e{}", static_cast<int>(std::ceil(std::log10(std::max(length_mm, least)))));
 }
 
@@ -154,7 +154,7 @@ std::vector<std::string> MeshDoubts::texts() const {
     if (open_gaps.count > 0)
         texts.push_back(fmt::format("{} {}: {}", counted(open_gaps.count, "open chain"),
                                     where(open, layers, open_parts), open_gaps_text(open_gaps.longest_mm)));
-    // Of a mesh with holes a closed contour may be that of a hollow, and what lies around it an open chain.
+    // If a mesh has holes, a closed contour may be that of a cavity whose surrounding contour is open.
     if (inverted.rings > 0)
         texts.push_back(inverted_text(inverted, layers, inverted_parts) +
                         (open_gaps.count > 0

@@ -17,12 +17,12 @@ LayerWindow::LayerWindow(PlaneRange coming, PlaneRange wanted, std::uint32_t bel
     assert(wanted.size() == 0 || (coming.begin <= wanted.begin && wanted.end <= coming.end));
 }
 
-/// Itself included.
+/// Returns the planes that a plane needs, including itself.
 PlaneRange LayerWindow::neighbours(std::uint32_t plane) const noexcept {
     return widened({plane, plane + 1}, below_, above_, coming_);
 }
 
-/// Whose neighbour it is.
+/// Returns the planes that need a plane.
 PlaneRange LayerWindow::users(std::uint32_t plane) const noexcept {
     const PlaneRange all = widened({plane, plane + 1}, above_, below_, coming_);
     const std::uint32_t begin = std::max(wanted_.begin, all.begin);
@@ -43,10 +43,10 @@ std::function<void()> LayerWindow::operator()(std::uint32_t plane, std::span<con
     };
 }
 
-/// The layers of a neighbour that is here already; none where none is.
+/// Returns the layers of an adjacent plane that is held; null if there is none.
 LayerWindow::Parts LayerWindow::held_beside(std::uint32_t plane) {
     const std::lock_guard lock(mutex_);
-    for (const std::uint32_t beside : {plane - 1, plane + 1}) // where there is no plane, none is held
+    for (const std::uint32_t beside : {plane - 1, plane + 1}) // an index that is not a plane is never held
         if (const auto found = held_.find(beside); found != held_.end())
             return found->second.parts;
     return nullptr;
@@ -69,7 +69,8 @@ std::vector<LayerWindow::Complete> LayerWindow::store(std::uint32_t plane, Parts
     return complete;
 }
 
-/// With the mutex held. Lets go of layers that nobody will ask for any more.
+/// Returns a plane with its neighbours, and releases layers that no further plane needs. The mutex must be
+/// held.
 LayerWindow::Complete LayerWindow::take(std::uint32_t plane) {
     missing_.erase(plane);
     Complete complete{plane, {}};
@@ -97,7 +98,8 @@ void LayerWindow::work_on(const Complete& complete) {
     ready_.emplace(complete.plane, std::move(action));
 }
 
-// Halves in order come when those in parallel of all planes below are over: what was complete is worked on.
+// The ordered half of a plane runs after the parallel halves of all planes below, so the work on complete
+// planes is done.
 void LayerWindow::finish(std::uint32_t last) {
     const PlaneRange its_users = users(last);
     for (std::uint32_t plane = its_users.begin; plane < its_users.end; ++plane) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Planes that wait for their neighbours.
+// Holds planes until their neighbours arrive.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -18,35 +18,35 @@
 
 namespace lamella {
 
-/// Planes with so many below and above them, as far as there are any among `all`.
+/// Returns a range extended by these numbers of planes below and above, within `all`.
 [[nodiscard]] PlaneRange widened(PlaneRange planes, std::uint32_t below, std::uint32_t above,
                                  PlaneRange all) noexcept;
 
-/// Hands planes on together with the planes beneath and on top. Each comes once, in two halves as those of a
-/// PlateSink: in the parallel half its layers are stored, and whichever planes have all of their neighbours
-/// by it are worked on there; in the ordered half of plane i those become ready of which i is the last
-/// neighbour. So nobody waits for anybody, and memory has a window of layers. A layer that is the same as one
-/// beside it shares its points.
+/// Passes planes on together with their neighbours below and above. Each plane arrives once, in two halves as
+/// for a PlateSink. The parallel half stores its layers, and works on the planes whose neighbours are then
+/// complete. The ordered half of plane i emits the planes of which i is the last neighbour. So no thread
+/// waits for another, and memory holds a bounded range of layers. A layer equal to an adjacent one shares its
+/// points.
 class LayerWindow {
   public:
-    /// As PlateSink, for a plane with its neighbours.
+    /// Like PlateSink, for a plane with its neighbours.
     using Work = std::function<std::function<void()>(const PlaneLayers& plane)>;
 
-    /// `coming`: the planes that will come, of which those `wanted` are worked on, with so many planes below
-    /// and above each as there are of those that come, and no more than asked for.
+    /// `coming` is the range of planes that will arrive; those in `wanted` are worked on, each with up to
+    /// `below` and `above` of the arriving planes.
     LayerWindow(PlaneRange coming, PlaneRange wanted, std::uint32_t below, std::uint32_t above, Work work);
 
-    /// The layers of all parts on a plane. From any thread.
+    /// Adds the layers of all parts on a plane. May be called from any thread.
     [[nodiscard]] std::function<void()> operator()(std::uint32_t plane, std::span<const Layer> parts);
 
-    /// How many planes have layers here; while nobody brings any.
+    /// Returns the number of planes whose layers are held. No other call may run at the same time.
     [[nodiscard]] std::size_t held() const noexcept { return held_.size(); }
 
   private:
     using Parts = std::shared_ptr<const std::vector<ScanLayer>>;
     struct Held {
         Parts parts;
-        std::uint32_t users; ///< planes that will ask for it still
+        std::uint32_t users; ///< number of planes that still need it
     };
     /// A plane with all of its neighbours.
     struct Complete {
@@ -69,7 +69,7 @@ class LayerWindow {
     Work work_;
     std::mutex mutex_;
     std::map<std::uint32_t, Held> held_;
-    std::map<std::uint32_t, std::uint32_t> missing_; ///< how many neighbours, of planes that have some
+    std::map<std::uint32_t, std::uint32_t> missing_; ///< number of missing neighbours, if any
     std::map<std::uint32_t, std::function<void()>> ready_;
 };
 

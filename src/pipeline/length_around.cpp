@@ -29,7 +29,7 @@ double dot_of(const Point2& u, const Point2& v) noexcept {
 
 using Intervals = std::vector<std::pair<double, double>>;
 
-/// Ascending; those that touch are one.
+/// Sorts intervals, and unites those that touch.
 void unite(Intervals& row) {
     std::sort(row.begin(), row.end());
     std::size_t kept = 0;
@@ -62,10 +62,10 @@ double length_of_both(const Intervals& a, const Intervals& b) noexcept {
     return sum;
 }
 
-/// Lines of about one direction: side by side they are rows, and edges are where rows end, and where a row
-/// has something and the next one has not.
+/// Returns the length of edges of lines of about one direction. Side by side they form rows; edges are the
+/// ends of rows, and where a row is covered and the next one is not.
 double around_rows(const std::vector<HatchVector>& lines, double distance) {
-    // What rounding has turned short lines by evens out.
+    // Averaging cancels rotations of short lines by rounding.
     Point2 direction;
     for (const HatchVector& line : lines) {
         const double sign = dot_of(line.way, lines.front().way) < 0 ? -1 : 1;
@@ -99,7 +99,7 @@ double around_rows(const std::vector<HatchVector>& lines, double distance) {
         if (line.v - at > distance / 2) {
             end_row();
             if (line.v - at > 1.5 * distance)
-                end_row(); // one without lines
+                end_row(); // an empty row
             at = line.v;
         }
         row.emplace_back(line.from, line.to);
@@ -121,7 +121,7 @@ double length_around(const PointArray& lines, double distance_mm) {
     while (!left.empty()) {
         const HatchVector longest = left.front();
         constexpr double about_one_direction =
-            0.3; // the sine of the angle between; those of patterns are apart
+            0.3; // sine of the largest angle; directions of patterns differ by more
         std::vector<HatchVector> others;
         std::vector<HatchVector> alike;
         for (const HatchVector& line : left)

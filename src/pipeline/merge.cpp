@@ -35,24 +35,24 @@
 namespace lamella {
 namespace {
 
-/// What is known of a file after it has been read, and let go of, once.
+/// Properties of a file, kept after its layers have been read and released.
 struct ShardFile {
     std::string path;
     std::string format;
     double units_mm = 0;
     PlaneRule rule = PlaneRule::section_above;
-    std::vector<PartInfo> parts; ///< "" is a label that the file does not say
+    std::vector<PartInfo> parts; ///< the label is "" if the file has none
     std::uint64_t layers = 0;
     double bottom = 0;
     double top = 0;
     double thinnest_mm = 0;     ///< of its lowest and its highest layer
-    double rounded_heights = 0; ///< by how much the format may have moved top and bottom, together
+    double rounded_heights = 0; ///< sum of the largest moves of top and bottom by the format
     std::vector<std::string> warnings = {};
     InvertedLayers inverted = {};
 };
 
 ShardFile look_at(const std::string& path, const LayerReadOptions& reading, const Execution& execution) {
-    std::error_code unknown; // whoever reads it says what is wrong
+    std::error_code unknown; // the reader reports the reason
     const std::filesystem::file_type type = std::filesystem::status(path, unknown).type();
     if (path == "-" || type == std::filesystem::file_type::fifo ||
         type == std::filesystem::file_type::socket || type == std::filesystem::file_type::character)
@@ -92,15 +92,16 @@ std::vector<std::string> labels_of(const ShardFile& shard) {
     return labels;
 }
 
-/// Some formats know only parts that have something: a shard may have no skin, or end below a part.
+/// Returns whether parts may be absent: some formats list only parts that are not empty, and a shard may have
+/// no skin, or end below a part.
 bool may_lack_parts(const ShardFile& shard) {
     return layer_format(shard.format, shard.path).filled_parts ||
            std::all_of(shard.parts.begin(), shard.parts.end(),
                        [](const PartInfo& part) { return part.exposure.has_value(); });
 }
 
-/// How far the end of one file may be from the beginning of the next one. A hundredth of a layer is what
-/// programs round heights by that do not say so.
+/// Returns the largest distance allowed between the end of one file and the beginning of the next one.
+/// Programs that do not state their rounding of heights round them by up to a hundredth of a layer.
 double slack_between(const ShardFile& below, const ShardFile& above) {
     return below.rounded_heights + above.rounded_heights +
            std::min(below.thinnest_mm, above.thinnest_mm) / 100 + same_height_mm;
@@ -132,7 +133,7 @@ void check_neighbours(const ShardFile& below, const ShardFile& above) {
                            below.top, above.bottom));
 }
 
-/// In ascending order, and sure to belong together as far as files can tell.
+/// Returns the files in ascending order, after checking that they belong together as far as files can show.
 std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const LayerReadOptions& reading,
                                    const Execution& execution) {
     if (paths.empty())
@@ -147,8 +148,9 @@ std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const Lay
     return shards;
 }
 
-/// The output is named first. Where it is forgotten, that is the first of the files, and lies on the others
-/// or below them; an earlier result does not.
+/// Checks that `output` is not an input. The output is the first argument; if it is forgotten, the first
+/// input takes its position, and its layers adjoin those of the others. An earlier result does not adjoin
+/// them.
 void check_output(const std::string& output, std::span<const ShardFile> shards,
                   const LayerReadOptions& reading, const Execution& execution) {
     std::error_code error;
@@ -163,7 +165,7 @@ void check_output(const std::string& output, std::span<const ShardFile> shards,
     } catch (const Error& unread) {
         if (unread.kind() == ErrorKind::cancelled)
             throw;
-        return; // it holds no layers
+        return; // it is not a slice file
     }
     const bool above = adjoins(shards.back(), *other);
     if (above || adjoins(*other, shards.front()))
@@ -175,13 +177,13 @@ void check_output(const std::string& output, std::span<const ShardFile> shards,
 
 // ------------------------------------------------------------------------------- Common Layer Interface
 
-/// A file as our writer lays it out: a head that counts the layers, a layer without contours that says where
-/// the first one begins, and the layers.
+/// A file in the layout of our writer: a header with the number of layers, a layer without contours that
+/// gives the bottom of the first one, and the layers.
 struct CommonLayerFile {
     ByteSource source;
-    std::string_view before_count; ///< the head up to the number of layers
+    std::string_view before_count; ///< the header up to the number of layers
     std::string_view after_count;  ///< from there to the end of the first layer
-    std::string_view layers;       ///< all others
+    std::string_view layers;       ///< all other layers
     std::string_view tail;
 };
 
@@ -192,8 +194,8 @@ struct CommonLayerFile {
                             path));
 }
 
-/// Where the layer ends that the binary form has to begin with. Its last command has to end where the file
-/// does.
+/// Returns the end of the first layer, which the binary form must begin with. Checks that the last command
+/// ends at the end of the file.
 std::size_t end_of_first_layer(std::string_view text, std::size_t begin, const std::string& path) {
     const auto size_at = [&](std::size_t at) {
         const std::optional<std::uint64_t> size = common_layer_command_size(text.substr(at));
@@ -219,8 +221,8 @@ CommonLayerFile take_apart(const ShardFile& shard, const LayerReadOptions& readi
     CommonLayerFile file{
         unpacked(open_bytes(path, execution), reading.max_memory, execution), {}, {}, {}, {}};
     const std::string_view text = file.source.text();
-    // The number of layers ends the head. With comments, what looks like a key need not be one; and files of
-    // others may have data of their own.
+    // The number of layers ends the header. In a header with comments, a line that looks like a key need not
+    // be one; and files of other programs may have data of their own.
     const std::string count = fmt::format("{}", shard.layers + 1);
     const std::string counted = fmt::format("\n$$LAYERS/{}\n$$HEADEREND", count);
     const std::size_t end = text.find("\n$$LAYERS/");
@@ -251,7 +253,7 @@ CommonLayerFile take_apart(const ShardFile& shard, const LayerReadOptions& readi
     return file;
 }
 
-/// Lines of the heads, which have to agree but for the number of layers.
+/// Compares the lines of the headers, which must agree except for the number of layers.
 void check_heads(const std::string& one, std::string_view head, const std::string& other,
                  std::string_view other_head) {
     if (head == other_head)
@@ -273,7 +275,7 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
     AtomicFile out(output);
     std::string head;
     for (std::size_t i = 0; i < shards.size(); ++i) {
-        // Bytes are put together as they are, with what is wrong with them.
+        // Bytes are copied unchanged, including any defects.
         if (!shards[i].warnings.empty())
             throw Error(ErrorKind::input,
                         fmt::format("{}: is not sound: {}", shards[i].path, shards[i].warnings.front()));
@@ -304,15 +306,15 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
 
 // ------------------------------------------------------------------------------------------ any format
 
-/// A part as the first of the files has it that knows it.
+/// A part as in the first file that lists it.
 struct KnownPart {
     PartInfo info;
     const std::string* path;
-    std::vector<std::size_t> next = {}; ///< which parts come behind it in one of the files
-    std::size_t waits_for = 0;          ///< parts that are to come before it
+    std::vector<std::size_t> next = {}; ///< parts that follow it in one of the files
+    std::size_t waits_for = 0;          ///< number of parts that must precede it
 };
 
-/// A part is exposed in one way in all of a file: none of two is silently taken for the other.
+/// Throws if a part has different parameters in two files: neither is silently replaced by the other.
 void check_parameters(const KnownPart& known, const PartInfo& part, const std::string& path) {
     const auto refuse = [&](std::string_view name, const auto& one, const auto& other) {
         throw Error(
@@ -339,11 +341,11 @@ void check_parameters(const KnownPart& known, const PartInfo& part, const std::s
     refuse("parameters called", one.name, other.name);
 }
 
-/// Those of all files, in an order that is that of each file; boxes of all. Of parts that nothing puts in
-/// order, those of lower files come first.
+/// Returns the parts of all files, with their united boxes, in an order consistent with each file. If the
+/// order of parts is not determined, those of lower files come first.
 std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
     std::vector<KnownPart> all;
-    // By its label, and how many of the same label are before it in its file.
+    // Indices by label and by the number of parts of the same label before it in its file.
     std::map<std::pair<std::string_view, std::size_t>, std::size_t> numbers;
     for (const ShardFile& shard : shards) {
         std::map<std::string_view, std::size_t> met;
@@ -377,7 +379,7 @@ std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
         parts.push_back(std::move(part.info));
     }
     if (parts.size() < all.size()) {
-        // From any part that waits, back along parts that it waits for: where that comes again is the circle.
+        // Follows the predecessors of any blocked part until a part repeats: that part is on the cycle.
         const auto waits = [](const KnownPart& part) {
             return part.waits_for > 0;
         };
@@ -396,7 +398,7 @@ std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
     return parts;
 }
 
-/// What a file has of a plane of each part; an empty layer where it does not know the part.
+/// Returns the layer of each part on a plane of a file; an empty layer if the file does not list the part.
 std::vector<Layer> plane_of(const LayerFile& file, std::size_t plane, const std::vector<PartInfo>& parts) {
     const Layer& any = file.parts.front().layers[plane];
     std::vector<Layer> layers;
@@ -407,7 +409,7 @@ std::vector<Layer> plane_of(const LayerFile& file, std::size_t plane, const std:
         else
             layers.push_back({.index = any.index, .z = any.z, .bottom = any.bottom, .top = any.top});
     }
-    assert(next == file.parts.end()); // as parts_of puts them together, each file is among them in its order
+    assert(next == file.parts.end()); // parts_of keeps the order of each file
     return layers;
 }
 
@@ -431,10 +433,10 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
     info.box.max.z = result.top;
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(output, format, info, options);
     double top = result.bottom;
-    std::uint64_t next = 0; // the lowest index that is left
+    std::uint64_t next = 0; // lowest unused index
     for (const ShardFile& shard : shards) {
         const LayerFile file = read_layers(shard.path, reading, execution);
-        // Where one file ends and the next one begins, roundings of two heights and of a thickness meet.
+        // At the boundary of two files the rounding errors of two heights and of a thickness add up.
         const double rounded = file.rounding.single_precision ? 2 * file.rounding.step_at(top) : 0;
         // Formats without indices count each file from 0.
         const LayerStack& known = file.parts.front().layers;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What layers are held against: those of a mesh, where they may have been cut before a format rounded that.
+// Reference layers: those of a mesh, cut at all heights that a format may have rounded to the given one.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
@@ -17,8 +17,8 @@
 
 namespace lamella {
 
-/// What cut(plan) gives for the plane of each layer: first where the layer is, and where the format rounds,
-/// as far below and above as it may have moved the cut.
+/// Returns the results of cut(plan) for the plane of each layer: first at the height of the layer and, if the
+/// format rounds, as far below and above as it may have moved the cut.
 template <class Cut>
 auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, PlaneRule rule, double snap_mm,
                    const Cut& cut) {
@@ -45,15 +45,15 @@ auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, Plan
     return of_layer;
 }
 
-/// All steps but for `simplify`: which points that leaves out is decided by their last digits, so what it
-/// moves is granted instead.
+/// Returns all steps except `simplify`: the last digits decide which points it removes, so its moves are
+/// tolerated instead.
 inline LayerSteps steps_to_repeat(LayerSteps steps) {
     steps.simplify_mm = 0;
     return steps;
 }
 
-/// The limit of mitres, and where the format rounds, one below and one above it: at corners of that very
-/// angle, 60 degrees by default, rounding decides whether they are cut off.
+/// Returns the mitre limit and, if the format rounds, one below and one above it: at corners of exactly the
+/// limiting angle, 60 degrees by default, rounding decides whether mitres are truncated.
 inline std::vector<double> limits_of_mitres(double limit, const Rounding& rounding) {
     constexpr double share = 0.01;
     return rounding == Rounding{}
@@ -61,7 +61,7 @@ inline std::vector<double> limits_of_mitres(double limit, const Rounding& roundi
                : std::vector{limit, std::max(1.0, (1 - share) * limit), (1 + share) * limit};
 }
 
-/// The layers of the mesh, after these steps.
+/// Returns the layers of the mesh, after these steps.
 inline LayerStack layers_of(const VerifyOptions& options, const Plan& plan, const LayerSteps& steps,
                             const Execution& execution) {
     LayerStack layers =

@@ -17,8 +17,8 @@
 
 namespace lamella {
 
-/// Holds for types without gaps between their members; for others it does not compile. What is in a gap was
-/// never written: no message is to have it.
+/// Returns true for types without padding; does not compile for others. Padding is uninitialised, and must
+/// not become part of a message.
 template <class T>
 constexpr bool without_gaps_between_members() noexcept {
     if constexpr (!std::has_unique_object_representations_v<T> && !std::is_floating_point_v<T>) {
@@ -50,7 +50,7 @@ class Packer {
     std::string bytes_;
 };
 
-/// Takes them out in the order in which they were put in. The bytes must outlive it.
+/// Extracts values in the order in which they were put in. The bytes must outlive it.
 class Unpacker {
   public:
     explicit Unpacker(std::string_view bytes) : rest_(bytes) {}
@@ -64,7 +64,7 @@ class Unpacker {
     template <class T>
     [[nodiscard]] std::vector<T> get_all() {
         const auto count = get<std::uint64_t>();
-        if (count > rest_.size() / sizeof(T)) // before there is memory for them
+        if (count > rest_.size() / sizeof(T)) // checked before memory is allocated
             throw too_short();
         std::vector<T> values(count);
         if (count > 0)

@@ -24,7 +24,7 @@ Box3 moved(const Box3& box, double dx, double dy) {
     return {{box.min.x + dx, box.min.y + dy, box.min.z}, {box.max.x + dx, box.max.y + dy, box.max.z}};
 }
 
-/// "part.stl" in a folder is "part"; so is "part.stl.gz".
+/// Returns "part" for "part.stl" in any folder, and for "part.stl.gz".
 std::string stem_of(const std::string& path) {
     if (path == "-")
         return "part";
@@ -59,7 +59,7 @@ void check_range(const Box3& box, const std::string& path) {
         farthest = std::max({farthest, std::abs(from), std::abs(to)});
         extent = std::max(extent, to - from);
     }
-    // Numbers so far away are further apart than what can be told of the shape: it would become flat.
+    // At this distance the spacing of doubles exceeds the detail of the shape, which would collapse.
     constexpr double coarsest = 1e-6;
     if (const double step = farthest * std::numeric_limits<double>::epsilon();
         extent > 0 && step > coarsest * extent)
@@ -71,7 +71,7 @@ void check_range(const Box3& box, const std::string& path) {
                 path, extent, farthest, step));
 }
 
-/// As many as a 3MF file may place.
+/// The same limit as for parts of a 3MF file.
 constexpr std::uint64_t most_parts = std::uint64_t{1} << 20;
 
 } // namespace
@@ -96,7 +96,7 @@ void check_inputs(std::span<const PlateInput> inputs) {
 void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_of) {
     const std::size_t index = plate_.files.size();
     const double unit = unit_of(file, input);
-    // Where the file states its unit, that is in the places of its instances already.
+    // If the file states its unit, the transforms of its instances include it already.
     const Transform outer =
         file.unit_mm ? input.placement : compose(input.placement, scaling(unit, unit, unit));
     plate_.files.push_back({input.path, file.format, unit,
@@ -169,7 +169,7 @@ Plate PlateBuilder::finish() {
         if (group.front() != i)
             continue;
         const Mesh& mesh = objects_[instance.input][instance.object].mesh;
-        // A shape of its own is placed as a whole, so that a part gives the same bits alone and among
+        // A shape that is not shared is placed completely, so that a part gives the same bits alone and among
         // others.
         Transform placement = instance.placement;
         if (group.size() > 1)

@@ -1,6 +1,6 @@
 #pragma once
 
-// From mesh files to a plate: what stands where, and which parts can share a shape.
+// Builds a plate from mesh files: places the parts, and finds those that can share a shape.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -21,16 +21,16 @@
 
 namespace lamella {
 
-/// Throws Error{usage} where there is none, and for what none of them can mean.
+/// Throws Error{usage} if there are no inputs, and for invalid values in them.
 void check_inputs(std::span<const PlateInput> inputs);
 
 /// Collects the instances of all files.
 class PlateBuilder {
   public:
-    /// The box of a mesh under a map.
+    /// Returns the box of a mesh under a transform.
     using BoxOf = std::function<Box3(const Mesh& mesh, const Transform& placement)>;
 
-    /// `box_of` is asked once for each instance of the file. Throws as load_plate.
+    /// Adds a file. Calls `box_of` once for each instance. Throws as load_plate.
     void add(const PlateInput& input, MeshFile file, const BoxOf& box_of);
     [[nodiscard]] Plate finish();
 
@@ -46,7 +46,7 @@ class PlateBuilder {
         std::uint64_t body; ///< MeshInstance::body
         Box3 box;
     };
-    /// Equal keys, equal layers but for a way along x and y.
+    /// Instances with equal keys have equal layers up to an offset along x and y.
     struct Key {
         std::size_t input;
         std::size_t object;
@@ -60,11 +60,11 @@ class PlateBuilder {
     Plate plate_;
     std::vector<std::vector<MeshObject>> objects_;
     std::vector<Instance> instances_;
-    /// Input, copy and body: their parts.
+    /// Parts by input, copy and body.
     std::map<std::tuple<std::size_t, std::uint64_t, std::uint64_t>, std::vector<std::size_t>> bodies_;
 };
 
-/// As load_plate, for files that have been read already: one for each input.
+/// Works as load_plate, for files that have been read already: one for each input.
 [[nodiscard]] Plate build_plate(std::span<const PlateInput> inputs, std::vector<MeshFile> files,
                                 const Execution& execution);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What errors call what is on a plate.
+// Names of files and parts of a plate in error messages.
 
 #include "lamella/pipeline/plate.hpp"
 
@@ -10,13 +10,14 @@
 
 namespace lamella {
 
-/// All of it: "a.stl", "a.stl and 2 more files".
+/// Returns the name of the whole plate: "a.stl", "a.stl and 2 more files".
 [[nodiscard]] std::string name_of(std::span<const PlateInput> inputs);
 [[nodiscard]] std::string name_of(const Plate& plate);
 
-/// A part: its file, and its label where that has several parts: "a.stl", "plate.3mf, part "ball"".
+/// Returns the name of a part: its file, and its label if the file has several parts: "a.stl", "plate.3mf,
+/// part "ball"".
 [[nodiscard]] std::string name_of_part(const Plate& plate, std::size_t part);
-/// The first part of a shape: with its label where its file has several shapes.
+/// Returns the name of the first part of a shape: with its label if its file has several shapes.
 [[nodiscard]] std::string name_of_shape(const Plate& plate, std::size_t shape);
 
 } // namespace lamella

@@ -17,16 +17,16 @@
 namespace lamella {
 namespace {
 
-/// Progress of several runs of one kind as that of one.
+/// Reports the progress of several runs of one kind as one.
 class JointProgress {
   public:
-    /// One more run is to come.
+    /// Announces another run.
     void expect(std::uint64_t triangles, std::uint64_t planes) {
         triangles_ += triangles;
         planes_ += planes;
     }
 
-    /// How the next run is to be executed.
+    /// Returns the execution of the next run.
     [[nodiscard]] Execution next(const Execution& execution) {
         for (Count& count : counts_)
             count = {count.before + count.total, 0};
@@ -44,8 +44,8 @@ class JointProgress {
 
   private:
     struct Count {
-        std::uint64_t before = 0; ///< of the runs that are over
-        std::uint64_t total = 0;  ///< of this one
+        std::uint64_t before = 0; ///< work of the completed runs
+        std::uint64_t total = 0;  ///< work of this run
     };
     std::array<Count, 6> counts_;
     std::uint64_t triangles_ = 0;
@@ -55,8 +55,8 @@ class JointProgress {
 Layer moved(const Layer& layer, double dx, double dy) {
     if (dx == 0 && dy == 0)
         return layer;
-    // Rounding can make neighbours equal, and then another point the smallest: as where layers are cut, these
-    // go, and the normal form is made anew.
+    // Rounding can make neighbours equal, and change which point is the smallest. As in slicing, equal
+    // neighbours are removed, and the normal form is restored.
     LayerBuilder builder;
     std::vector<Point2> contour;
     for (std::size_t i = 0; i < layer.contours(); ++i) {
@@ -68,7 +68,7 @@ Layer moved(const Layer& layer, double dx, double dy) {
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
-/// Parts, and then negative volumes.
+/// Visits parts, and then negative volumes.
 template <class Visit>
 void for_bodies(const Plate& plate, const Visit& visit) {
     for (const PlatePart& part : plate.parts)
@@ -77,8 +77,8 @@ void for_bodies(const Plate& plate, const Visit& visit) {
         visit(negative);
 }
 
-/// By shape, the planes between its lowest and its uppermost point, or within the snap distance of these: on
-/// all others it has no contours.
+/// Returns for each shape the planes between its lowest and its highest point, or within the snap distance of
+/// these: on all others it has no contours.
 std::vector<PlaneRange> planes_of_shapes(const Plate& plate, const Plan& plan) {
     const auto planes_where = [&plan](auto&& holds) {
         return static_cast<std::uint32_t>(
@@ -97,7 +97,7 @@ std::vector<PlaneRange> planes_of_shapes(const Plate& plate, const Plan& plan) {
     return planes;
 }
 
-/// The planes in both; none of them where both have none in common.
+/// Returns the planes in both ranges; an empty range if there are none.
 PlaneRange common(PlaneRange a, PlaneRange b) {
     const std::uint32_t begin = std::max(a.begin, b.begin);
     return {begin, std::max(begin, std::min(a.end, b.end))};
@@ -109,8 +109,8 @@ struct ShapeLayers {
     LayerStack layers;
 };
 
-/// Runs of planes on which all shapes together have no more points than that, where a single plane has not.
-/// One run where they need not be counted to know.
+/// Returns ranges of planes on which all shapes together have at most this many points, unless a single plane
+/// has more. Returns one range if the points need not be counted.
 std::vector<PlaneRange> windows(const Plate& plate, const Plan& plan, std::uint64_t most_points,
                                 const Execution& execution) {
     const auto planes = static_cast<std::uint32_t>(plan.layers.size());
@@ -125,7 +125,7 @@ std::vector<PlaneRange> windows(const Plate& plate, const Plan& plan, std::uint6
     return divide_by_points(SlabSurvey(counts), most_points);
 }
 
-/// Without the progress of slicing.
+/// Returns an execution that does not report the progress of slicing.
 Execution without_slicing(const Execution& execution) {
     Execution run = execution;
     if (execution.progress)
@@ -136,7 +136,8 @@ Execution without_slicing(const Execution& execution) {
     return run;
 }
 
-/// The next planes of a run whose parts together have no more points than that (0: any number), or one plane.
+/// Returns the next planes of a range whose parts together have at most this many points (0: any number), or
+/// one plane.
 PlaneRange next_planes(PlaneRange left, std::uint32_t most, std::uint64_t most_points, const Plate& plate,
                        const std::vector<ShapeLayers>& shapes) {
     PlaneRange next{left.begin, left.begin};
@@ -152,11 +153,12 @@ PlaneRange next_planes(PlaneRange left, std::uint32_t most, std::uint64_t most_p
     return next;
 }
 
-/// The layers of all parts on a run of planes, formatted in parallel, written in order. Empties the shapes.
+/// Emits the layers of all parts on a range of planes, formatted in parallel, written in order. Empties the
+/// shapes.
 void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRange run,
           std::uint64_t points_in_flight, std::vector<ShapeLayers>& shapes, Executor& executor,
           ProgressMeter* progress) {
-    const std::uint32_t at_once = 4 * executor.workers(); // so that all workers have some
+    const std::uint32_t at_once = 4 * executor.workers(); // some for each worker
     std::vector<std::function<void()>> actions(at_once);
     for (PlaneRange now{run.begin, run.begin}; now.end < run.end;) {
         now = next_planes({now.end, run.end}, at_once, points_in_flight, plate, shapes);
@@ -178,7 +180,7 @@ void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRang
         for (std::size_t i = 0; i < now.size(); ++i)
             if (actions[i])
                 actions[i]();
-        for (auto& [planes, layers] : shapes) { // what is written is not needed any more
+        for (auto& [planes, layers] : shapes) { // release written layers
             const PlaneRange written = common(planes, now);
             for (std::uint32_t plane = written.begin; plane < written.end; ++plane)
                 layers[plane - planes.begin] = {};
@@ -188,7 +190,7 @@ void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRang
     }
 }
 
-/// Of a shape; empty where nobody wants to see it.
+/// Returns the visitor of a shape; empty if there is none.
 TriangleVisitor visitor_of(std::size_t shape, const ShapeVisitor& visitor) {
     if (!visitor)
         return {};
@@ -201,7 +203,8 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
                         const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
                         SinkYield yield, const ShapeVisitor& visitor) {
     SliceReport report;
-    // Each window takes a look at all triangles: they are few, and large. Engines that weld would do so anew.
+    // Each range visits all triangles; they are few, and large. Engines that weld would weld again for each
+    // range.
     constexpr std::uint64_t share = 2;
     const auto all = static_cast<std::uint32_t>(plan.layers.size());
     const std::vector<PlaneRange> runs = engine.welds || points_in_flight == 0
@@ -213,7 +216,7 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
         for (std::size_t shape = 0; shape < planes.size(); ++shape)
             if (const PlaneRange its = common(planes[shape], run); its.size() > 0)
                 progress.expect(plate.shapes[shape].mesh.size(), its.size());
-    // Where the sink makes much of layers, that is what takes long.
+    // If the sink expands layers, its work takes most of the time, and its progress is reported instead.
     const bool sink_counts = yield == SinkYield::much_more;
     const Execution slicing = sink_counts ? without_slicing(execution) : execution;
     std::optional<ProgressMeter> emitted;

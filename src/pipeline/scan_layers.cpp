@@ -61,7 +61,7 @@ StackedPlanes stacked(std::span<const LayerStack> parts, const Rounding& roundin
     return planes;
 }
 
-/// A plane with the neighbours that a strategy asks for.
+/// Returns a plane with the neighbours that a strategy needs.
 PlaneLayers with_its_neighbours(const StackedPlanes& planes, std::size_t i, const ScanStrategy& strategy) {
     PlaneLayers found{.parts = planes[i]};
     for (std::size_t k = 1; k <= std::min<std::size_t>(strategy.downskin.layers, i); ++k)

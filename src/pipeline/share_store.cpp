@@ -13,8 +13,8 @@ ShareStore::ShareStore(const Plan& plan, std::span<const PlaneRange> shares,
     std::vector<SlabSurvey> surveys;
     for (const PlaneCounts& shape : counts)
         surveys.emplace_back(shape);
-    // Threads that write to one file at the same time wait for one another, in the system; and some hundred
-    // shares may be more files than a process can have open.
+    // Threads that write to one file at the same time block one another in the operating system; and hundreds
+    // of ranges may need more files than a process can open.
     constexpr std::size_t most_files = 16;
     std::vector<std::uint64_t> totals(std::min(shares_, most_files), 0);
     for (std::size_t share = 0; share < shares_; ++share)
@@ -37,7 +37,7 @@ ShareStore::ShareStore(const Plan& plan, std::span<const PlaneRange> shares,
 }
 
 bool ShareStore::add(std::size_t shape, const TriangleSoup& batch) {
-    // A triangle may be cut by planes of all shares: so many copies are made at a time.
+    // A triangle may be cut by planes of all ranges, so copies are made in chunks of this size.
     constexpr std::uint64_t copies_at_once = std::uint64_t{1} << 15;
     std::vector<SlabFinder::Touched> touched;
     finder_.find(batch, touched);
@@ -52,7 +52,7 @@ bool ShareStore::add(std::size_t shape, const TriangleSoup& batch) {
     return true;
 }
 
-/// The triangles [from, to), sorted by shares.
+/// Adds the triangles [from, to), sorted by range.
 bool ShareStore::add_some(std::size_t shape, const TriangleSoup& batch,
                           std::span<const SlabFinder::Touched> touched, std::size_t from, std::size_t to) {
     std::vector<std::size_t> begin(shares_ + 1, 0);

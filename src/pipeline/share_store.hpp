@@ -1,6 +1,6 @@
 #pragma once
 
-// Where triangles wait until the planes that cut them are sliced.
+// Stores triangles until the planes that cut them are sliced.
 
 #include "lamella/mesh/triangle_soup.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -21,26 +21,26 @@
 
 namespace lamella {
 
-/// Takes the triangles of all shapes of a plate, in any order, and gives them back share by share. The planes
-/// of a plan are divided into shares; a triangle waits for each share that has a plane which cuts it. Those
-/// of a single share wait in memory, of several in files without names (SpillFile), each share of a shape in
-/// one stretch of a file.
+/// Takes the triangles of all shapes of a plate, in any order, and returns them range by range. The planes of
+/// a plan are divided into ranges; a triangle is stored for each range with a plane that cuts it. Triangles
+/// of a single range are kept in memory, those of several in unnamed files (SpillFile). The triangles of one
+/// range and shape are contiguous.
 class ShareStore {
   public:
-    /// `shares` of the plan, ascending; `counts` of each shape say how many triangles will come.
+    /// `shares` are the ranges of the plan, ascending; `counts` give the number of triangles of each shape.
     ShareStore(const Plan& plan, std::span<const PlaneRange> shares, std::span<const PlaneCounts> counts);
 
-    /// Triangles of a shape, placed; what no share asks for is passed over. From any number of threads. False
-    /// when there are more than were counted.
+    /// Adds placed triangles of a shape; those that no range needs are ignored. May be called from any number
+    /// of threads. Returns false if there are more than were counted.
     [[nodiscard]] bool add(std::size_t shape, const TriangleSoup& batch);
-    /// The first shape of which not all triangles came that were counted.
+    /// Returns the first shape for which fewer triangles arrived than were counted.
     [[nodiscard]] std::optional<std::size_t> incomplete() const noexcept;
-    /// Those of a share, as stored: without the placement of their batches. Each once: its room on the disk
-    /// is given back.
+    /// Returns the triangles of a range and shape, as stored: without their placement. May be called once for
+    /// each: their disk space is freed.
     [[nodiscard]] TriangleSoup take(std::size_t share, std::size_t shape, const Execution& execution);
 
   private:
-    /// A stretch of the memory or of a file, in triangles.
+    /// Contiguous triangles in the memory or in a file.
     struct Stretch {
         SpillFile* file = nullptr;
         std::uint64_t begin = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What is summed up while the triangles of a file stream by.
+// Sums over the triangles of a file that is streamed.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/transform.hpp"
@@ -14,12 +14,12 @@
 
 namespace lamella {
 
-/// What one pass over a file tells of where it lies.
+/// The extent of a file, found in one pass over it.
 class Extent {
   public:
     explicit Extent(const Transform& placement) : placement_(placement) {}
 
-    /// From any thread.
+    /// Adds a chunk. May be called from any thread.
     void add(const TriangleSoup& batch, std::uint64_t number) {
         const TriangleSoup placed = batch.transformed(placement_);
         const Box3 box = bounding_box(placed, {.threads = 1});
@@ -32,7 +32,7 @@ class Extent {
     }
 
     [[nodiscard]] const Box3& box() const noexcept { return box_; }
-    /// As stored, of the first triangle.
+    /// Returns a corner of the first triangle, as stored.
     [[nodiscard]] const Point3f& first_corner() const noexcept { return first_corner_; }
 
   private:
@@ -43,13 +43,13 @@ class Extent {
     Point3f first_corner_;
 };
 
-/// The volume of a mesh from its batches, with the bits of `volume` where those are whole pieces of it.
+/// The volume of a mesh from its chunks, equal bit for bit to `volume` if these are the chunks that it sums.
 class VolumeSum {
   public:
     VolumeSum(const Transform& placement, const Point3f& first)
         : origin_(placement({first.x, first.y, first.z})) {}
 
-    /// From any thread.
+    /// Adds a chunk. May be called from any thread.
     void add(const TriangleSoup& batch, std::uint64_t number) {
         double sum = 0;
         for (std::size_t i = 0; i < batch.size(); ++i)
@@ -60,7 +60,7 @@ class VolumeSum {
         pieces_[number] = sum;
     }
 
-    /// Sums of the batches, in their order.
+    /// Returns the sums of the chunks, in their order.
     [[nodiscard]] const std::vector<double>& pieces() const noexcept { return pieces_; }
 
   private:

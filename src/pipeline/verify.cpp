@@ -38,20 +38,20 @@ std::string gaps_text(std::span<const Verification::OpenLayer> layers) {
         worst->gaps.from.x, worst->gaps.from.y, worst->gaps.to.x, worst->gaps.to.y);
 }
 
-/// How far the area of a layer may be off from that of the mesh's section, when each of its points is off by
-/// up to half a step of the format in x and y. `extent` is the mesh's.
+/// Returns the largest difference between the area of a layer and that of the mesh's section if each of its
+/// points is off by up to half a step of the format in x and y. `extent` is that of the mesh.
 double area_tolerance(const Layer& layer, const LayerMeasure& measure, const Rounding& rounding,
                       double extent) {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const double largest = largest_coordinate(layer.points.span());
     const double quantum = rounding.step_at(largest) / 2;
     const auto points = static_cast<double>(measure.points);
-    // Rings smaller than a unit may have vanished: hence the perimeter of a few units more.
+    // Rings smaller than a unit may have vanished: the perimeter is therefore a few units longer.
     const double moved_points =
         (measure.perimeter_mm + 8 * quantum) * (std::sqrt(2.0) * quantum + 16 * epsilon * largest) +
         2 * points * quantum * quantum;
-    // Both areas are sums of products of coordinates, as many as there are points, which cancel all but the
-    // area. Errors of sums grow with the root of the number of terms.
+    // Both areas are sums of products of coordinates, one for each point, which cancel to the area. Errors of
+    // sums grow with the root of the number of terms.
     return moved_points + epsilon * extent * extent * (16 + 4 * std::sqrt(points));
 }
 
@@ -59,7 +59,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
                    const VerifyOptions& options, const Execution& execution, Verification& result) {
     const Box3 box = bounding_box(*options.mesh, execution);
     const double extent = box.empty() ? 0 : std::max(box.max.x - box.min.x, box.max.y - box.min.y);
-    // About the middle of the part, so that a part far from the origin loses no digits.
+    // Computed relative to the middle of the part, so that a part far from the origin loses no digits.
     const Point2 origin =
         box.empty() ? Point2{} : Point2{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2};
     LayerSteps steps = steps_to_repeat(options.steps);
@@ -85,7 +85,8 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     struct Own {
         AreaMoments moments;
         double tolerance = 0; // of the area
-        double reach = 0; // what moves an edge moves a strip of area, which has its moment from where it lies
+        double reach =
+            0; // of the moments: a moved edge moves a strip of area, whose moment grows with its distance
     };
     std::vector<Own> own(layers.size());
     Executor executor(execution);
@@ -106,7 +107,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     std::size_t first_displaced = 0;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         if (checks[i].found.open_chains.total > 0)
-            continue; // its area is not known
+            continue; // the area is unknown
         ++compared;
         const AreaMoments& moments = own[i].moments;
         const auto beyond = [&](double AreaMoments::*sum) {
@@ -115,8 +116,8 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
                 [&](const AreaMoments& a, const AreaMoments& b) { return a.*sum < b.*sum; });
             return std::max((*least).*sum - moments.*sum, moments.*sum - (*greatest).*sum);
         };
-        // Rounding decides for each corner by itself whether its mitre is cut off: of those on either side of
-        // the origin some may be and others not, which moves the centre beyond that of all or none.
+        // Rounding decides for each corner separately whether its mitre is truncated. If this happens on one
+        // side of the origin only, it moves the centroid beyond that of all or none truncated.
         double undecided_mm2 = 0;
         const std::size_t cuts = sections[i].size() / limits.size();
         for (std::size_t k = cuts; k < sections[i].size(); ++k)
@@ -151,7 +152,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     if (result.displaced > 0) {
         const auto centre = [&](const AreaMoments& section) -> std::string {
             if (section.area_mm2 == 0)
-                return "nowhere"; // bodies that cancel
+                return "nowhere"; // bodies that cancel each other
             const auto to_nanometres = [](double mm) {
                 return std::round(mm * 1e6) / 1e6 + 0.0;
             };
@@ -166,7 +167,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     }
 }
 
-/// The planes at which layers in any order were cut.
+/// Returns the planes at which layers in any order were cut.
 Plan plan_of(std::span<const Layer> layers, const VerifyOptions& options) {
     Plan plan{.layers = {}, .rule = options.rule, .snap_mm = options.snap_mm};
     for (const Layer& layer : layers)
@@ -186,7 +187,8 @@ PlaneRule place_cuts(LayerStack& layers, SliceAt at) {
         const double cut = at == SliceAt::bottom ? layer.bottom
                            : at == SliceAt::top  ? layer.top
                                                  : layer.bottom + (layer.top - layer.bottom) / 2;
-        // A file that says it knows better: a last cut at the top of a mesh is not above it by a last digit.
+        // A height in the file takes precedence: a last cut at the top of a mesh must not end up above it by
+        // a rounding error.
         if (std::abs(layer.z - cut) > same_height_mm)
             layer.z = cut;
     }

@@ -44,7 +44,7 @@ double area_of(const LayerPart& part) {
     return area;
 }
 
-/// Of contours of one part; some files do not number them.
+/// Compares contours of one part by number or, since some files do not number them, by area.
 bool lies_outside(const LayerPart& part, const LayerPart& other) {
     return part.exposure->contour != other.exposure->contour
                ? part.exposure->contour < other.exposure->contour
@@ -85,17 +85,17 @@ const HatchRule& hatch_of(const ScanStrategy& strategy, ScanRegion region) noexc
     }
 }
 
-/// How far inside of the outline of the part the vectors of an exposure are to be.
+/// Returns the required distance of the vectors of an exposure from the outline of the part.
 double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept {
     const ContourRule& contours = contours_of(strategy, exposure.region);
     return exposure.kind == VectorKind::contour ? contour_depth(contours, std::max(1U, exposure.contour))
                                                 : hatch_depth(contours, hatch_of(strategy, exposure.region));
 }
 
-/// What is wrong with the contours of one number.
+/// Findings about the contours of one number.
 struct ContourRow {
     Finding missing;
-    Finding elsewhere; ///< not of the area at its depth
+    Finding elsewhere; ///< wrong area for its depth
 
     void add(const ContourRow& other) {
         missing.add(other.missing);
@@ -103,7 +103,7 @@ struct ContourRow {
     }
 };
 
-/// What is wrong with the vectors of a plane.
+/// Findings about the vectors of a plane.
 struct PlaneCheck : ContourFindings {
     Finding outside;
     Finding too_short;
@@ -111,27 +111,27 @@ struct PlaneCheck : ContourFindings {
     Finding miscovered;
     Finding unreached;
     Finding inverted;
-    std::map<std::uint32_t, ContourRow> rows; ///< by the numbers of contours, of those with findings
+    std::map<std::uint32_t, ContourRow> rows; ///< by number of contours, for those with findings
     std::uint64_t contour_vectors = 0;
     std::uint64_t hatch_vectors = 0;
     std::uint64_t unbounded = 0;
     double covered_mm2 = 0;
-    double filled_mm2 = 0; ///< what was to be covered
+    double filled_mm2 = 0; ///< area that had to be covered
     double unreached_mm2 = 0;
     double inverted_mm3 = 0;
 };
 
-/// Where the material of a plane is known to be, and where it may be: a format may have moved the cut.
+/// Known sections of the material of a plane, and further possible ones: a format may have moved the cut.
 struct Bounds {
-    std::vector<Layer> sections; ///< the first where the file says
-    double depth = 0;            ///< of their outlines inside of that of the part
+    std::vector<Layer> sections; ///< the first is at the height in the file
+    double depth = 0;            ///< distance of their outlines from that of the part
 };
 
-/// By how much what lines cover may be off from the area that they fill.
+/// Tolerance of the area covered by lines.
 class Slack {
   public:
-    /// A line may end, or begin, half a distance beside the edge of the area; what is narrower than the
-    /// shortest line has none. Stripes and islands overlap, and leave out what is too short of each of them.
+    /// A line may end half a distance beside the edge of the area, and areas narrower than the shortest line
+    /// have none. Stripes and islands overlap, and each leaves out lines that are too short.
     void add(const HatchRule& rule) {
         const bool cells = rule.pattern != HatchPattern::lines && rule.pattern != HatchPattern::meander;
         strip_less_ = std::max(strip_less_, rule.distance / 2 + rule.shortest);
@@ -139,7 +139,7 @@ class Slack {
         if (!cells)
             return;
         const double longer = 1 + rule.overlap / rule.cell;
-        // Each square has all lines that reach into it; lines in hexagons end where they leave these.
+        // Each square has all lines that reach into it; lines in hexagons end at the border.
         constexpr double rounding = 1e-9;
         const double wider = rule.pattern == HatchPattern::chessboard
                                  ? std::ceil((rule.cell + std::max(rule.overlap, rule.distance)) /
@@ -172,10 +172,10 @@ double length_of(const PointArray& hatches) {
     return length;
 }
 
-/// The lines that a strategy asks for on a layer.
+/// The lines that a strategy prescribes for a layer.
 class AskedLines {
   public:
-    /// `tolerance`: by which ends may be off.
+    /// `tolerance` applies to the ends of lines.
     AskedLines(const HatchRule& rule, std::uint64_t layer, double tolerance)
         : distance_(rule.distance), phase_(line_phase(rule.pattern)), tolerance_(tolerance) {
         for (const CosSin& angle : line_angles(rule, layer))
@@ -197,7 +197,7 @@ class AskedLines {
     double tolerance_;
 };
 
-/// A hatch line, and what it is of.
+/// A hatch line with its rule and layer.
 struct HatchLine {
     const Point2* ends = nullptr;
     const HatchRule* rule = nullptr;
@@ -206,7 +206,7 @@ struct HatchLine {
     [[nodiscard]] double length() const noexcept { return ends == nullptr ? 0 : distance(ends[0], ends[1]); }
 };
 
-/// Of each plane and rule that has lines, the longest one: those of the lowest planes, some at least.
+/// Returns the longest line of each plane and rule that has lines, for enough of the lowest planes.
 std::vector<HatchLine> longest_lines(const std::vector<Group>& groups, const ScanStrategy& strategy,
                                      std::size_t planes) {
     constexpr std::size_t enough = 32;
@@ -229,8 +229,8 @@ std::vector<HatchLine> longest_lines(const std::vector<Group>& groups, const Sca
     return lines;
 }
 
-/// How many layers of the plan were before the first of these: that many with which most of the lines are
-/// where they should be.
+/// Returns the number of layers of the plan before the first of these: the number for which most of the lines
+/// are at their expected positions.
 std::uint64_t layers_before(const std::vector<HatchLine>& lines, double tolerance, const Executor& executor) {
     constexpr std::uint64_t most = 1 << 17;
     std::uint64_t best = 0;
@@ -251,8 +251,8 @@ std::uint64_t layers_before(const std::vector<HatchLine>& lines, double toleranc
 
 class VectorCheck {
   public:
-    /// `before`: layers of the plan, before the first of those to be checked.
-    /// `rounding`: by which ends may be off.
+    /// `before` is the number of layers of the plan before the first checked one. `rounding` is the tolerance
+    /// of ends.
     VectorCheck(const VerifyOptions& options, double rounding, std::uint64_t before)
         : options_(options), rounding_(rounding), tolerance_(rounding + options.steps.simplify_mm),
           before_(before) {}
@@ -283,8 +283,8 @@ class VectorCheck {
         }
     }
 
-    /// Whether each contour that the strategy asks for of a part is there, and where it should be: as the
-    /// area that it encloses tells.
+    /// Checks that each contour that the strategy prescribes for a part is present and encloses the area at
+    /// its depth.
     void check_rows(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
         if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0)
             return;
@@ -327,12 +327,13 @@ class VectorCheck {
     }
 
   private:
-    /// As `scan` does it: at a depth of 0, too, bodies that overlap are united.
+    /// Follows `scan`: overlapping bodies are united at a depth of 0, too.
     static Layer moved_inwards(const Layer& section, double depth, const OffsetCorners& corners = {}) {
         return depth == 0 ? fill(section, FillRule::positive).layer : offset(section, -depth, corners);
     }
 
-    /// Contours of one number neither cross nor lie within one another's material.
+    /// Returns findings about contours of one number, which must neither cross nor lie within one another's
+    /// material.
     [[nodiscard]] ContourFindings of_one_exposure(const Exposure& exposure, const Layer& vectors) const {
         ContourFindings found = check_layer(vectors, options_.granted()).found;
         found.misoriented.add(found.tangled);
@@ -341,7 +342,7 @@ class VectorCheck {
         return found;
     }
 
-    /// Whether the strategy has lines for an exposure.
+    /// Returns whether the strategy has lines for an exposure.
     [[nodiscard]] bool asks_for_lines(const Exposure& exposure) const noexcept {
         const ScanStrategy& strategy = *options_.strategy;
         return exposure.kind == VectorKind::hatch &&
@@ -351,7 +352,7 @@ class VectorCheck {
 
     void check_lines(const Exposure& exposure, const Layer& vectors, PlaneCheck& found) const {
         const HatchRule& rule = hatch_of(*options_.strategy, exposure.region);
-        // Those of a contour are along the middle of thin walls.
+        // Lines of a contour run along the middle of thin walls.
         if (exposure.kind == VectorKind::contour &&
             contours_of(*options_.strategy, exposure.region).thin_walls == ThinWalls::line)
             return;
@@ -368,7 +369,7 @@ class VectorCheck {
     }
 
     void find_outside(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
-        // Grown a little, so that what lies on an edge lies within.
+        // Grown a little, so that points on an edge are inside.
         Layer material = bounds.sections.front();
         for (std::size_t i = 1; i < bounds.sections.size(); ++i)
             material = combine(material, bounds.sections[i], BooleanOperation::unite);
@@ -400,7 +401,7 @@ class VectorCheck {
         }
     }
 
-    /// Lines whose middles are farther within the material than `depth`.
+    /// Finds lines whose midpoints are farther within the material than `depth`.
     static void find_in_thick(const EdgeTree& edges, double depth, const Layer& vectors, Finding& found) {
         for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
             const Point2& a = vectors.hatches[i];
@@ -411,8 +412,8 @@ class VectorCheck {
         }
     }
 
-    /// A beam on its way: whether it is within the material has to be found out where a jump leads across an
-    /// edge.
+    /// The position of a beam. After a jump across an edge, it has to be determined again whether the beam is
+    /// within the material.
     class Followed {
       public:
         Followed(const EdgeTree& edges, double distance, const Layer& layer, Finding& outside)
@@ -424,7 +425,7 @@ class VectorCheck {
             const double nearest = edges_.distance_squared(segment_between(from, to), squared_ / 2);
             if (!inside_ || nearest < squared_)
                 outside_.add(layer_, from);
-            known_ = nearest >= squared_; // else it may have led across an edge
+            known_ = nearest >= squared_; // else it may have crossed an edge
             at_ = to;
         }
 
@@ -450,7 +451,7 @@ class VectorCheck {
             shallow = std::min(shallow, depth);
             deep = std::max(deep, depth);
         };
-        // Formats may know only what there is, and skins may leave nothing of the core.
+        // Files may list only regions that are not empty, and skins may cover all of the core.
         if (group.exposures.front()->exposure->region == ScanRegion::support) {
             expect(ScanRegion::support);
         } else {
@@ -461,7 +462,7 @@ class VectorCheck {
                 expect(ScanRegion::downskin);
         }
         double covered = 0;
-        double around_skins = 0; // mm; they lie over what is beside them by their overlap
+        double around_skins = 0; // mm; skins overlap adjacent regions
         double over_others = 0;
         for (const LayerPart* const part : group.exposures) {
             const Exposure& exposure = *part->exposure;
@@ -479,7 +480,8 @@ class VectorCheck {
             }
         }
         const Layer* section = &bounds.sections.front();
-        LayerMeasure to_fill; // of the first section that has any material: heights may be rounded out of it
+        LayerMeasure
+            to_fill; // of the first section with material: rounded heights may lie outside of the part
         LayerMeasure largest;
         double least = std::numeric_limits<double>::infinity();
         for (const Layer& moved : bounds.sections) {
@@ -493,7 +495,7 @@ class VectorCheck {
             least = std::min(least, measure(offset(moved, -deep)).area_mm2);
         }
         const double moved_edges = tolerance_ * largest.perimeter_mm;
-        LayerMeasure edges = largest; // and those of skins
+        LayerMeasure edges = largest; // including those of skins
         edges.perimeter_mm += around_skins;
         least -= slack.less(edges) + moved_edges;
         const double greatest = largest.area_mm2 + slack.more(edges) + over_others + moved_edges;
@@ -504,7 +506,8 @@ class VectorCheck {
         found.filled_mm2 += to_fill.area_mm2;
     }
 
-    /// Of sections of which the file may mean any, that of which the least is left.
+    /// Measures the material out of reach for each section that the file may mean, and keeps the smallest
+    /// result.
     void measure_unreached(const Group& group, std::size_t plane, const Bounds& bounds,
                            PlaneCheck& found) const {
         const ScanStrategy& strategy = *options_.strategy;
@@ -535,12 +538,12 @@ class VectorCheck {
     }
 
     const VerifyOptions& options_;
-    double rounding_;  ///< by which ends of lines may be off
-    double tolerance_; ///< by which edges of the material may be off, by leaving out points of them, too
+    double rounding_;  ///< tolerance of ends of lines
+    double tolerance_; ///< tolerance of edges of the material, simplification included
     std::uint64_t before_;
 };
 
-/// Of which a plane has a finding, and a file their number.
+/// A kind of finding, its member in the checks of planes, and its count for the file.
 struct KindOfFinding {
     Finding PlaneCheck::*found;
     std::uint64_t VectorVerification::*total;
@@ -598,7 +601,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         for (const Layer& layer : part.layers)
             check(layer);
     const std::vector<Group> groups = groups_of(parts, options.mesh.has_value());
-    // What is asked of contours goes by the part. A mesh of several does not tell these apart.
+    // Requirements on contours apply to each part. A mesh of several parts does not distinguish them.
     const std::vector<Group> of_parts = options.strategy ? groups_of(parts, false) : std::vector<Group>();
     VectorVerification result;
     const auto check_number = [&] {
@@ -625,7 +628,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
             for (const Layer& layer : part->layers)
                 largest = std::max({largest, largest_coordinate(layer.points.span()),
                                     largest_coordinate(layer.hatches.span())});
-    // Ends of lines and points of contours, each moved along both axes; and what arithmetic moves.
+    // Tolerance of ends of lines and points of contours, each moved along both axes, and of arithmetic.
     const double rounding = std::sqrt(2.0) * options.granted().step_at(largest) + 0x1p-34 * largest;
 
     Executor executor(execution);

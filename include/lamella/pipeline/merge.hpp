@@ -1,6 +1,6 @@
 #pragma once
 
-// Slice files of consecutive layers, put together to one.
+// Merges slice files of consecutive layers into one.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -21,23 +21,25 @@ struct MergeResult {
     double bottom = 0;       ///< of the first layer
     double top = 0;          ///< of the last one
     std::uint64_t bytes = 0; ///< written
-    /// What was odd about the files where they are written anew, and rings of them that bound no material.
-    /// Each line begins with the path of the file.
+    /// Warnings about files that are rewritten, and about their rings that bound no material. Each line
+    /// begins with the path of the file.
     std::vector<std::string> file_warnings;
-    std::vector<std::string> warnings; ///< what the format has no place for
+    std::vector<std::string> warnings; ///< content that the format cannot hold
 };
 
-/// Merges slice files of one format whose layers lie on one another, such as the shards of one job; they may
-/// come in any order. Files of the Common Layer Interface are put together as they are when that is the
-/// format written, too (`options` do not count then): the result is, byte for byte, the file of a single run.
-/// Layers of other formats are read and written anew. Memory holds one of the files at a time.
+/// Merges slice files of one format with adjoining layers, such as the shards of one job; they may be in any
+/// order. Files of the Common Layer Interface are concatenated unchanged if that is also the output format
+/// (`options` then have no effect): the result is, byte for byte, the file of a single run. Layers of other
+/// formats are read and rewritten. Memory holds one of the files at a time.
 ///
-/// `format`: by name; "" goes by the extension of `output`. Throws Error{input} when files differ in their
-/// parts (but formats of scan vectors know only parts that have something), the parameters of a part, their
-/// units or their head, when one begins above the end of the one below it (a layer gap) or below it (an
-/// overlap), naming both; for files that are put together as they are and whose reading met anything odd;
-/// Error{usage} for what can be read once only, such as pipes, and where `output` is there and holds layers
-/// that adjoin those of the files: it is one of them; and what reading and writing throw.
+/// `format` is a name; "" selects by the extension of `output`. Throws
+/// - Error{input}, naming both files, if they differ in their parts (formats of scan vectors list only parts
+///   that are not empty), the parameters of a part, units or header, or if one begins above the end of the
+///   one below it (a layer gap) or below it (an overlap);
+/// - Error{input} for files to be concatenated whose reading gives a warning;
+/// - Error{usage} for inputs that can be read only once, such as pipes, and if `output` exists and its layers
+///   adjoin those of the files, since it then is one of them;
+/// - the errors of reading and writing.
 MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
                               std::string_view format = {}, const LayerWriteOptions& options = {},
                               const LayerReadOptions& reading = {}, const Execution& execution = {});

@@ -1,6 +1,6 @@
 #pragma once
 
-// The build plate: mesh files, and what stands where.
+// The build plate: mesh files and the positions of their parts.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -23,51 +23,54 @@ namespace lamella {
 /// A mesh file to be put on the plate.
 struct PlateInput {
     std::string path = {}; ///< "-" is standard input
-    /// Millimetres per unit of a file that does not state its own; unset: 1. For others it is Error{usage}.
+    /// Millimetres per unit of a file that does not state its own; 1 if unset. For a file that does it is
+    /// Error{usage}.
     std::optional<double> unit_mm = {};
-    /// Of everything in the file, in millimetres, after the places that the file itself gives.
+    /// Placement of the whole file, in millimetres, applied after the transforms in the file itself.
     Transform placement = {};
-    /// Further copies stand beside it: rows along x, one behind the other in y, as nearly square as possible.
+    /// Number of copies. They are arranged in rows along x, one behind the other in y, as nearly square as
+    /// possible.
     std::uint64_t copies = 1;
     double spacing_mm = 5; ///< between the boxes of copies
-    /// Of the file's parts. Where empty: what the file calls them; else the name of the file, or "part" for
+    /// Label of the file's parts. If empty, it is that in the file; else the name of the file, or "part" for
     /// the only part of a plate.
     std::string label = {};
-    /// All of its parts are supports, whatever the file says of them.
+    /// Treats all parts of the file as supports, whatever the file specifies.
     bool support = false;
 };
 
-/// Something to be sliced once. It is already placed, but for the way along x and y of parts that share it.
+/// A mesh to be sliced once. It is already placed, except for the offsets along x and y of parts that share
+/// it.
 struct PlateShape {
     Mesh mesh;
-    std::size_t input = 0; ///< whose file it comes from
+    std::size_t input = 0; ///< index of the file's input
 };
 
-/// One body on the plate: its layers are kept apart in formats that can.
+/// One body on the plate. Formats that can keep its layers separate.
 struct PlatePart {
-    std::string label; ///< no two are equal
+    std::string label; ///< unique
     std::size_t shape = 0;
     double dx = 0; ///< mm; added to the layers of the shape
     double dy = 0;
     Box3 box;
-    bool support = false; ///< of scan vectors: exposed as such; all else treats it as a part
+    bool support = false; ///< in scan vectors exposed as a support; otherwise treated as a part
 };
 
-/// A volume that is subtracted from parts: a file marks it as negative in their object.
+/// A volume that is subtracted from parts, because a file marks it as negative in their object.
 struct PlateNegative {
     std::size_t shape = 0;
     double dx = 0; ///< mm; added to the layers of the shape
     double dy = 0;
     Box3 box;
-    std::vector<std::size_t> parts; ///< from which it is subtracted
+    std::vector<std::size_t> parts; ///< parts from which it is subtracted
 };
 
-/// What became of an input file.
+/// Result of reading an input file.
 struct PlateFile {
     std::string path;
     std::string format; ///< MeshFile::format
     double unit_mm = 1;
-    Transform matrix; ///< from the file's coordinates (build items not counted) to the plate's
+    Transform matrix; ///< from the file's coordinates (without build items) to the plate's
     std::uint64_t stored_triangles = 0;
     std::vector<std::string> warnings;
     std::vector<MeshBody> bodies; ///< MeshFile::bodies
@@ -81,31 +84,30 @@ struct Plate {
     Box3 box; ///< of all parts
 };
 
-/// Reads all inputs. Instances of one mesh that differ in x and y only share a shape: they are sliced once.
-/// Throws what `read_mesh` throws, and Error{usage} where there are no inputs, for a unit, copies or spacing
-/// that none can have, and for places beyond the range of numbers.
+/// Reads all inputs. Instances of one mesh that differ only in x and y share a shape: they are sliced once.
+/// Throws the errors of `read_mesh`, and Error{usage} if there are no inputs, for an invalid unit, number of
+/// copies or spacing, and for positions beyond the range of numbers.
 [[nodiscard]] Plate load_plate(std::span<const PlateInput> inputs, const MeshReadOptions& options = {},
                                const Execution& execution = {});
 
-/// The same for one input whose file has been read already.
+/// Does the same for one input whose file has been read already.
 [[nodiscard]] Plate load_plate(const PlateInput& input, MeshFile file, const Execution& execution = {});
 
-/// All parts as one mesh (see `joined` of meshes), without negative volumes.
+/// Returns all parts as one mesh (see `joined` of meshes), without negative volumes.
 [[nodiscard]] Mesh joined(const Plate& plate, const Execution& execution = {});
 
-/// Throws Error{limit} that counts parts and triangles, where so many bytes for each triangle of all parts
-/// are more than `max_memory` (0: three quarters of the memory there is): before they are joined, and looked
-/// at.
+/// Throws Error{limit} with the numbers of parts and triangles if this many bytes for each triangle of all
+/// parts exceed `max_memory` (0: three quarters of the physical memory). Call it before joining and
+/// inspecting the parts.
 void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uint64_t max_memory);
 
-/// The layers of all parts together, which negative volumes are subtracted from: as `slice` and `slice_to` of
-/// a mesh.
+/// Slices all parts together, and subtracts negative volumes, as `slice` and `slice_to` do for a mesh.
 [[nodiscard]] LayerStack slice(const Plate& plate, const Plan& plan, const Execution& execution = {},
                                const Engine& engine = engines().front());
 void slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan, const Execution& execution = {},
               const Engine& engine = engines().front());
 
-/// Throws Error{usage} that names the first part which reaches out of the box from (0, 0, 0) to `size`.
+/// Throws Error{usage} naming the first part that reaches out of the box from (0, 0, 0) to `size`.
 void check_build_volume(const Plate& plate, const Point3& size);
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// What to do about meshes and layers that are not sound: each policy by itself, none unless asked for.
+// Repairs of unsound meshes and layers. Each policy is independent of the others and off by default.
 
 #include "lamella/contour/close_gaps.hpp"
 #include "lamella/contour/layer.hpp"
@@ -25,15 +25,15 @@ struct RepairPolicies {
     }
 };
 
-/// What the policies of the mesh did, in the order in which they ran; their meshes are left out.
+/// Results of the policies that change the mesh, in the order in which they ran, without the meshes.
 struct MeshRepairs {
     std::optional<ToleranceWeld> welded;
     std::optional<DroppedDuplicates> dropped;
     std::optional<OrientedMesh> oriented;
 };
 
-/// The mesh, welded exactly, after the policies that change meshes: first the tolerance, then duplicates,
-/// then orientation. Passed through where there are none. Throws what these throw.
+/// Returns the mesh, welded exactly, after the policies that change meshes: first the tolerance, then
+/// duplicates, then orientation. Returns it unchanged if there are none. Throws the errors of the policies.
 [[nodiscard]] Mesh repaired(const Mesh& mesh, const RepairPolicies& policies, MeshRepairs& repairs,
                             const Execution& execution = {});
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Layers that are there already: their scan vectors, written to a file.
+// Scan vectors of existing layers, written to a file.
 
 #include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
@@ -19,47 +19,46 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// What one of the `exposures` of a strategy takes, or one of its `support_exposures`.
+/// Figures of one of the `exposures` of a strategy, or of one of its `support_exposures`.
 struct ExposureResult {
-    Exposure exposure; ///< of no part: of all of them
+    Exposure exposure; ///< of all parts, so without a part
     ScanFigures figures;
 };
 
-/// The head of a slice file for scan vectors: in the place of each part its exposures, called by the label of
-/// the part and their own name, such as "bracket core hatch".
+/// Returns the header of a slice file for scan vectors: each part is replaced by its exposures, with the
+/// label of the part and their own name, such as "bracket core hatch".
 [[nodiscard]] LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy);
 
-/// Layers with more material that no vector reaches than the strategy accepts of a part.
+/// Layers with more material out of reach of all vectors than the strategy accepts for a part.
 struct UnreachedMaterial : AffectedLayers {
     double area_mm2 = 0; ///< of all of these layers
 
-    /// Of the next layer above.
+    /// Adds the next layer above.
     void add(double unreached_mm2, double z) noexcept;
-    /// "8.1 mm2 of material on 10 layers, the lowest at z = 0.5 mm, are reached by no vector: ...", with the
-    /// cure.
+    /// Returns "8.1 mm2 of material on 10 layers, the lowest at z = 0.5 mm, are reached by no vector: ...",
+    /// with a remedy.
     [[nodiscard]] std::string text() const;
 };
 
 struct ScanResult {
-    /// In the order in which they are executed, all layers and parts together, those of supports last. A beam
-    /// goes through the parts of a layer one after the other; how it comes from layer to layer does not
-    /// count.
+    /// Figures in the order of execution, over all layers and parts, supports last. A beam exposes the parts
+    /// of a layer one after the other; its jumps between layers are not counted.
     std::vector<ExposureResult> exposures;
-    /// For each layer what each of these takes.
+    /// The same figures for each layer.
     std::vector<std::vector<ScanFigures>> layers;
-    /// And the hash of its vectors: see LayerStatistics::scan_hash.
+    /// Hash of the vectors of each layer: see LayerStatistics::scan_hash.
     std::vector<std::uint64_t> hashes;
     UnreachedMaterial unreached;
-    double scan_seconds = 0; ///< of all threads
+    double scan_seconds = 0; ///< sum over all threads
     std::uint64_t bytes = 0; ///< written
     std::vector<std::string> warnings;
 };
 
-/// Scans the layers of parts, whose stacks have the same planes, and writes the vectors. `rounding`: of the
-/// file that they come from, none for layers just cut; `info`: the head of a file of these layers. Hatches
-/// that layers have already do not count. On all threads, each of which holds the vectors of one plane.
-/// Throws what `scan` and `write_layers` throw, and Error{defect} for material that no
-/// vector reaches with LayerWriteOptions::strict.
+/// Scans the layers of parts, whose stacks have the same planes, and writes the vectors. `rounding` is that
+/// of their file, none for layers just cut; `info` is the header of a file of these layers. Existing hatches
+/// of layers are ignored. Runs on all threads, each of which holds the vectors of one plane. Throws the
+/// errors of `scan` and `write_layers`, and, with LayerWriteOptions::strict, Error{defect} for material that
+/// no vector reaches.
 [[nodiscard]] ScanResult scan_layers(const std::string& path, const LayerFormat& format,
                                      std::span<const LayerStack> parts, const Rounding& rounding,
                                      const LayerFileInfo& info, const ScanStrategy& strategy,
