@@ -1,6 +1,6 @@
 #pragma once
 
-// An area and where it lies, as sums over the edges around it.
+// Area and centroid as sums over the edges around an area.
 
 #include "lamella/contour/layer.hpp"
 
@@ -8,14 +8,14 @@
 
 namespace lamella {
 
-/// About an origin: it should be near, so that no digits are lost.
+/// Moments about an origin, which should be close, so that no digits are lost.
 struct AreaMoments {
     double area_mm2 = 0;
     /// The integrals of x and y over the area, in mm^3.
     double x_mm3 = 0;
     double y_mm3 = 0;
 
-    /// One of the directed edges around the area, which lies to their left.
+    /// Adds one of the directed edges around the area, which lies to their left.
     void add_edge(const Point2& from, const Point2& to, const Point2& origin) noexcept {
         const double ax = from.x - origin.x;
         const double ay = from.y - origin.y;
@@ -34,7 +34,7 @@ struct AreaMoments {
     }
 };
 
-/// Of the rings.
+/// Returns the moments of all rings.
 inline AreaMoments area_moments(const Layer& layer, const Point2& origin) noexcept {
     AreaMoments moments;
     for (std::size_t i = 0; i < layer.rings; ++i) {

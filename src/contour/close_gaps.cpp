@@ -20,12 +20,12 @@ namespace lamella {
 
 namespace {
 
-/// From the last point of one chain to the first point of another.
+/// A possible join from the last point of one chain to the first point of another.
 struct Candidate {
     double length;
     Point2 from;
     Point2 to;
-    std::size_t chain; ///< that is continued
+    std::size_t chain; ///< the chain that is continued
     std::size_t next;
 
     friend bool operator<(const Candidate& a, const Candidate& b) noexcept {
@@ -41,12 +41,12 @@ std::vector<Candidate> find_candidates(const Layer& layer, double within) {
     for (std::size_t c = layer.rings; c < layer.contours(); ++c)
         first_points.push_back(layer.contour(c).front());
     const NearestPoints starts(std::move(first_points));
-    // All that are no longer than this: rounding may put a box of the tree beyond its points.
+    // Rounding may move a box of the tree beyond its points, so the search goes slightly farther.
     const auto reach = [](double length) {
         return std::nextafter(length * (1 + 1e-15), Box3::infinity);
     };
     std::vector<Candidate> all;
-    std::vector<Candidate> of_end; // a heap, the worst on top
+    std::vector<Candidate> of_end; // a heap with the worst on top
     for (std::size_t c = layer.rings; c < layer.contours(); ++c) {
         const Point2& end = layer.contour(c).back();
         of_end.clear();
@@ -73,7 +73,7 @@ struct Piece {
     Point2 b;
 };
 
-/// p lies on the piece, and is none of its ends.
+/// Returns true if p lies on the segment but is not one of its ends.
 bool lies_inside(const Point2& p, const Piece& piece) noexcept {
     if (p == piece.a || p == piece.b || orientation(piece.a, piece.b, p) != 0)
         return false;
@@ -81,13 +81,13 @@ bool lies_inside(const Point2& p, const Piece& piece) noexcept {
                                   : (piece.a.y < p.y) == (p.y < piece.b.y) && p.y != piece.b.y;
 }
 
-/// The pieces cross, each with its ends strictly on either side of the other.
+/// Returns true if the segments cross, each with its ends strictly on both sides of the other.
 bool cross(const Piece& one, const Piece& other) noexcept {
     return orientation(one.a, one.b, other.a) * orientation(one.a, one.b, other.b) < 0 &&
            orientation(other.a, other.b, one.a) * orientation(other.a, other.b, one.b) < 0;
 }
 
-/// The join crosses the piece, or runs through one of its ends.
+/// Returns true if the join crosses the segment or passes through one of its ends.
 bool is_barred(const Piece& join, const Piece& by) noexcept {
     if (std::max(join.a.x, join.b.x) < std::min(by.a.x, by.b.x) ||
         std::max(by.a.x, by.b.x) < std::min(join.a.x, join.b.x) ||
@@ -99,7 +99,7 @@ bool is_barred(const Piece& join, const Piece& by) noexcept {
     return cross(join, by);
 }
 
-/// The segments of a layer by rows of y, which are at least as high as a join is long.
+/// The segments of a layer, sorted into rows of y that are at least as high as the longest join.
 class Rows {
   public:
     Rows(const Layer& layer, double within) {
@@ -115,10 +115,10 @@ class Rows {
             low_ = std::min(low_, p.y);
             high = std::max(high, p.y);
         }
-        // Rows of the mean height of a segment hold it two or three times.
+        // With rows of the mean height of a segment, each segment is in two or three rows.
         height_ = std::max(within, length / static_cast<double>(count));
         const double rows = (high - low_) / height_;
-        if (!(rows < static_cast<double>(count) + 1)) // also where numbers overflow
+        if (!(rows < static_cast<double>(count) + 1)) // also if numbers overflow
             height_ = Box3::infinity;
         rows_.resize(row(high) + 1);
         for_each_segment(layer, [&](const Piece& piece) { add(piece); });
@@ -160,21 +160,21 @@ class Rows {
     std::vector<std::vector<Piece>> rows_;
 };
 
-/// Chains in a row.
+/// A sequence of joined chains.
 struct JoinedContour {
     std::vector<Point2> points;
-    std::vector<std::size_t> joins; ///< the points from which ends were joined to the next point
+    std::vector<std::size_t> joins; ///< points followed by a join
     bool closed = false;
 };
 
-/// Chains that overlap cross where they are joined: on the edge of a mesh with a vertex of a neighbour on it,
-/// the two ends are one point but for rounding, and the join may lead back. Where the segments before and
-/// after a join cross, one of its ends is left out.
+/// Overlapping chains cross where they are joined: if a vertex lies on the edge of a neighbour, the two ends
+/// are the same point except for rounding, and the join may lead back. If the segments before and after a
+/// join cross, one of its ends is dropped.
 ///
 ///        p ------------- a                  p ------------ a
 ///                   b ---+---- q    ->                      `----- q
 ///
-/// Returns the points that stay, in their order. Neither is left out where the new segment would cross
+/// Returns the remaining points in their order. Neither end is dropped if the new segment would cross
 /// another.
 std::vector<Point2> without_overlaps(const JoinedContour& contour, Rows& rows) {
     const std::vector<Point2>& points = contour.points;
@@ -196,7 +196,7 @@ std::vector<Point2> without_overlaps(const JoinedContour& contour, Rows& rows) {
         rows.add({points[before[i]], points[next[i]]});
     };
     for (std::size_t a : contour.joins) {
-        a = std::min(a, n - 1); // the last point of a ring may have been its first one, too
+        a = std::min(a, n - 1); // the last point of a ring may have been equal to its first one
         while (left_out[a])
             a = before[a];
         const std::size_t b = next[a];
@@ -216,7 +216,7 @@ std::vector<Point2> without_overlaps(const JoinedContour& contour, Rows& rows) {
     return kept;
 }
 
-/// What has been joined so far: chains in a row, each known by its first one and by its last one.
+/// The joins made so far: sequences of chains, each identified by its first and by its last chain.
 class Joined {
   public:
     explicit Joined(const Layer& layer)
@@ -234,7 +234,7 @@ class Joined {
         return next_[join.chain] == none && !continued_[join.next];
     }
     [[nodiscard]] bool makes_ring(const Candidate& join) const { return first_[join.chain] == join.next; }
-    /// Of the chains in a row that end with this one.
+    /// Length of the sequence of chains that ends with this one.
     [[nodiscard]] double length(std::size_t chain) const { return length_[first_[chain]]; }
 
     void join(const Candidate& join) {
@@ -250,7 +250,7 @@ class Joined {
         first_[last] = first;
     }
 
-    /// visit(contour) for what there is now.
+    /// Calls visit(contour) for all sequences.
     template <class Visit>
     void for_each(const Visit& visit) const {
         std::vector<bool> done(layer_.contours(), false);
@@ -282,7 +282,7 @@ class Joined {
                static_cast<std::ptrdiff_t>(layer_.open_chains()));
     }
 
-    /// Points that a ring of the chains in a row ending with this one would have.
+    /// Number of points of the ring that this join would make; stops counting at 3.
     [[nodiscard]] std::size_t ring_points(const Candidate& join) const {
         std::size_t points = 0;
         Point2 before = join.from;
@@ -299,10 +299,10 @@ class Joined {
 
     const Layer& layer_;
     std::vector<std::size_t> next_;
-    std::vector<std::size_t> first_; ///< right for the last one in a row
-    std::vector<std::size_t> last_;  ///< right for the first one in a row
-    std::vector<double> length_;     ///< right for the first one in a row
-    std::vector<bool> continued_;    ///< another one runs into it
+    std::vector<std::size_t> first_; ///< valid for the last chain of a sequence
+    std::vector<std::size_t> last_;  ///< valid for the first chain of a sequence
+    std::vector<double> length_;     ///< valid for the first chain of a sequence
+    std::vector<bool> continued_;    ///< another chain is joined to its first point
 };
 
 } // namespace

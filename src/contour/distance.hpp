@@ -7,15 +7,14 @@
 
 namespace lamella {
 
-/// Of a right triangle. The same bits on every processor, so that everywhere the same gap is the shortest:
-/// std::hypot, as the C library of Debian has it, rounds otherwise on ARM64 than on x86-64.
+/// Returns the hypotenuse of a right triangle, with the same bits on every processor, so that the same gap is
+/// the shortest everywhere: std::hypot in the C library of Debian rounds differently on ARM64 and x86-64.
 [[nodiscard]] inline double hypotenuse(double dx, double dy) noexcept {
     const double longer = std::max(std::abs(dx), std::abs(dy));
     const double shorter = std::min(std::abs(dx), std::abs(dy));
     if (shorter == 0)
         return longer;
-    const double ratio =
-        shorter / longer; // the squares of lengths may be too large or too small for a double
+    const double ratio = shorter / longer; // squares of lengths may overflow or underflow
     return longer * std::sqrt(1 + ratio * ratio);
 }
 
@@ -23,15 +22,15 @@ namespace lamella {
     return hypotenuse(a.x - b.x, a.y - b.y);
 }
 
-/// Many times as fast, and rounded otherwise: where squares are far from overflow, as those of millimetres
-/// are.
+/// Is many times as fast and rounds differently. Requires squares to be far from overflow, as they are for
+/// millimetres.
 [[nodiscard]] inline double quick_distance(const Point2& a, const Point2& b) noexcept {
     const double dx = b.x - a.x;
     const double dy = b.y - a.y;
     return std::sqrt(dx * dx + dy * dy);
 }
 
-/// The square of how far p is from the nearest place between a and b.
+/// Returns the square of the distance of p from the segment between a and b.
 [[nodiscard]] inline double distance_squared(const Point2& p, const Point2& a, const Point2& b) noexcept {
     const double dx = b.x - a.x;
     const double dy = b.y - a.y;
@@ -44,7 +43,7 @@ namespace lamella {
     return ex * ex + ey * ey;
 }
 
-/// The point between a and b that is nearest to p.
+/// Returns the point between a and b that is nearest to p.
 [[nodiscard]] inline Point2 nearest_on(const Point2& a, const Point2& b, const Point2& p) noexcept {
     const double dx = b.x - a.x;
     const double dy = b.y - a.y;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The area of a ring, for loops that go over its points anyway.
+// The area of a ring, for loops that visit its points anyway.
 
 #include "lamella/core/point.hpp"
 
@@ -13,17 +13,18 @@
 
 namespace lamella {
 
-/// Sums up the triangles of a fan about the first point of a ring, four at a time. Four running sums, added
-/// in a fixed order at the end: one would make each addition wait for the one before it.
+/// Sums up the triangles of a fan about the first point of a ring, four at a time. The four sums are added in
+/// a fixed order at the end: with a single sum, each addition would wait for the previous one.
 class FanArea {
   public:
-    /// The points from which triangles are added to the one before them.
+    /// The first point that forms a triangle with the one before it.
     static constexpr std::size_t first = 2;
 
     [[gnu::always_inline]] explicit FanArea(const Point2& origin)
         : origin_{origin.x, origin.y, origin.x, origin.y} {}
 
-    /// The triangles of points i to i + 3, each with the one before it; i is `first`, then 4 more each time.
+    /// Adds the triangles of points i to i + 3, each with the point before it; i is `first`, then 4 more each
+    /// time.
     [[gnu::always_inline]] void add_four(std::span<const Point2> ring, std::size_t i) {
         assert(i >= first && i + 4 <= ring.size());
         const Four a01 = at<4>(&ring[i - 1].x).v - origin_;
@@ -37,7 +38,7 @@ class FanArea {
         sums_ += ax * by - ay * bx;
     }
 
-    /// The area, with the triangles from point i on that are left, fewer than four.
+    /// Returns the area, including the remaining triangles from point i on, fewer than four.
     [[gnu::always_inline]] [[nodiscard]] double end(std::span<const Point2> ring, std::size_t i) const {
         assert(ring.size() < i + 4);
         std::array<double, 4> sums{sums_[0], sums_[2], sums_[1], sums_[3]};
@@ -57,7 +58,7 @@ class FanArea {
     using Four = Vector<4>::Doubles;
 
     Four origin_;
-    Four sums_{}; ///< of the first, third, second and fourth of four points
+    Four sums_{}; ///< sums for the first, third, second and fourth of four points
 };
 
 } // namespace lamella

@@ -23,8 +23,8 @@ PointArray::PointArray(std::vector<Point2> points) {
 }
 
 void check(const Layer& layer) {
-    // As whole numbers, which ascend with the absolute values of numbers, and NaN is beyond all: no branches,
-    // and several at a time.
+    // Compared as integers, which ascend with the absolute values of numbers, with NaN beyond all: no
+    // branches, and several numbers at a time.
     const auto any_too_far = [](std::span<const Point2> points) {
         constexpr std::uint64_t farthest = std::bit_cast<std::uint64_t>(farthest_mm);
         constexpr std::uint64_t absolute = ~(std::uint64_t{1} << 63);
@@ -73,7 +73,7 @@ Layer LayerBuilder::finish(std::uint64_t index, double z, double bottom, double 
 Layer LayerBuilder::finish_as_added(std::uint64_t index, double z, double bottom, double top) {
     const std::vector<End> ends = std::exchange(ends_, {});
     std::vector<Point2> points = std::exchange(points_, {});
-    points.resize(ends.empty() ? 0 : ends.back().offset); // a contour that was never ended is none
+    points.resize(ends.empty() ? 0 : ends.back().offset); // drops a contour that was never ended
 
     Layer layer{.index = index, .z = z, .bottom = bottom, .top = top};
     layer.offsets.reserve(ends.size() + 1);

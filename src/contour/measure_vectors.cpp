@@ -20,7 +20,7 @@ ScanFigures& ScanFigures::operator+=(const ScanFigures& other) noexcept {
 ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters,
                             std::optional<Point2>& beam) {
     ScanFigures figures;
-    std::uint64_t marks = 0; // runs of lines without a jump
+    std::uint64_t marks = 0; // polylines: consecutive lines without a jump
     std::uint64_t jumps = 0;
     const auto jump = [&](const Point2& to) {
         if (beam && *beam == to && marks > 0)

@@ -15,9 +15,9 @@
 
 namespace lamella {
 
-/// Points of which those near a place are asked for, and which may be taken away one by one. A tree of
-/// medians along the longer side: the middle of a range is the median of it, those before it are no greater.
-/// Ranges know their boxes, so that thousands of points in one place are looked at as one.
+/// Points for nearest-neighbour queries, which can be removed one by one. A tree of medians along the longer
+/// side of the box: the middle of a range is its median, and the points before it are no greater. Ranges
+/// store their boxes, so that thousands of coincident points are examined as one.
 class NearestPoints {
   public:
     static constexpr std::size_t none = ~std::size_t{0};
@@ -31,14 +31,14 @@ class NearestPoints {
             place_[order_[place]] = place;
     }
 
-    /// visit(number, distance, below) for points left that are closer than `below`, which it may lower; in no
-    /// order, but those that are likely to be near come first.
+    /// Calls visit(number, distance, below) for remaining points that are closer than `below`, which the
+    /// visitor may lower. The order is unspecified, but points that are likely to be near come first.
     template <class Visit>
     void for_each_closer(const Point2& to, double below, const Visit& visit) const {
         search({0, order_.size()}, to, below, visit);
     }
 
-    /// The number of the nearest one left for which `fits(number, distance)`, or none.
+    /// Returns the number of the nearest remaining point for which `fits(number, distance)`, or none.
     template <class Fits>
     [[nodiscard]] std::size_t nearest(const Point2& to, const Fits& fits) const {
         std::size_t best = none;
@@ -74,14 +74,14 @@ class NearestPoints {
         [[nodiscard]] Range after() const noexcept { return {middle() + 1, end}; }
     };
 
-    /// Of a range, by the place of its middle.
+    /// Data of a range, stored at the index of its middle.
     struct Node {
-        std::size_t left = 0; ///< how many points are
+        std::size_t left = 0; ///< number of remaining points
         double Point2::*axis = nullptr;
         Point2 low;
         Point2 high;
 
-        /// No point of the range is closer.
+        /// Lower bound on the distance of all points of the range.
         [[nodiscard]] double distance_to(const Point2& p) const noexcept {
             return hypotenuse(std::max({low.x - p.x, 0.0, p.x - high.x}),
                               std::max({low.y - p.y, 0.0, p.y - high.y}));
@@ -102,7 +102,7 @@ class NearestPoints {
             high = {std::max(high.x, p.x), std::max(high.y, p.y)};
         }
         double Point2::*const axis = high.x - low.x >= high.y - low.y ? &Point2::x : &Point2::y;
-        // Equal ones by their numbers, so that the tree is the same everywhere.
+        // Equal points are ordered by number, so that the tree is the same everywhere.
         std::nth_element(at(range.begin), at(range.middle()), at(range.end),
                          [&](std::size_t a, std::size_t b) {
                              return std::tuple(points_[a].*axis, a) < std::tuple(points_[b].*axis, b);
@@ -130,7 +130,7 @@ class NearestPoints {
 
     std::vector<Point2> points_;
     std::vector<std::size_t> order_;
-    std::vector<std::size_t> place_; ///< of a point in `order_`
+    std::vector<std::size_t> place_; ///< index of a point in `order_`
     std::vector<Node> nodes_;
     std::vector<bool> gone_;
 };

@@ -22,7 +22,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the content hash reads memory as little-endian");
 static_assert(sizeof(Point2) == 2 * sizeof(double), "points are hashed and compared as bytes");
 
-// Plain comparisons instead of the three-way one: these loops run over every point of every layer.
+// Plain comparisons are faster than the three-way one: these loops visit every point of every layer.
 bool less(const Point2& a, const Point2& b) {
     return a.x < b.x || (a.x == b.x && a.y < b.y);
 }
@@ -31,9 +31,10 @@ bool same(const Point2& a, const Point2& b) {
     return a.x == b.x && a.y == b.y;
 }
 
-// The smallest rotation of a ring whose smallest point occurs more than once. Two candidate starts i < j
-// race; after a common run of k points the loser and the k starts behind it are out, because each of them
-// loses to the start that lies as far behind the winner. So the candidates advance by at most 2 n in all.
+// Returns the smallest rotation of a ring whose smallest point occurs more than once. Two candidate starts i
+// < j race. After k equal points the loser and the k starts after it are eliminated, because each of them
+// loses to the start at the same distance after the winner. So the candidates advance by at most 2 n in
+// total.
 std::size_t smallest_rotation_with_repeats(std::span<const Point2> ring, std::size_t first,
                                            std::size_t second) {
     const std::size_t n = ring.size();
@@ -63,7 +64,7 @@ std::size_t smallest_rotation_with_repeats(std::span<const Point2> ring, std::si
     return i;
 }
 
-// The points of a contour from its start on, as the normal form has them, without moving them.
+// The points of a contour in the order of the normal form, without moving them.
 class Rotated {
   public:
     Rotated(std::span<const Point2> contour, std::size_t start)
@@ -93,7 +94,7 @@ bool before(const Contour& a, const Contour& b) {
     return a.size() < b.size();
 }
 
-// Contours of layers that stay where they are until all are copied to their places.
+// Contours of layers that must stay in memory until all of them are copied.
 class ContourSet {
   public:
     void add(const Layer& layer) {
@@ -106,7 +107,7 @@ class ContourSet {
         }
     }
 
-    // In normal form; index, z, bottom and top as of `head`, no hatches.
+    // Returns the normal form; index, z, bottom and top are those of `head`; no hatches.
     Layer laid_out(const Layer& head) && {
         std::size_t size = 0;
         for (std::vector<Rotated>* const group : {&rings_, &chains_}) {
@@ -124,7 +125,7 @@ class ContourSet {
                 end = contour.copy_to(end);
                 layer.offsets.push_back(static_cast<std::uint64_t>(end - points->data()));
             }
-        assert(layer.offsets.back() == size); // every point has its place
+        assert(layer.offsets.back() == size); // all points were copied
         layer.points = PointArray(points, points->data(), size);
         assert(in_normal_form(layer));
         return layer;
@@ -139,7 +140,7 @@ class ContourSet {
 
 std::size_t smallest_rotation(std::span<const Point2> ring) noexcept {
     std::size_t best = 0;
-    std::size_t repeat = 0; // a later occurrence of the best point; 0 is none
+    std::size_t repeat = 0; // a later occurrence of the best point; 0: none
     for (std::size_t i = 1; i < ring.size(); ++i) {
         if (ring[i].x > ring[best].x)
             continue;

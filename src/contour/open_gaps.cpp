@@ -16,7 +16,7 @@ namespace lamella {
 
 namespace {
 
-/// From the end of one chain to the start of another.
+/// A gap from the end of one chain to the start of another.
 struct Gap {
     double length;
     std::size_t from;
@@ -34,7 +34,7 @@ double length_of(std::span<const Point2> chain) {
     return length;
 }
 
-/// Every chain is followed by one, and follows one: visit(from, to) for all gaps.
+/// Gives each chain one successor and one predecessor. Calls visit(from, to) for all gaps.
 template <class Visit>
 void for_each_gap(const std::vector<std::span<const Point2>>& chains, const Visit& visit) {
     std::vector<Point2> first_points;
@@ -77,7 +77,7 @@ void for_each_gap(const std::vector<std::span<const Point2>>& chains, const Visi
             continue;
         while (taken[to])
             ++to;
-        assert(to < chains.size()); // as many starts are left as ends
+        assert(to < chains.size()); // there are as many starts as ends
         visit(chains[from].back(), chains[to++].front());
     }
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// A policy for layers with open chains: joining their ends where little is missing between them.
+// Closes gaps in layers with open chains by joining ends that are close to one another.
 
 #include "lamella/contour/layer.hpp"
 
@@ -11,7 +11,8 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// A chain was continued from its last point `from` to the first point `to` of a chain, or of itself.
+/// States that a chain was continued from its last point `from` to the first point `to` of a chain, possibly
+/// of itself.
 struct GapJoin {
     Point2 from;
     Point2 to;
@@ -19,30 +20,30 @@ struct GapJoin {
 };
 
 struct ClosedGaps {
-    Layer layer;                ///< in normal form; what was not joined is as it was
-    std::vector<GapJoin> joins; ///< all of them, in the order in which they were made: the shortest first
+    Layer layer;                ///< in normal form; contours without joins are unchanged
+    std::vector<GapJoin> joins; ///< complete, in the order in which they were made: the shortest first
     double longest_mm = 0;
     double total_mm = 0;
-    std::uint64_t refused =
-        0; ///< pairs of ends that were free and close enough, but were not joined; see below
-    std::uint64_t left_out = 0; ///< ends left out where chains overlapped; see below
+    std::uint64_t refused = 0;  ///< pairs of free ends that were close enough but were not joined, see below
+    std::uint64_t left_out = 0; ///< ends that were dropped because chains overlapped, see below
 };
 
-/// Joins the last point of a chain to the first point of a chain no further away than `within_mm`: material
-/// stays on the left. The closest pairs first, equally close ones by the coordinates of the first end, then
-/// of the second one; each end once. A chain that meets itself becomes a ring.
+/// Joins the last point of a chain to the first point of a chain no farther away than `within_mm`, so
+/// material stays on the left. The closest pairs are joined first, equally close ones in the order of the
+/// coordinates of the first end, then of the second one. Each end is joined at most once. A chain joined to
+/// itself becomes a ring.
 ///
-/// A pair is refused where the straight line between the ends would cross a contour or an earlier join, or
-/// run through a point of one; and where it would make a ring of less than three points or of a chain that is
-/// not at least twice as long as its gap: a short straight piece is no ring. For each last point the 64
-/// closest first points are looked at.
+/// A pair is refused if the straight line between the ends would cross a contour or an earlier join, or pass
+/// through a point of one. It is also refused if it would make a ring of fewer than three points, or of a
+/// chain that is not at least twice as long as its gap: a short straight chain is no ring. For each last
+/// point the 64 closest first points are examined.
 ///
-/// Where the two chains overlap, so that the segments before and after the join cross, one of the two ends is
-/// left out. So it is where a vertex lies on the edge of a neighbour (a T-junction): both ends are one point
-/// but for rounding.
+/// If the two chains overlap, so that the segments before and after the join cross, one of the two ends is
+/// dropped. This happens where a vertex lies on the edge of a neighbour (a T-junction): both ends are the
+/// same point except for rounding.
 ///
-/// A layer without chains is passed through. O(n + c log c) for n points and c chains that few others are
-/// near of. Throws Error{usage} for a distance that is not a positive finite number.
+/// A layer without chains is returned as it is. Throws Error{usage} for a distance that is not a positive
+/// finite number. O(n + c log c) for n points and c chains if each is close to few others.
 [[nodiscard]] ClosedGaps close_gaps(const Layer& layer, double within_mm);
 
 } // namespace lamella

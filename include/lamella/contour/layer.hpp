@@ -1,6 +1,6 @@
 #pragma once
 
-// Layers: what planes yield. Flat points plus offsets, immutable and cheap to share.
+// Layers: the results of slicing. Flat points plus offsets, immutable and cheap to share.
 
 #include "lamella/core/point.hpp"
 
@@ -13,8 +13,8 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// A fixed array of points whose memory is shared: copies of it, and other arrays cut from the same block,
-/// keep the block alive.
+/// A fixed array of points in shared memory: copies, and other arrays in the same allocation, keep the memory
+/// alive.
 class PointArray {
   public:
     PointArray() = default;
@@ -30,7 +30,7 @@ class PointArray {
     [[nodiscard]] auto begin() const noexcept { return points_.begin(); }
     [[nodiscard]] auto end() const noexcept { return points_.end(); }
 
-    /// What keeps the memory alive.
+    /// The owner of the memory, which keeps it alive.
     [[nodiscard]] const std::shared_ptr<const void>& owner() const noexcept { return owner_; }
 
   private:
@@ -38,7 +38,7 @@ class PointArray {
     std::span<const Point2> points_;
 };
 
-/// What one plane yields.
+/// The result of one plane.
 ///
 /// Contours are stored one after the other in `points`; contour i has the points [offsets[i], offsets[i +
 /// 1]). The first `rings` of them are closed rings (the first point is not repeated at the end), the others
@@ -47,21 +47,21 @@ class PointArray {
 /// A layer without contours has offsets == {0}.
 ///
 /// Material lies to the left of the direction of a contour: outer rings run counter-clockwise, holes
-/// clockwise. Coordinates are finite (`check` tells), and zero is +0 (a -0 would compare equal and hash
+/// clockwise. Coordinates are finite (see `check`), and zero is +0 (-0 would compare equal but hash
 /// differently).
 ///
 /// The members may be filled directly: an engine that knows its counts beforehand lets many layers share one
-/// block of points.
+/// allocation of points.
 struct Layer {
-    std::uint64_t index = 0; ///< in the whole plan, also when only a part of it was sliced
-    double z = 0;            ///< where it was cut
-    double bottom = 0;       ///< of the material that it stands for: bottom <= z <= top
+    std::uint64_t index = 0; ///< position in the whole plan, even if only a part of it was sliced
+    double z = 0;            ///< height of the plane
+    double bottom = 0;       ///< bottom of the material that the layer represents: bottom <= z <= top
     double top = 0;
     PointArray points = {};
     std::vector<std::uint64_t> offsets{0};
     std::size_t rings = 0;
-    /// Fill lines, two points each, as slice files may hold them beside the contours. Slicing makes none, and
-    /// they do not count where layers are compared.
+    /// Fill lines, two points each, which slice files may contain besides the contours. Slicing makes none,
+    /// and comparisons of layers ignore them.
     PointArray hatches = {};
 
     [[nodiscard]] std::size_t contours() const noexcept { return offsets.size() - 1; }
@@ -73,8 +73,8 @@ struct Layer {
     }
 };
 
-/// Throws Error{usage} that names the layer and the contour where a length is NaN or infinite, or so large
-/// that sums overflow. Writers of slice files refuse what does not pass. O(points).
+/// Throws Error{usage} that names the layer and the contour if a length is NaN or infinite, or so large that
+/// sums overflow. Writers of slice files require a layer that passes. O(points).
 void check(const Layer& layer);
 
 /// Layers in ascending z.
@@ -85,29 +85,30 @@ class LayerBuilder {
   public:
     /// Appends a point to the contour under construction. -0 becomes +0.
     void add_point(const Point2& p) { points_.push_back({p.x + 0.0, p.y + 0.0}); }
-    /// Ends the contour under construction. One without points is forgotten.
+    /// Ends the contour under construction. A contour without points is dropped.
     void end_contour(bool closed);
-    /// Appends a whole contour, while none is under construction.
+    /// Appends a whole contour; none may be under construction.
     void add_contour(std::span<const Point2> points, bool closed);
-    /// The layer, in normal form, with index, z, bottom and top as given. The builder is empty afterwards.
+    /// Returns the layer in normal form with the given index, z, bottom and top. The builder is empty
+    /// afterwards.
     [[nodiscard]] Layer finish(std::uint64_t index, double z, double bottom, double top);
-    /// The same for contours whose order counts, as that of scan vectors does: rings, then chains, each from
-    /// its first point, as they were added.
+    /// Does the same for contours whose order matters, such as scan vectors: rings, then chains, in the order
+    /// in which they were added, each from its first point.
     [[nodiscard]] Layer finish_as_added(std::uint64_t index, double z, double bottom, double top);
     [[nodiscard]] bool empty() const noexcept { return ends_.empty(); }
 
   private:
     struct End {
-        std::size_t offset = 0; ///< one past the contour's last point
+        std::size_t offset = 0; ///< end of the contour's points
         bool closed = false;
     };
     std::vector<Point2> points_;
     std::vector<End> ends_;
 };
 
-/// The contours of all these layers in one, in normal form, and their hatches one after the other; index, z,
-/// bottom and top are those of the first; of no layers, an empty one. O(n + c log c) for n points in c
-/// contours.
+/// Returns the contours of all layers in one layer, in normal form, and their hatches one after the other.
+/// Index, z, bottom and top are those of the first layer. Returns an empty layer if there are none. O(n + c
+/// log c) for n points in c contours.
 [[nodiscard]] Layer merged(std::span<const Layer> layers);
 
 } // namespace lamella

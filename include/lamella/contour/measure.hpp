@@ -11,15 +11,15 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Signed area in mm^2: positive for a counter-clockwise ring. Computed about the ring's first point, so that
-/// a ring far from the origin loses no digits. O(n).
+/// Returns the signed area in mm^2: positive for a counter-clockwise ring. Computed about the ring's first
+/// point, so that a ring far from the origin loses no digits. O(n).
 [[nodiscard]] double ring_area(std::span<const Point2> ring) noexcept;
 
-/// Whether a ring is so thin that rounding its points, or the last digits of numbers in memory, may have
-/// turned it over. O(n).
+/// Returns whether a ring is so thin that rounding its points, or the last digits of numbers in memory, may
+/// have reversed its orientation. O(n).
 [[nodiscard]] bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) noexcept;
 
-/// Length in mm, for a ring including the way back to the first point.
+/// Returns the length in mm; for a ring it includes the segment back to the first point.
 [[nodiscard]] double contour_length(std::span<const Point2> contour, bool closed) noexcept;
 
 struct LayerMeasure {
@@ -30,11 +30,11 @@ struct LayerMeasure {
     double area_mm2 = 0; ///< of the rings, holes subtracted
     double perimeter_mm = 0;
 
-    /// Counts the contours of another layer with these.
+    /// Adds the values of another layer.
     void add(const LayerMeasure& other) noexcept;
 };
 
-/// O(points).
+/// Measures all contours of a layer. O(points).
 [[nodiscard]] LayerMeasure measure(const Layer& layer) noexcept;
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// How much is missing where the contours of a layer do not close.
+// Measures the gaps where the contours of a layer do not close.
 
 #include "lamella/contour/layer.hpp"
 
@@ -9,10 +9,10 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// The gaps of a layer: from the last point of every chain to the first point of the chain that is taken to
-/// go on there.
+/// The gaps of a layer: each from the last point of a chain to the first point of the chain that is assumed
+/// to continue it.
 struct OpenGaps {
-    std::uint64_t count = 0; ///< as many as there are open chains
+    std::uint64_t count = 0; ///< equals the number of open chains
     double longest_mm = 0;
     double total_mm = 0;
     /// The ends of the longest gap.
@@ -22,13 +22,14 @@ struct OpenGaps {
     OpenGaps& operator+=(const OpenGaps& other) noexcept;
 };
 
-/// Matches last points to first points as `close_gaps` would without a limit and with nothing in the way: the
-/// closest pairs first, each end once, and no chain with itself that is not twice as long as its gap, unless
-/// nothing else is left. So gaps of up to the longest are within reach of `close_gaps`; where triangles are
-/// flipped, a gap is as long as the pieces that run the wrong way.
+/// Matches last points to first points as `close_gaps` would without a limit and without obstacles: the
+/// closest pairs first, each end once. A chain is matched with itself only if it is twice as long as its gap,
+/// or if nothing else remains. So `close_gaps` can close gaps up to the longest. If triangles are flipped, a
+/// gap is as long as the part of the contour that runs in the wrong direction.
 ///
-/// A layer without chains costs nothing. O(c log c) for c chains on average. An end that was forestalled 16
-/// times takes what is left, in the order of the chains: a layer made to be slow has gaps that are too long.
+/// O(1) for a layer without chains, otherwise O(c log c) for c chains on average. An end whose match was
+/// taken 16 times gets a remaining one, in the order of the chains; so gaps of hostile layers may be reported
+/// too long.
 [[nodiscard]] OpenGaps open_gaps(const Layer& layer);
 
 } // namespace lamella

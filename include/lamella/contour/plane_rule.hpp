@@ -1,6 +1,6 @@
 #pragma once
 
-// What of a part a plane belongs to.
+// The rule for vertices that lie exactly on a plane.
 
 #include "lamella/core/api.hpp"
 
@@ -10,19 +10,19 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Which side a vertex that lies exactly on a plane belongs to; see docs/conventions.md, "The rule of the
-/// plane". Nothing ever lies on a plane:
+/// The side of a plane to which a vertex on it belongs; see docs/conventions.md, "The rule of the plane". No
+/// vertex ever counts as lying on a plane:
 ///                          v.z < z   v.z == z   v.z > z
-///     section_above         below     below      above     the layer is the section of what is just above z
-///     section_below         below     above      above     the layer is the section of what is just below z
+///     section_above         below     below      above     the layer is the section just above z
+///     section_below         below     above      above     the layer is the section just below z
 enum class PlaneRule { section_above, section_below };
 
-/// As files have it: "section_above" or "section_below".
+/// Returns the name in files: "section_above" or "section_below".
 [[nodiscard]] constexpr std::string_view plane_rule_name(PlaneRule rule) noexcept {
     return rule == PlaneRule::section_below ? "section_below" : "section_above";
 }
 
-/// None for any other text.
+/// Returns nullopt for any other text.
 [[nodiscard]] constexpr std::optional<PlaneRule> plane_rule(std::string_view name) noexcept {
     for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below})
         if (name == plane_rule_name(rule))

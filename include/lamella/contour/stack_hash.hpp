@@ -1,6 +1,6 @@
 #pragma once
 
-// One number for a whole stack of layers.
+// The hash of a whole stack of layers.
 
 #include "lamella/core/api.hpp"
 
@@ -10,8 +10,8 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// A 64-bit hash of a stack whose layers have these content hashes, in ascending z: XXH3 (64 bits, seed 0)
-/// over them, all little-endian. Like them it says nothing of heights. O(n).
+/// Returns a 64-bit hash of a stack whose layers have these content hashes, in ascending z: XXH3 (64 bits,
+/// seed 0) over them, all little-endian. Like them it is independent of heights. O(n).
 [[nodiscard]] std::uint64_t stack_hash(std::span<const std::uint64_t> layer_hashes) noexcept;
 
 } // namespace lamella
