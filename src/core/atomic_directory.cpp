@@ -21,23 +21,24 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Also one that may not be written to.
+/// Removes a folder even if it is not writable.
 void remove_folder(const fs::path& folder) {
     static_cast<void>(::chmod(folder.c_str(), S_IRWXU));
     std::error_code ignored;
     fs::remove_all(folder, ignored);
 }
 
-/// Nothing can take its place. Also where the same file system is mounted once more.
+/// Returns whether the folder is a mount point, which cannot be replaced; bind mounts of the same file system
+/// count.
 bool is_mount_point(const fs::path& folder) {
     struct statx status {};
     return ::statx(AT_FDCWD, folder.c_str(), 0, STATX_TYPE, &status) == 0 &&
            (status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
 }
 
-/// The owner of hidden folders: all processes of this machine until it is started again. Locks show them
-/// which of the folders have a living process; those of other machines, which may share the disk but not the
-/// locks, have other names. A process, where the system does not say.
+/// Identifies the owner of hidden folders: all processes of this machine until it is rebooted. Locks show
+/// which of the folders belong to a living process. Folders of other machines, which may share the disk but
+/// not the locks, have other names. If the system has no boot id, the owner is the process.
 std::string this_machine() {
     std::ifstream file("/proc/sys/kernel/random/boot_id");
     std::string id;
@@ -45,7 +46,7 @@ std::string this_machine() {
     return std::getline(file, id) && id.size() >= enough ? id.substr(0, enough) : this_process();
 }
 
-/// Not where it has been removed or replaced meanwhile.
+/// Returns false if the name has been removed or replaced in the meantime.
 bool is_still(int descriptor, const char* name) {
     struct stat opened {};
     struct stat named {};
@@ -57,8 +58,8 @@ int open_folder(const char* name) {
     return ::open(name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
 }
 
-/// Removes the hidden folder unless its process lives: a lock ends with the process, however that ends.
-/// Whether the name is free then.
+/// Removes the hidden folder unless its process is alive: a lock ends with its process, no matter how that
+/// ends. Returns whether the name is free afterwards.
 bool remove_abandoned(const char* name) {
     const int folder = open_folder(name);
     if (folder < 0)
@@ -76,8 +77,8 @@ bool remove_abandoned(const char* name) {
 AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::path&)> may_remove)
     : path_(std::move(path)), may_remove_(std::move(may_remove)) {
     std::error_code error;
-    if (!path_.empty())                               // of which libraries differ in what it is
-        target_ = fs::weakly_canonical(path_, error); // through symbolic links: they stay
+    if (!path_.empty())                               // for an empty path libraries differ
+        target_ = fs::weakly_canonical(path_, error); // follows symbolic links, which are kept
     if (error)
         target_ = path_;
     if (!target_.has_filename()) // "out/"
@@ -90,8 +91,8 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
         take_free_name(target_, this_machine(), [this](const char* name) { return make_working(name); });
     if (working_.empty())
         throw output_error(target_.string(), errno);
-    // The permissions of a new folder are the umask's; those of a replaced one stay, and meanwhile this
-    // process may write in it.
+    // A new folder gets permissions from the umask; those of a replaced one are kept, but until commit this
+    // process may write into it.
     if (struct stat replaced{}; ::stat(target_.c_str(), &replaced) == 0) {
         const bool same_group = ::chown(working_.c_str(), static_cast<uid_t>(-1), replaced.st_gid) == 0;
         permissions_ = kept_permissions(replaced.st_mode, same_group);
@@ -112,24 +113,24 @@ AtomicDirectory::~AtomicDirectory() {
 }
 
 bool AtomicDirectory::make_working(const char* name) {
-    constexpr mode_t everybody = 0777; // less the umask
+    constexpr mode_t everybody = 0777; // the umask applies
     if (::mkdir(name, everybody) != 0) {
         if (errno == EEXIST)
-            errno = remove_abandoned(name) ? EINTR : EEXIST; // once more, or the next name
+            errno = remove_abandoned(name) ? EINTR : EEXIST; // try again, or try the next name
         return false;
     }
     lock_ = open_folder(name);
-    if (lock_ < 0 && errno != ENOENT) { // others would take it for abandoned
+    if (lock_ < 0 && errno != ENOENT) { // other processes would consider it abandoned
         const int system_error = errno;
         ::rmdir(name);
         errno = system_error;
         return false;
     }
-    // Where the file system has no locks, nobody removes it.
+    // If the file system has no locks, no process removes the folder.
     const bool locked = lock_ >= 0 && (::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK);
     if (locked && is_still(lock_, name))
         return true;
-    // Another process took it for abandoned before it was locked.
+    // Another process considered it abandoned before it was locked.
     if (lock_ >= 0)
         ::close(std::exchange(lock_, -1));
     errno = EEXIST;
@@ -153,12 +154,12 @@ void AtomicDirectory::check_replaceable() const {
                     fmt::format("cannot write '{}': it is a mount point, which nothing can replace; choose a "
                                 "folder in it, such as '{}'",
                                 path_, (target_ / "layers").string()));
-    // Meanwhile another run may have exchanged the folder for its own and be about to remove this one:
-    // entries that are gone are not something else, and a name is asked for twice, since one answer may be
-    // put together from both folders.
+    // Another process may have exchanged the folder for its own and be removing this one. So entries that no
+    // longer exist are not foreign, and each name is tested twice, since one test may combine answers from
+    // both folders.
     const auto is_foreign = [this](const fs::path& entry) {
         std::error_code ignored;
-        // What cannot be looked at is there.
+        // An entry that cannot be examined exists.
         return !may_remove_(entry) && fs::symlink_status(entry, ignored).type() != fs::file_type::not_found;
     };
     fs::directory_iterator entries(target_, error);
@@ -179,7 +180,7 @@ void AtomicDirectory::write(const std::string& name, std::string_view bytes) {
         file.append(bytes);
         file.commit();
     } catch (const Error& error) {
-        // Nobody knows the name that the folder has meanwhile.
+        // The user does not know the temporary name of the folder.
         std::string text = error.what();
         const std::string working = working_.string();
         for (std::size_t at = 0; (at = text.find(working, at)) != std::string::npos;)
@@ -192,12 +193,12 @@ void AtomicDirectory::write(const std::string& name, std::string_view bytes) {
 void AtomicDirectory::commit() {
     if (working_.empty())
         throw Error(ErrorKind::internal, fmt::format("'{}' was ended twice", path_));
-    // Once it has its name, nobody may be about to remove what is in it.
+    // Once the folder has its final name, remove_unfinished must not remove its contents.
     if (!unfinished_.withdraw())
         throw Error(ErrorKind::cancelled, "cancelled");
     if (permissions_)
         static_cast<void>(::chmod(working_.c_str(), *permissions_));
-    // Renaming onto a missing or an empty folder needs no more.
+    // If the target is missing or an empty folder, renaming is enough.
     if (std::rename(working_.c_str(), target_.c_str()) == 0) {
         working_.clear();
         return;
@@ -205,13 +206,13 @@ void AtomicDirectory::commit() {
     if (errno != ENOTEMPTY && errno != EEXIST)
         throw output_error(target_.string(), errno);
     check_replaceable();
-    // Old and new one change places at once, so that there is one of them whatever happens.
+    // Both folders exchange their names at once, so that one of them exists at all times.
     if (::renameat2(AT_FDCWD, working_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE) == 0) {
         remove_folder(std::exchange(working_, {}));
         return;
     }
-    // Not every file system can do that. The old folder steps aside; should the new one fail to take its
-    // place, it steps back.
+    // Not every file system supports that. The old folder is renamed first; if the new one cannot get its
+    // name, the old one gets it back.
     const fs::path aside = take_free_name(target_, this_process(), [this](const char* name) {
         if (!fs::exists(fs::symlink_status(name)))
             return std::rename(target_.c_str(), name) == 0;

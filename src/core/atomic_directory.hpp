@@ -1,6 +1,6 @@
 #pragma once
 
-// A folder of files that appears whole or not at all.
+// A folder of files that appears complete or not at all.
 
 #include "core/unfinished_name.hpp"
 
@@ -14,13 +14,13 @@
 
 namespace lamella {
 
-/// A new folder that gets its name when it is complete. Until then it has another name beside it, and is
-/// removed with this object, or, if the process was killed, by the next one on the same machine that writes
-/// to the same name. Where a folder of that name is there already, it is replaced as a whole, provided that
-/// it is empty or `may_remove` says so of every entry in it, and no mount point; its permissions stay.
-/// `may_remove` says no of what is not there.
+/// A new folder that gets its name when it is complete. Until then it has a temporary name next to it. This
+/// object removes the temporary folder; if the process was killed, the next one on the same machine that
+/// writes to the same name does. An existing folder of that name is replaced as a whole and its permissions
+/// are kept. It must not be a mount point, and `may_remove` must be true for each of its entries.
+/// `may_remove` must be false for an entry that does not exist.
 ///
-/// Failures are Error{output}.
+/// Throws Error{output}.
 class AtomicDirectory {
   public:
     AtomicDirectory(std::string path, std::function<bool(const std::filesystem::path&)> may_remove);
@@ -28,30 +28,31 @@ class AtomicDirectory {
     AtomicDirectory(const AtomicDirectory&) = delete;
     AtomicDirectory& operator=(const AtomicDirectory&) = delete;
 
-    /// Creates one of its files, until `commit`. From any threads.
+    /// Creates one of the files; only before `commit`. May be called from any threads.
     void write(const std::string& name, std::string_view bytes);
-    /// Of all files so far.
+    /// Bytes in all files so far.
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
 
     void commit();
 
   private:
     void check_replaceable() const;
-    /// Makes the hidden folder, and locks it as long as this object lives. False and errno otherwise: EEXIST
-    /// where another process has the name.
+    /// Makes the hidden folder and locks it as long as this object lives. Returns false and sets errno on
+    /// failure: EEXIST if another process has the name.
     bool make_working(const char* name);
 
     std::string path_;
     std::filesystem::path target_;
     std::function<bool(const std::filesystem::path&)> may_remove_;
     std::filesystem::path working_;       ///< empty after commit
-    int lock_ = -1;                       ///< of what was made as working_; -1 where it cannot be locked
-    std::optional<unsigned> permissions_; ///< of the folder that is replaced
+    int lock_ = -1;                       ///< locks the folder created as working_; -1 if it cannot be locked
+    std::optional<unsigned> permissions_; ///< of the folder to be replaced
     UnfinishedName unfinished_;
     std::atomic<std::uint64_t> bytes_{0};
 };
 
-/// Whether a path is a regular file that begins with `mark`: by this, files of ours are known again.
+/// Returns whether a path is a regular file that begins with `mark`, by which files of Lamella are
+/// recognised.
 [[nodiscard]] bool begins_with_mark(const std::filesystem::path& path, std::string_view mark);
 
 } // namespace lamella

@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::size_t buffer_size = std::size_t{1} << 18;
 
-// The deepest folder on the way to `path` that is missing or not a folder: what the user has to look at.
+// Returns the highest folder in `path` that is missing or is not a folder: the one the user has to examine.
 std::string first_bad_folder(const std::string& path) {
     fs::path folder = fs::path(path).parent_path();
     std::error_code ignored;
@@ -46,8 +46,7 @@ std::string folder_of(const std::string& path) {
     return folder.empty() ? "." : folder;
 }
 
-// /dev/stdout and its like name a file that is open already. Replacing it would pull it out from under its
-// owner.
+// Paths such as /dev/stdout name a file that is already open. Replacing it would take it away from its owner.
 bool names_open_file(const fs::path& path) {
     std::error_code error;
     const std::string text = fs::absolute(path, error).lexically_normal().string();
@@ -55,11 +54,11 @@ bool names_open_file(const fs::path& path) {
            text == "/dev/stderr";
 }
 
-// Where a chain of symbolic links ends, whether or not there is a file. Empty when the chain leads to a file
-// that is open already. Throws errno as an int.
+// Returns the end of a chain of symbolic links, whether or not a file exists there. Empty if the chain leads
+// to a file that is already open. Throws errno as an int.
 std::string follow_links(const std::string& path) {
     fs::path current = path;
-    constexpr int most_links = 40; // what Linux allows
+    constexpr int most_links = 40; // the limit of Linux
     for (int i = 0; i < most_links; ++i) {
         if (names_open_file(current))
             return {};
@@ -82,7 +81,7 @@ Error output_error(const std::string& path, int system_error) {
     const auto text = [&](const std::string& reason) {
         return Error(ErrorKind::output, fmt::format("cannot write {}: {}", what, reason));
     };
-    // Systems tell it by several errors.
+    // The error for this differs between systems.
     if (path != "-" && fs::path(path).is_relative() && working_folder_is_gone())
         return text("the working folder has been removed; choose another place");
     switch (system_error) {
@@ -131,7 +130,7 @@ unsigned kept_permissions(unsigned mode, bool same_group) noexcept {
 }
 
 AtomicFile::AtomicFile(std::string path, Overwriting overwriting) : path_(std::move(path)) {
-    buffer_.reset(new char[buffer_size]); // what is not used takes no memory
+    buffer_.reset(new char[buffer_size]); // unused pages take no memory
     if (path_ == "-") {
         descriptor_ = STDOUT_FILENO;
         owns_descriptor_ = false;
@@ -193,7 +192,7 @@ void AtomicFile::open_unfinished() {
     const bool replaces = stat(target_.c_str(), &status) == 0;
     if (!replaces && errno == ENAMETOOLONG) // the temporary name may be shorter
         fail(errno);
-    // A rename would replace a write-protected file all the same; whoever protected it meant otherwise.
+    // A rename would replace a write-protected file; whoever protected it did not want that.
     if (replaces && access(target_.c_str(), W_OK) != 0) {
         const int error = errno;
         if (error == EACCES)
@@ -204,7 +203,7 @@ void AtomicFile::open_unfinished() {
                             path_));
         fail(error);
     }
-    constexpr mode_t everybody = 0666; // less the umask
+    constexpr mode_t everybody = 0666; // the umask applies
     descriptor_ = create_nameless(folder_of(target_), everybody);
     if (descriptor_ >= 0)
         nameless_ = true;
@@ -212,8 +211,8 @@ void AtomicFile::open_unfinished() {
         open_named(everybody);
     else
         fail(errno);
-    // The permissions of a new file are the umask's; those of a replaced one stay. When that is not ours to
-    // set, the umask's do.
+    // A new file gets permissions from the umask; those of a replaced one are kept, if this process may set
+    // them.
     if (replaces) {
         const bool same_group = fchown(descriptor_, static_cast<uid_t>(-1), status.st_gid) == 0;
         static_cast<void>(fchmod(descriptor_, kept_permissions(status.st_mode, same_group)));
@@ -258,7 +257,7 @@ void AtomicFile::append(std::string_view bytes) {
     if (descriptor_ < 0)
         throw Error(ErrorKind::internal, fmt::format("'{}' was written to after its end", path_));
     if (bytes.empty())
-        return; // nothing may have no address
+        return; // an empty view may have no address
     bytes_.fetch_add(bytes.size(), std::memory_order_relaxed);
     const std::size_t free = buffer_size - buffered_;
     if (bytes.size() > free && buffered_ > 0) {
@@ -294,7 +293,7 @@ void AtomicFile::overwrite(std::uint64_t place, std::string_view bytes) {
     }
 }
 
-// The spool becomes an ordinary source of bytes; from here on writing goes to where they belong.
+// Copies the spool to the output; later writes go to the output directly.
 void AtomicFile::copy_spool() {
     const int from = std::exchange(spool_, -1);
     off_t place = 0;
@@ -324,7 +323,7 @@ void AtomicFile::write_out(std::string_view bytes) {
             bytes.remove_prefix(static_cast<std::size_t>(written));
         } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
             pollfd ready{.fd = descriptor_, .events = POLLOUT, .revents = 0};
-            ::poll(&ready, 1, -1); // whatever comes of it, the next write tells
+            ::poll(&ready, 1, -1); // the next write reports the result
         } else if (errno != EINTR) {
             fail(errno);
         }
@@ -337,11 +336,11 @@ void AtomicFile::commit() {
     flush();
     if (spool_ >= 0)
         copy_spool();
-    // A name that may be in use already can only be taken by renaming.
+    // A name that may be in use can only be taken by renaming.
     if (nameless_)
         give_temporary_name();
     const int descriptor = std::exchange(descriptor_, -1);
-    // An interrupted close has closed all the same on Linux.
+    // On Linux, an interrupted close has closed the file.
     if (owns_descriptor_ && ::close(descriptor) != 0 && errno != EINTR)
         fail(errno);
     if (!temporary_.empty()) {

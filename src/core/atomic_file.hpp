@@ -1,6 +1,6 @@
 #pragma once
 
-// Output that appears whole or not at all.
+// Output that appears complete or not at all.
 
 #include "lamella/core/error.hpp"
 
@@ -17,50 +17,51 @@
 
 namespace lamella {
 
-/// Of what is replaced, for what takes its place. `same_group`: whether that is of the same group; else what
-/// is granted to the group is granted to nobody.
+/// Returns the permissions of a replacement for a file with permissions `mode`. `same_group` states whether
+/// the replacement has the same group; if not, permissions of the group are dropped.
 [[nodiscard]] unsigned kept_permissions(unsigned mode, bool same_group) noexcept;
 
-/// The error for a path that could not be written: the path, what the system said (an errno), and what to do
-/// about it, in one line.
+/// Returns the error for a path that could not be written: the path, the system's error (an errno) and
+/// advice, in one line.
 [[nodiscard]] Error output_error(const std::string& path, int system_error);
 
-/// Whether bytes that were appended will be replaced by others later.
+/// States whether appended bytes will be replaced by others later.
 enum class Overwriting : std::uint8_t { no, yes };
 
 /// A file that gets its name when it is complete. Until then its bytes are in a file without a name, of which
-/// nothing is left however the process ends; where the file system has no such files, in one with another
-/// name in the same folder, which is removed with this object. A file of that name that is there already is
-/// replaced (and keeps its permissions); through a symbolic link, the file that the link points to is.
+/// nothing is left no matter how the process ends. If the file system has no such files, they are in a file
+/// with a temporary name in the same folder, which this object removes. An existing file of that name is
+/// replaced and its permissions are kept; for a symbolic link, this is the file that the link points to.
 ///
-/// "-" is standard output. That and what is not a regular file (pipes, devices) is written in place, since it
-/// can be neither renamed nor taken back.
+/// "-" is standard output. Standard output and files that are not regular (pipes, devices) are written in
+/// place, because they can be neither renamed nor withdrawn.
 ///
-/// For one thread at a time, but for `bytes`. All failures are Error{output}; after one nothing is left
-/// behind and the file takes no more.
+/// For one thread at a time, except `bytes`. All failures are Error{output}; after one nothing is left behind
+/// and nothing more can be appended.
 class AtomicFile {
   public:
-    /// What is written in place and has to be overwritten waits in a nameless temporary file until `commit`.
+    /// An output that is written in place but has to be overwritten is stored in a nameless temporary file
+    /// until `commit`.
     explicit AtomicFile(std::string path, Overwriting overwriting = Overwriting::no);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// Small pieces are collected, large ones are written at once without being copied.
+    /// Small amounts are buffered, large ones are written at once without being copied.
     void append(std::string_view bytes);
 
-    /// Puts other bytes in the place of some that were appended before. With Overwriting::yes.
+    /// Replaces bytes that were appended before. Requires Overwriting::yes.
     void overwrite(std::uint64_t place, std::string_view bytes);
 
-    /// Writes what is left and gives the file its name. To be called once, at the end.
+    /// Writes the buffered bytes and gives the file its name. To be called once, at the end.
     void commit();
 
-    /// As it was given.
+    /// The path as given.
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
     /// Bytes appended so far.
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
-    /// Where the bytes are until `commit`, for other processes to write some of them; "" where they are
-    /// written in place. From here on the file has a name, which stays when the process is killed.
+    /// Returns the path of the bytes until `commit`, for other processes that write some of them; "" if they
+    /// are written in place. From here on the file has a name, which remains if the process is killed.
     [[nodiscard]] const std::string& share();
 
   private:
@@ -75,7 +76,7 @@ class AtomicFile {
     void flush();
     void discard() noexcept;
     [[noreturn]] void fail(int system_error);
-    /// Of the temporary file that an output waits in.
+    /// Throws the error for the temporary file that stores the output.
     [[noreturn]] void fail_spool(int system_error);
 
     std::string path_;
@@ -84,7 +85,7 @@ class AtomicFile {
     bool nameless_ = false; ///< neither written in place nor named yet
     UnfinishedName unfinished_;
     int descriptor_ = -1;
-    int spool_ = -1; ///< the nameless temporary file, when bytes wait in one
+    int spool_ = -1; ///< the nameless temporary file, if the output is stored in one
     bool owns_descriptor_ = true;
     std::unique_ptr<char[]> buffer_;
     std::size_t buffered_ = 0;

@@ -11,7 +11,7 @@ namespace lamella {
 
 std::string byte_amount(std::uint64_t bytes) {
     constexpr std::array<const char*, 3> units{"kB", "MB", "GB"};
-    // What is rounded to 1000.0 is told in the next unit.
+    // An amount that would be rounded to 1000.0 is printed in the next unit.
     constexpr double next = 999.95;
     if (bytes < 1000)
         return counted(bytes, "byte");

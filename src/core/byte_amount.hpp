@@ -1,13 +1,14 @@
 #pragma once
 
-// Amounts of memory and files, as messages tell them.
+// Formats amounts of memory and file sizes for messages.
 
 #include <cstdint>
 #include <string>
 
 namespace lamella {
 
-/// "17 bytes", "1.0 kB", "3.2 GB": in the largest unit, up to GB, that there is one of.
+/// Returns text such as "17 bytes", "1.0 kB", "3.2 GB": in the largest unit up to GB in which it is at least
+/// 1.
 [[nodiscard]] std::string byte_amount(std::uint64_t bytes);
 
 } // namespace lamella

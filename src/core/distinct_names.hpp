@@ -6,18 +6,18 @@
 
 namespace lamella {
 
-/// Names for parts that are told apart otherwise where they come from, and by their names where they go.
+/// Makes names of parts unique, for formats that identify parts by their names.
 class DistinctNames {
   public:
-    /// The name, with a number behind it where another part has it already.
+    /// Returns the name, with a number appended if another part has it already.
     std::string of(const std::string& name);
 
-    /// How many names were changed, and the first of them, as it is now.
+    /// Number of names that were changed, and the first of them after the change.
     [[nodiscard]] std::uint64_t changed() const noexcept { return changed_; }
     [[nodiscard]] const std::string& first_changed() const noexcept { return first_changed_; }
 
   private:
-    std::map<std::string, std::uint64_t> taken_; ///< with the number that was put behind it last
+    std::map<std::string, std::uint64_t> taken_; ///< with the number that was appended last
     std::uint64_t changed_ = 0;
     std::string first_changed_;
 };

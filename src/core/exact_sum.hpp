@@ -1,6 +1,6 @@
 #pragma once
 
-// The sign of a sum of products of doubles, exactly: in fixed point, wide enough for all finite numbers.
+// The exact sign of a sum of products of doubles: in fixed point, wide enough for all finite numbers.
 
 #include <algorithm>
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace lamella {
 
-/// A product of `factors` (two or three) doubles, negated where `minus`.
+/// A product of `factors` (two or three) doubles, negated if `minus`.
 template <std::size_t factors>
 struct SignedProduct {
     std::array<double, factors> factor;
@@ -23,7 +23,7 @@ namespace exact_sum {
 
 __extension__ using Wide = unsigned __int128;
 
-/// |product| = mantissa * 2^exponent.
+/// |product| = mantissa * 2^exponent
 struct Magnitude {
     std::array<std::uint64_t, 3> mantissa; ///< lowest word first
     int exponent;
@@ -52,7 +52,7 @@ template <std::size_t factors>
 
 } // namespace exact_sum
 
-/// -1, 0 or 1. For at most 2^20 products of finite numbers.
+/// Returns -1, 0 or 1. Requires at most 2^20 products of finite numbers.
 template <std::size_t factors, std::size_t n>
 [[nodiscard]] int sign_of_sum(const std::array<SignedProduct<factors>, n>& products) noexcept {
     using exact_sum::Magnitude;
@@ -74,11 +74,11 @@ template <std::size_t factors, std::size_t n>
     if (count == 0)
         return 0;
 
-    // Digits of 32 bits, each with 64 bits and a sign, so carries can wait until the end. Mantissas are
-    // normalised, so the exponent of a factor goes from -1073 - 53 to 1024 - 53.
+    // Digits of 32 bits are stored in 64 bits with a sign, so carries can wait until the end. Mantissas are
+    // normalised, so the exponent of a factor ranges from -1073 - 53 to 1024 - 53.
     constexpr std::size_t largest_shift = factors * (1024 + 1073);
     constexpr std::uint64_t low = 0xffffffff;
-    std::array<std::int64_t, largest_shift / 32 + 8> digits; // NOLINT: cleared as far as it is used
+    std::array<std::int64_t, largest_shift / 32 + 8> digits; // cleared as far as used
     const std::size_t used = static_cast<std::size_t>(top - unit) / 32 + 8;
     std::fill_n(digits.begin(), used, 0);
     for (const Magnitude& term : std::span(terms).first(count)) {

@@ -13,7 +13,7 @@ namespace lamella {
 unsigned thread_count(const Execution& execution) noexcept {
     if (execution.threads != 0)
         return execution.threads;
-    // The affinity mask knows about taskset and containers; hardware_concurrency may not.
+    // The affinity mask reflects taskset and containers; hardware_concurrency may not.
     cpu_set_t set;
     if (sched_getaffinity(0, sizeof set, &set) == 0)
         return std::max(1, CPU_COUNT(&set));
@@ -64,7 +64,7 @@ void Executor::start_threads() {
     for (auto worker = static_cast<unsigned>(threads_.size()) + 1; worker < workers_; ++worker)
         try {
             threads_.emplace_back([this, worker] { work(worker); });
-        } catch (const std::system_error&) { // no more are allowed here, or there is no room for their stacks
+        } catch (const std::system_error&) { // no more are allowed, or there is no memory for their stacks
             workers_ = worker;
         }
 }
@@ -140,7 +140,7 @@ void ProgressMeter::report(std::uint64_t done) {
         return;
     const std::lock_guard lock(mutex_);
     if (done < reported_)
-        return; // another thread was faster with a later figure
+        return; // another thread has reported a later value
     reported_ = done;
     callback_({stage_, done, total_});
 }

@@ -6,11 +6,11 @@
 
 namespace lamella {
 
-/// What lies further away could make sums and areas overflow; no part is near it. In millimetres, or in the
-/// unit of a mesh.
+/// Largest allowed absolute coordinate, in millimetres or in the unit of a mesh. Beyond it sums and areas
+/// could overflow; no real part comes close.
 inline constexpr double farthest_mm = 1e100;
 
-/// So is what is no number.
+/// Returns true if the length is beyond `farthest_mm` or is NaN.
 [[nodiscard]] inline bool is_too_far(double length) noexcept {
     return !(std::abs(length) <= farthest_mm);
 }

@@ -36,7 +36,7 @@ void FilePiece::append(std::string_view bytes) {
 }
 
 void FilePiece::finish() {
-    // Where files live on another machine, the last bytes meet it only now.
+    // On network file systems, errors for the last bytes are reported only now.
     if (::fsync(descriptor_) != 0 && errno != EINVAL)
         throw output_error(name_, errno);
     if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR)

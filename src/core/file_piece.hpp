@@ -1,6 +1,6 @@
 #pragma once
 
-// A piece of a file that several processes write.
+// A part of a file that several processes write.
 
 #include <cstdint>
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace lamella {
 
-/// Bytes written one after the other into a file that exists, from a place on. What fails is Error{output}.
-/// For one thread.
+/// Writes consecutive bytes into an existing file, starting at an offset. Throws Error{output}. For one
+/// thread.
 class FilePiece {
   public:
-    /// `name` is what errors call the file: nobody knows the path that it has until its end.
+    /// `name` is the name of the file in errors: the user does not know its temporary path.
     FilePiece(const std::string& path, std::uint64_t place, std::string name);
     ~FilePiece();
     FilePiece(const FilePiece&) = delete;
@@ -20,12 +20,12 @@ class FilePiece {
 
     void append(std::string_view bytes);
 
-    /// Makes sure that all bytes have met the file. To be called once, at the end.
+    /// Makes sure that all bytes have reached the file. To be called once, at the end.
     void finish();
 
   private:
     std::string name_;
-    std::uint64_t place_; ///< of the next byte
+    std::uint64_t place_; ///< offset of the next byte
     int descriptor_ = -1;
 };
 

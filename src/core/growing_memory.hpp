@@ -1,6 +1,6 @@
 #pragma once
 
-// Memory for bytes of which nobody knows how many will come.
+// Memory for an unknown number of bytes.
 
 #include <cstddef>
 #include <span>
@@ -15,9 +15,9 @@ class GrowingMemory {
     GrowingMemory(const GrowingMemory&) = delete;
     GrowingMemory& operator=(const GrowingMemory&) = delete;
 
-    /// Where the next bytes may go; never empty. It stays there until the next call.
+    /// Returns the memory for the next bytes; never empty. It is valid until the next call.
     [[nodiscard]] std::span<std::byte> room();
-    /// That so many bytes of the room are used now.
+    /// Marks this many bytes of `room` as used.
     void use(std::size_t bytes) noexcept { size_ += bytes; }
 
     [[nodiscard]] std::size_t size() const noexcept { return size_; }

@@ -1,14 +1,14 @@
 #pragma once
 
-// Which of many keys are equal? In parallel, in expected linear time, and the same answer for any number of
-// threads. The heart of welding, and of whatever else pairs things up.
+// Finds equal keys among many: in parallel, in expected linear time, and with the same result for any number
+// of threads. Welding and all other matching is based on it.
 //
-//     partition   each key goes to the partition that the top bits of its hash name, a block of keys at a
+//     partition   each key goes to the partition given by the top bits of its hash, one chunk of keys at a
 //                 time while it is in a core's cache; the order of the keys is kept
 //     join        within a partition, which fits into the cache, too, a small hash table finds for each key
 //                 the first one equal to it
 //
-// Keys come from files, and files may be hostile: where a probe in a table gets long, the partition is sorted
+// Keys come from files, and files may be hostile: if a probe in a table gets long, the partition is sorted
 // instead. Crafted keys cost O(n log n), never O(n^2).
 
 #include "core/executor.hpp"
@@ -27,7 +27,7 @@
 
 namespace lamella {
 
-/// Multiplies to 128 bits and folds: every bit of the result depends on all bits of both.
+/// Multiplies to 128 bits and folds: every bit of the result depends on all bits of both arguments.
 [[nodiscard]] inline std::uint64_t mix(std::uint64_t a, std::uint64_t b) noexcept {
     __extension__ using Wide = unsigned __int128;
     const Wide product = static_cast<Wide>(a ^ 0x9e3779b97f4a7c15) * (b ^ 0xd1b54a32d192ed03);
@@ -36,10 +36,10 @@ namespace lamella {
 
 namespace key_groups {
 
-/// Keys per partition: keys and table stay within the second-level cache.
+/// Keys per partition: keys and table fit into the second-level cache.
 inline constexpr std::size_t partition_keys = std::size_t{1} << 13;
 inline constexpr unsigned most_partition_bits = 12;
-/// Keys of a block that a partition gets, at least, on average: what lies apart is slow to collect.
+/// Least average number of keys of a chunk per partition: scattered keys are slow to collect.
 inline constexpr std::size_t partition_share = 8;
 inline constexpr std::size_t least_block = std::size_t{1} << 14;
 /// With tables at most half full, a probe this long does not happen by chance.
@@ -51,7 +51,7 @@ struct Record {
     std::uint32_t id;
 };
 
-/// Reports records from `from` on (those before were reported already).
+/// Reports records from `from` on (earlier ones were reported before).
 template <class Key, class Found>
 void join_sorted(std::span<const Record<Key>> records, std::size_t from, unsigned worker,
                  const Found& found) {
@@ -69,7 +69,7 @@ void join_sorted(std::span<const Record<Key>> records, std::size_t from, unsigne
     }
 }
 
-/// `table`: memory to work in, of any content.
+/// `table` is scratch memory with any content.
 template <class Key, class Hash, class Found>
 void join_partition(std::span<const Record<Key>> records, std::vector<std::uint32_t>& table, unsigned worker,
                     const Hash& hash, const Found& found) {
@@ -78,7 +78,8 @@ void join_partition(std::span<const Record<Key>> records, std::vector<std::uint3
     table.assign(std::bit_ceil(2 * records.size()), 0); // position + 1, or 0
     const std::uint64_t mask = table.size() - 1;
     for (std::size_t i = 0; i < records.size(); ++i) {
-        std::uint64_t slot = hash(records[i].key) & mask; // low bits: the top ones are the same here
+        // The low bits: the top ones are equal within a partition.
+        std::uint64_t slot = hash(records[i].key) & mask;
         for (unsigned probe = 0;; ++probe) {
             std::uint32_t& entry = table[slot];
             if (entry == 0) {
@@ -101,8 +102,8 @@ void join_partition(std::span<const Record<Key>> records, std::vector<std::uint3
 
 } // namespace key_groups
 
-/// Keys with ids, sorted into partitions block by block, to be joined when all are there. Keys of the same
-/// kind must have the same hash; what a hash says already need not be in the key.
+/// Keys with ids, sorted into partitions chunk by chunk and joined when all are present. Equal keys must have
+/// equal hashes; a key may omit what its hash already contains.
 template <class Key>
 class KeyPartitions {
     static_assert(std::is_trivially_copyable_v<Key> && std::totally_ordered<Key>);
@@ -110,19 +111,19 @@ class KeyPartitions {
   public:
     using Record = key_groups::Record<Key>;
 
-    /// For about so many keys.
+    /// Expects about this many keys.
     explicit KeyPartitions(std::uint64_t expected)
         : bits_(std::min(static_cast<unsigned>(
                              std::countr_zero(std::bit_ceil(expected / key_groups::partition_keys + 1))),
                          key_groups::most_partition_bits)) {}
 
-    /// How many keys a block holds at most; no more than 2^15, which 16 bits count.
+    /// Largest number of keys in a chunk; at most 2^15, so that 16 bits can count them.
     [[nodiscard]] std::uint32_t block_size() const noexcept {
         return static_cast<std::uint32_t>(
             std::max(key_groups::least_block, partitions() * key_groups::partition_share));
     }
 
-    /// Before the first block is put: there will be `blocks` of them at most, of `size` keys at most.
+    /// Must be called before the first `put`, for at most `blocks` chunks of at most `size` keys.
     void reserve(std::uint64_t blocks, std::uint32_t size) {
         size_ = size;
         records_ = PageArray<Record>(blocks * size);
@@ -130,8 +131,9 @@ class KeyPartitions {
         begins_ = PageArray<std::uint16_t>(blocks * partitions());
     }
 
-    /// Puts block number `block`, each once, from any thread; those that are never put are empty. hash(i):
-    /// 64 bits; record(i): key and id. Ids ascend within a block, and from block to block.
+    /// Stores chunk number `block`, each at most once, from any thread; a chunk that is never stored is
+    /// empty. hash(i) returns 64 bits, record(i) key and id. Ids must ascend within a chunk and from chunk to
+    /// chunk.
     template <class Hash, class MakeRecord>
     void put(std::uint64_t block, std::uint32_t count, const Hash& hash, const MakeRecord& record) const {
         std::array<std::uint16_t, std::size_t{1} << key_groups::most_partition_bits> next;
@@ -151,8 +153,8 @@ class KeyPartitions {
     }
 
     /// Calls found(first, other, worker) for every key that is not the first of its kind: `first` is the
-    /// lowest id of an equal key, `worker` the one that makes the call. Calls come from all workers at once;
-    /// those for equal keys come from one worker and with ascending `other`. hash(key): 64 bits, of which the
+    /// lowest id of an equal key, `worker` the calling worker. Calls come from all workers at once; those for
+    /// equal keys come from one worker and with ascending `other`. hash(key) returns 64 bits, of which the
     /// lower ones must differ within a partition.
     template <class Hash, class Found>
     void join(Executor& executor, const Hash& hash, const Found& found) const {
@@ -177,21 +179,21 @@ class KeyPartitions {
 
   private:
     [[nodiscard]] std::size_t partitions() const noexcept { return std::size_t{1} << bits_; }
-    // Shifted in two steps, because a shift by 64 is none.
+    // Shifted in two steps, because a shift by 64 is undefined.
     [[nodiscard]] std::size_t partition(std::uint64_t hash) const noexcept {
         return hash >> 1 >> (63 - bits_);
     }
 
     unsigned bits_;
     std::uint32_t size_ = 0;
-    PageArray<Record> records_;       // each block's by partition
+    PageArray<Record> records_;       // the records of each chunk, ordered by partition
     PageArray<std::uint32_t> counts_; // per block
     PageArray<std::uint16_t> begins_; // per block and partition
 };
 
-/// The same for keys that lie in memory: calls found(first, other, worker) as KeyPartitions::join does. The
-/// ids of keys are their positions in all parts together, one part after the other; below 2^32 in all.
-/// hash(key) gives 64 bits, equal for equal keys.
+/// Does the same for keys in memory: calls found(first, other, worker) as KeyPartitions::join does. The id of
+/// a key is its position in the concatenation of all parts and must be below 2^32. hash(key) returns 64 bits,
+/// equal for equal keys.
 template <class Key, class Hash, class Found>
 void join_equal_keys(Executor& executor, std::span<const std::span<const Key>> parts, const Hash& hash,
                      const Found& found) {

@@ -4,7 +4,7 @@
 
 namespace lamella {
 
-/// Gives the memory of a list back: `items = {}` would empty it and keep that.
+/// Frees the memory of a list: `items = {}` would empty it but keep its memory.
 template <class T>
 void let_go(std::vector<T>& items) noexcept {
     std::vector<T>().swap(items);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Letters of ASCII in lower case, whatever the locale: keywords and names of files are compared so.
+// ASCII lower case independent of the locale, for comparing keywords and file names.
 
 #include <algorithm>
 #include <string>
@@ -19,7 +19,7 @@ namespace lamella {
     return result;
 }
 
-/// Whether a text begins with a keyword, which is in lower case.
+/// Returns whether a text begins with a keyword, which must be in lower case.
 [[nodiscard]] constexpr bool begins_with_keyword(std::string_view text, std::string_view keyword) noexcept {
     return text.size() >= keyword.size() && std::equal(keyword.begin(), keyword.end(), text.begin(),
                                                        [](char k, char c) { return lower_case(c) == k; });

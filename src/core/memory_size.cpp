@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::uint64_t unlimited = ~std::uint64_t{0};
 
-/// The number that a file of one line holds; unlimited where there is none ("max").
+/// Returns the number in a file of one line; unlimited if there is none ("max").
 std::uint64_t number_in(const std::string& path) {
     std::ifstream file(path);
     std::uint64_t number = 0;
     return file >> number ? number : unlimited;
 }
 
-/// The lowest limit of a control group and of those around it.
+/// Returns the lowest limit of a control group and its ancestors.
 std::uint64_t limit_upwards(const std::string& root, std::string group, const char* name) {
     std::uint64_t limit = number_in(root + "/" + name); // a container may see its own group as the root
     while (!group.empty() && group != "/") {
@@ -33,7 +33,7 @@ std::uint64_t control_group_limit() {
     std::uint64_t limit = unlimited;
     std::ifstream groups("/proc/self/cgroup");
     for (std::string line; std::getline(groups, line);) {
-        // "0::/path" of version 2, "5:memory:/path" of version 1.
+        // "0::/path" in version 2, "5:memory:/path" in version 1.
         const std::size_t first = line.find(':');
         const std::size_t second = line.find(':', first + 1);
         if (second == std::string::npos || line.find('/', second) != second + 1)

@@ -1,18 +1,18 @@
 #pragma once
 
-// How much memory there is.
+// The available amount of memory.
 
 #include <cstdint>
 
 namespace lamella {
 
-/// Bytes that this process and its like can have in all: the physical memory, or less where a control group
-/// (of a container, of a batch system's job) says so. Asked of the system once.
+/// Returns the bytes that this process and others under the same limit can use in total: the physical memory,
+/// or less if a control group (of a container or a batch job) limits it. The system is asked once.
 [[nodiscard]] std::uint64_t memory_size();
 
-/// Of that, what a run may take unless somebody says more or less: three quarters.
+/// Returns the default memory limit of a job: three quarters of `memory_size`.
 [[nodiscard]] std::uint64_t usual_memory();
-/// That, unless somebody wished for another limit than 0.
+/// Returns the wished limit, or the default if that is 0.
 [[nodiscard]] inline std::uint64_t memory_limit(std::uint64_t wished) {
     return wished != 0 ? wished : usual_memory();
 }

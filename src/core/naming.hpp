@@ -1,6 +1,6 @@
 #pragma once
 
-// Errors that do not know the file or the part that they are about, and get it from who does.
+// Adds the name of a file or part to errors from code that does not know it.
 
 #include "lamella/core/error.hpp"
 
@@ -10,8 +10,8 @@
 
 namespace lamella {
 
-/// What `work` returns. Its errors get the name in front, "part.stl: the mesh ...", but for a stop that
-/// somebody asked for; with an empty name, nothing.
+/// Returns the result of `work`. Puts the name in front of its errors, "part.stl: the mesh ...", except for
+/// cancellation; an empty name adds nothing.
 template <class Work>
 auto naming(const std::string& name, const Work& work) -> decltype(work()) {
     try {

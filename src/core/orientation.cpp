@@ -12,9 +12,9 @@ namespace {
 
 __extension__ using SignedWide = __int128;
 
-/// The determinant of three differences in whole numbers: where these are exact multiples of one power of two
-/// and have at most 40 bits, as differences of single precision coordinates of one part mostly are. False
-/// where they are not.
+/// Computes the determinant of three differences in integers. Returns false unless all are exact multiples of
+/// one power of two and have at most 40 bits, as differences of single-precision coordinates of one part
+/// mostly do.
 bool integer_orientation(const Point3& a, const std::array<const Point3*, 3>& others, int& sign) noexcept {
     std::array<double, 9> gaps; // NOLINT: filled below
     double largest = 0;
@@ -23,7 +23,7 @@ bool integer_orientation(const Point3& a, const std::array<const Point3*, 3>& ot
         const std::array to{others[k]->x, others[k]->y, others[k]->z};
         for (std::size_t i = 0; i < 3; ++i) {
             const double gap = to[i] - from[i];
-            // What rounding took off a difference, after Knuth; exact where nothing overflows.
+            // The rounding error of the difference, after Knuth; exact unless there is overflow.
             const double back = gap - to[i];
             const double lost = (to[i] - (gap - back)) - (from[i] + back);
             if (lost != 0)
@@ -45,7 +45,7 @@ bool integer_orientation(const Point3& a, const std::array<const Point3*, 3>& ot
     const auto minor = [&](std::size_t i, std::size_t j) {
         return SignedWide{whole[i]} * whole[3 + j] - SignedWide{whole[j]} * whole[3 + i];
     };
-    // Minors have 81 bits, products with 40 more 121, their sum 123.
+    // Minors have 81 bits, their products with 40 bits have 121, and the sum has 123.
     const SignedWide det = minor(1, 2) * whole[6] + minor(2, 0) * whole[7] + minor(0, 1) * whole[8];
     sign = (det > 0) - (det < 0);
     return true;
@@ -54,7 +54,7 @@ bool integer_orientation(const Point3& a, const std::array<const Point3*, 3>& ot
 } // namespace
 
 int exact_orientation(const Point2& a, const Point2& b, const Point2& c) noexcept {
-    // D multiplied out; the two c.x c.y cancel.
+    // D expanded; the two terms c.x c.y cancel.
     return sign_of_sum(std::array<SignedProduct<2>, 6>{{{{a.x, b.y}, false},
                                                         {{a.x, c.y}, true},
                                                         {{b.x, c.y}, false},
@@ -67,7 +67,7 @@ int exact_orientation(const Point3& a, const Point3& b, const Point3& c, const P
     int sign = 0;
     if (integer_orientation(a, {&b, &c, &d}, sign))
         return sign;
-    // D multiplied out: [b, c, d] - [a, c, d] + [a, b, d] - [a, b, c] with [p, q, r] = p x q . r.
+    // D expanded: [b, c, d] - [a, c, d] + [a, b, d] - [a, b, c] with [p, q, r] = p x q . r.
     std::array<SignedProduct<3>, 24> products;
     std::size_t n = 0;
     const auto add = [&](const Point3& p, const Point3& q, const Point3& r, bool minus) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// On which side of a line or of a plane a point lies: decided exactly.
+// Decides exactly on which side of a line or a plane a point lies.
 
 #include "lamella/core/point.hpp"
 
@@ -9,22 +9,22 @@
 
 namespace lamella {
 
-/// The exact answers by integer arithmetic; slow, for the rare cases that `orientation` cannot decide.
+/// The exact results by integer arithmetic; slow, for the rare cases that `orientation` cannot decide.
 [[nodiscard]] int exact_orientation(const Point2& a, const Point2& b, const Point2& c) noexcept;
 [[nodiscard]] int exact_orientation(const Point3& a, const Point3& b, const Point3& c,
                                     const Point3& d) noexcept;
 
-/// +1 when c lies to the left of the line from a to b, -1 to the right, 0 on it: the sign of
+/// Returns +1 if c lies to the left of the line from a to b, -1 if to the right, 0 if on it: the sign of
 ///     D = (a.x - c.x) (b.y - c.y) - (a.y - c.y) (b.x - c.x) = L - R.
-/// Exact for all finite coordinates, denormal and huge ones included.
+/// Exact for all finite coordinates, including denormal and huge ones.
 ///
-/// The filter. With u = 2^-53 a difference carries one rounding and a product another one, so the computed
-/// products l and r are off by |L - l| <= (3u + 7u^2) |l|, and likewise for r. The rounded difference of l
+/// The filter: with u = 2^-53, a difference carries one rounding and a product another one, so the computed
+/// products l and r have errors |L - l| <= (3u + 7u^2) |l|, and likewise for r. The rounded difference of l
 /// and r has the sign of the exact one and at most 1 + u times its size. Hence the computed det has the sign
-/// of D when |det| > (1 + u) (3u + 7u^2) (|l| + |r|); the coefficient 3u + 16u^2 also covers the two
-/// roundings of the bound itself. A product that underflows is off by 2^-1075 more: with |l| + |r| > 1e-280
-/// the slack of the coefficient, more than u^2 (|l| + |r|) / 2, is far above that. Overflow makes a bound of
-/// infinity or NaN, and nothing is above those.
+/// of D if |det| > (1 + u) (3u + 7u^2) (|l| + |r|); the coefficient 3u + 16u^2 also covers the two roundings
+/// of the bound itself. A product that underflows has an additional error of 2^-1075: with |l| + |r| > 1e-280
+/// the slack of the coefficient, more than u^2 (|l| + |r|) / 2, is far larger. Overflow makes the bound
+/// infinity or NaN, and nothing exceeds those.
 [[nodiscard]] inline int orientation(const Point2& a, const Point2& b, const Point2& c) noexcept {
     constexpr double u = 0x1p-53;
     const double ax = a.x - c.x;
@@ -37,7 +37,7 @@ namespace lamella {
     const double size = std::abs(l) + std::abs(r);
     if (size > 1e-280 && std::abs(det) > (3 + 16 * u) * u * size)
         return det > 0 ? 1 : -1;
-    // The signs of the differences are exact, so are those of L and R; often they decide.
+    // The signs of the differences are exact, and so are those of L and R; often they decide.
     const auto sign = [](double x) {
         return (x > 0) - (x < 0);
     };
@@ -48,14 +48,14 @@ namespace lamella {
     return sign_l == 0 ? 0 : exact_orientation(a, b, c);
 }
 
-/// The plane through three points, prepared for many questions: on which side of it does a point lie?
+/// The plane through three points, prepared for testing many points.
 ///
-/// The filter of `likely_side`. Each of the six products of three differences carries three roundings of
-/// differences and two of products, and at most three of the sums that it goes through: the relative error is
-/// below (1 + u)^8 - 1 < 8u + 29u^2 of the sum of sizes `size`, which itself may come out too small by 5
-/// roundings; the coefficient 8u + 128u^2 covers both and the rounding of the bound. An underflow of an inner
-/// product is off by 2^-1075 times the third factor: below 1e60 that is far less than the slack u^2 size when
-/// size is above 1e-200, and so is that of the outer product.
+/// The filter of `likely_side`: each of the six products of three differences carries three roundings of
+/// differences, two of products, and at most three of sums. The relative error is below (1 + u)^8 - 1 < 8u +
+/// 29u^2 of the sum of sizes `size`, which itself may be too small by 5 roundings; the coefficient 8u +
+/// 128u^2 covers both and the rounding of the bound. An underflow of an inner product adds an error of
+/// 2^-1075 times the third factor. If that factor is below 1e60 and size is above 1e-200, this is far less
+/// than the slack u^2 size, and so is the underflow of the outer product.
 class Plane {
   public:
     Plane(const Point3& a, const Point3& b, const Point3& c) noexcept : a_(a), b_(b), c_(c) {
@@ -66,7 +66,7 @@ class Plane {
                   std::abs(p.x * q.y) + std::abs(p.y * q.x)};
     }
 
-    /// +1 or -1 where that is certain, as `orientation` of the three points and d; else 0.
+    /// Returns +1 or -1 if that is certain, as `orientation` of the three points and d; otherwise 0.
     [[nodiscard]] int likely_side(const Point3& d) const noexcept {
         constexpr double u = 0x1p-53;
         const Point3 r{d.x - a_.x, d.y - a_.y, d.z - a_.z};
@@ -77,12 +77,12 @@ class Plane {
             return det > 0 ? 1 : -1;
         return 0;
     }
-    /// Certain always, and 0 in the plane.
+    /// Returns the exact side, 0 in the plane.
     [[nodiscard]] int side(const Point3& d) const noexcept {
         const int likely = likely_side(d);
         if (likely != 0)
             return likely;
-        // Flat in a coordinate plane: the usual way to be coplanar.
+        // All in one coordinate plane: the most frequent case of coplanar points.
         const auto level = [&](double Point3::*k) {
             return a_.*k == b_.*k && a_.*k == c_.*k && a_.*k == d.*k;
         };
@@ -95,11 +95,11 @@ class Plane {
     Point3 b_;
     Point3 c_;
     Point3 normal_;
-    Point3 sizes_; ///< what `normal_` would be if nothing cancelled
+    Point3 sizes_; ///< the components of `normal_` without cancellation
 };
 
-/// +1 when d lies on the side of the plane through a, b and c from which they are seen counter-clockwise, -1
-/// on the other, 0 in it: the sign of
+/// Returns +1 if d lies on the side of the plane through a, b and c from which they are counter-clockwise, -1
+/// if on the other side, 0 if in it: the sign of
 ///     D = (b - a) x (c - a) . (d - a).
 /// Exact for all finite coordinates.
 [[nodiscard]] inline int orientation(const Point3& a, const Point3& b, const Point3& c,

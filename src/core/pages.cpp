@@ -28,8 +28,8 @@ Pages::Pages(std::size_t bytes, Fill fill) {
             std::memset(data_, 0, bytes);
         return;
     }
-    // A fresh mapping is zero anyway. A whole huge page of slack lets the data start on one; what lies before
-    // it is given back.
+    // A fresh mapping is zero. It is one huge page longer than needed, so that the data can start on one; the
+    // memory before that is returned.
     if (bytes > ~std::size_t{0} - 2 * huge_page)
         throw std::bad_alloc();
     const std::size_t mapped = bytes + huge_page;
@@ -43,7 +43,7 @@ Pages::Pages(std::size_t bytes, Fill fill) {
         munmap(base, aligned - address);
     data_ = reinterpret_cast<void*>(aligned); // NOLINT(performance-no-int-to-ptr): alignment of a mapping
     bytes_ = mapped - (aligned - address);
-    madvise(data_, bytes_, MADV_HUGEPAGE); // a wish; without huge pages all still works
+    madvise(data_, bytes_, MADV_HUGEPAGE); // a hint; works without huge pages, too
 }
 
 Pages::~Pages() {

@@ -1,7 +1,7 @@
 #pragma once
 
 // Large uninitialised arrays. Fresh memory in 4 KB pages costs more than all the arithmetic of slicing, so
-// big arrays are asked for in pages of 2 MB, and only the pages that are touched are ever there.
+// large arrays request pages of 2 MB, and only the pages that are touched are allocated.
 
 #include <cstddef>
 #include <span>
@@ -13,10 +13,10 @@ namespace lamella {
 
 class Executor;
 
-/// What a block of memory holds at first.
+/// Initial content of memory.
 enum class Fill { none, zero };
 
-/// A block of anonymous memory that starts at a multiple of 64 bytes. Throws std::bad_alloc.
+/// Anonymous memory that starts at a multiple of 64 bytes. Throws std::bad_alloc.
 class Pages {
   public:
     Pages() = default;
@@ -39,7 +39,7 @@ class Pages {
     std::size_t bytes_ = 0;
 };
 
-/// An array of trivial values, or of atomics of them, on such a block.
+/// An array of trivial values, or of atomics of them, in Pages.
 template <class T>
 class PageArray {
     static_assert(std::is_trivially_destructible_v<T>);
@@ -60,12 +60,12 @@ class PageArray {
     std::size_t size_ = 0;
 };
 
-/// Asks for large pages behind [data, data + bytes), and has those of them that are whole pages made ready by
-/// all workers. A hint: the content does not change, and without large pages all still works.
+/// Requests large pages for [data, data + bytes) and lets all workers touch the whole pages in it. A hint:
+/// the content does not change, and it works without large pages, too.
 void make_pages_ready(Executor& executor, void* data, std::size_t bytes);
 
-/// Resizes an empty vector. To fill it in parallel afterwards is then not held up by fresh pages, which would
-/// all come from the one thread that resizes.
+/// Resizes an empty vector. A thread that resizes would touch all fresh pages alone, so the workers touch
+/// them before.
 template <class T>
 void resize_in_huge_pages(Executor& executor, std::vector<T>& values, std::size_t size) {
     values.reserve(size);

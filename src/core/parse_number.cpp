@@ -1,7 +1,7 @@
 #include "core/parse_number.hpp"
 
-// Not std::from_chars: libc++ has it for whole numbers only, and what is too large or too small would be told
-// by the same code.
+// Not std::from_chars: libc++ has it for integers only, and it reports overflow and underflow with the same
+// code.
 #include <fast_float/fast_float.h>
 
 namespace lamella {

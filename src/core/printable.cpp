@@ -10,7 +10,7 @@ unsigned byte_at(std::string_view text, std::size_t i) {
     return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
 }
 
-/// Bytes of the well-formed UTF-8 sequence at i (Unicode, table 3-7), 0 when there is none.
+/// Returns the length of the well-formed UTF-8 sequence at i (Unicode, table 3-7), 0 if there is none.
 std::size_t utf8_length(std::string_view text, std::size_t i) {
     const unsigned lead = byte_at(text, i);
     const auto continues = [&](std::size_t k, unsigned low = 0x80, unsigned high = 0xBF) {
@@ -38,7 +38,7 @@ std::string printable(std::string_view text, std::size_t max_bytes) {
     for (std::size_t i = 0; i < text.size();) {
         const std::size_t length = utf8_length(text, i);
         const unsigned lead = byte_at(text, i);
-        // U+0080 to U+009F are control characters too; U+FFFE and U+FFFF are none, and XML must not have
+        // U+0080 to U+009F are control characters, too. U+FFFE and U+FFFF are no characters, and XML forbids
         // them.
         const bool control = lead < 0x20 || lead == 0x7F || (lead == 0xC2 && byte_at(text, i + 1) < 0xA0);
         const bool none = length == 3 && text.substr(i, 3) >= "\xEF\xBF\xBE" && lead == 0xEF;

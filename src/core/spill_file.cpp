@@ -53,7 +53,7 @@ void SpillFile::read(std::uint64_t place, std::span<std::byte> bytes) const {
     while (!bytes.empty()) {
         const ssize_t got = pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
         if (got == 0)
-            fail(EIO); // it was longer when it was written
+            fail(EIO); // the file was longer when it was written
         if (got > 0) {
             bytes = bytes.subspan(static_cast<std::size_t>(got));
             place += static_cast<std::uint64_t>(got);
@@ -67,7 +67,7 @@ void SpillFile::forget(std::uint64_t place, std::uint64_t bytes) noexcept {
     const int before = errno;
     fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(place),
               static_cast<off_t>(bytes));
-    errno = before; // a wish
+    errno = before; // a hint
 }
 
 void SpillFile::fail(int system_error) const {

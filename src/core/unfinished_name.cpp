@@ -17,9 +17,9 @@
 
 namespace lamella {
 
-// The one thing that the library keeps globally: a thread that ends the process cannot ask the others for
-// their objects, which may be in the middle of anything. A list without locks, so that a stuck thread blocks
-// nobody: slots are used again but never freed, and whoever takes a name out of its slot owns it.
+// The only global state of the library: a thread that ends the process cannot ask the others for their
+// objects, which may be in any state. A list without locks, so that a stuck thread blocks no other: slots are
+// reused but never freed, and the thread that takes a name out of its slot owns it.
 struct UnfinishedName::Slot {
     std::atomic<const char*> path{nullptr};
     Slot* next = nullptr;
@@ -33,17 +33,17 @@ std::atomic<Slot*> slots{nullptr};
 std::atomic<bool> ending{false};
 std::atomic<int> creations{0};
 
-// Stands in the slots that remove_unfinished has been at: nobody may use them again.
+// Replaces the names that remove_unfinished has taken: nobody may use these slots again.
 constexpr char taken[] = "";
 
-// Empties the folder once and removes it; false when something has been added meanwhile.
+// Empties the folder once and removes it; returns false if entries have been added in the meantime.
 bool remove_folder(const char* path) noexcept {
     const int folder = ::open(path, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (folder < 0)
         return true;
     alignas(dirent64) char entries[4096];
     for (;;) {
-        // The bare call: opendir takes memory.
+        // The system call itself, because opendir allocates memory.
         const long size = ::syscall(SYS_getdents64, folder, entries, sizeof entries);
         if (size <= 0)
             break;
@@ -62,7 +62,7 @@ bool remove_folder(const char* path) noexcept {
 void remove(const char* path) noexcept {
     if (::unlink(path) == 0 || (errno != EISDIR && errno != EPERM))
         return;
-    // Entries that are unlinked while a folder is listed may hide others.
+    // Unlinking entries while a folder is listed may hide others.
     constexpr int most_attempts = 100;
     for (int attempt = 0; attempt < most_attempts && !remove_folder(path); ++attempt) {
     }
@@ -72,7 +72,7 @@ void remove(const char* path) noexcept {
 
 UnfinishedName::Creation::Creation() {
     ++creations;
-    // Either remove_unfinished sees this one, or this sees that it has begun.
+    // Either remove_unfinished sees this creation, or this thread sees that it has begun.
     if (ending) {
         --creations;
         throw Error(ErrorKind::cancelled, "cancelled");
@@ -99,9 +99,9 @@ bool UnfinishedName::announce(const std::string& path) {
         while (!slots.compare_exchange_weak(slot->next, slot)) {
         }
     }
-    static_cast<void>(copy.release()); // it belongs to the slot
+    static_cast<void>(copy.release()); // the slot owns it now
     slot_ = slot;
-    // Either remove_unfinished sees the name, or this sees that it has begun.
+    // Either remove_unfinished sees the name, or this thread sees that it has begun.
     if (!ending)
         return true;
     withdraw();
@@ -120,7 +120,8 @@ bool UnfinishedName::withdraw() noexcept {
 
 void remove_unfinished() noexcept {
     ending = true;
-    // Not for ever: a file system may be stuck, and a thread that has crashed in a creation does not end it.
+    // The wait is limited: a file system may be stuck, and a thread that crashed during a creation never ends
+    // it.
     constexpr timespec a_moment{.tv_sec = 0, .tv_nsec = 1'000'000};
     for (int moments = 0; creations != 0 && moments < 200; ++moments)
         ::nanosleep(&a_moment, nullptr);

@@ -8,7 +8,7 @@
 
 namespace lamella {
 
-/// One temporary name that is taken down for removal as long as this object lives.
+/// A temporary name that is registered for removal as long as this object lives.
 class UnfinishedName {
   public:
     UnfinishedName() = default;
@@ -16,16 +16,16 @@ class UnfinishedName {
     UnfinishedName(const UnfinishedName&) = delete;
     UnfinishedName& operator=(const UnfinishedName&) = delete;
 
-    /// Takes down the name of what has just been created. False when the process is about to end: then the
-    /// caller has to remove it and to stop. To be called once.
+    /// Registers the name of a newly created file or folder. Returns false if the process is about to end:
+    /// then the caller has to remove it and to stop. To be called once.
     [[nodiscard]] bool announce(const std::string& path);
 
-    /// Forgets it: what had the name has its final one, or is gone. False when it has been removed.
+    /// Removes the registration: the file has its final name or is gone. Returns false if remove_unfinished
+    /// has taken it.
     bool withdraw() noexcept;
 
-    /// To be held from before a name is created until it is announced, or, where that was refused, removed
-    /// again: remove_unfinished waits for those who hold one, and after that nobody gets one:
-    /// Error{cancelled}.
+    /// Must be held from before a name is created until it is announced or, if that fails, removed again.
+    /// remove_unfinished waits for all holders; after that the constructor throws Error{cancelled}.
     class Creation {
       public:
         Creation();

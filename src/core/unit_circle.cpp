@@ -8,7 +8,7 @@ namespace lamella {
 
 namespace {
 
-/// 0 <= angle <= pi / 4. Taylor's series: at a quarter of pi the first term left out is below 2^-60.
+/// Requires 0 <= angle <= pi / 4. Taylor's series: at pi / 4 the first omitted term is below 2^-60.
 CosSin first_octant(double angle) noexcept {
     const double q = angle * angle;
     double cosine = 0;
@@ -20,8 +20,8 @@ CosSin first_octant(double angle) noexcept {
     return {1 - cosine, angle - angle * sine};
 }
 
-/// Turns the values within an octant (of the angle, or of what it lacks to the next in odd octants) to the
-/// octant where they belong.
+/// Maps the values within the first octant to the given octant. In odd octants they are those of the angle up
+/// to the next octant.
 CosSin in_octant(unsigned octant, CosSin v) noexcept {
     if (octant % 4 == 1 || octant % 4 == 2)
         std::swap(v.cos, v.sin);
@@ -37,7 +37,7 @@ CosSin in_octant(unsigned octant, CosSin v) noexcept {
 CosSin cos_sin_turn(std::uint64_t i, std::uint64_t n) noexcept {
     i %= n;
     unsigned octant = 0;
-    // 8 i / n by long division: 8 i itself might overflow.
+    // Computes 8 i / n by long division: 8 i itself might overflow.
     std::uint64_t rest = i;
     for (int bit = 0; bit < 3; ++bit) {
         const bool over = rest >= n - rest;
@@ -54,7 +54,7 @@ CosSin cos_sin_turn(std::uint64_t i, std::uint64_t n) noexcept {
 }
 
 CosSin cos_sin_degrees(double degrees) noexcept {
-    const double turned = std::fmod(std::fabs(degrees), 360.0); // exact, as is the subtraction below
+    const double turned = std::fmod(std::fabs(degrees), 360.0); // exact, and so is the subtraction below
     const auto octant = static_cast<unsigned>(turned / 45);
     double rest = turned - 45 * octant;
     if (octant % 2 != 0)

@@ -2,9 +2,10 @@
 
 // Loops compiled for several processors.
 
-/// Before the definition of a function: compiles it also for wider vectors, and has the widest that the
-/// processor knows chosen when the program starts. Operations are neither fused nor reordered, so all give
-/// the same bits. Not under sanitizers, whose run time is not there yet when the choice is made.
+/// Before the definition of a function: compiles it for wider vectors, too; the widest version that the
+/// processor supports is selected when the program starts. Operations are neither fused nor reordered, so all
+/// give the same bits. Disabled under sanitizers, whose run time is not initialised when the selection is
+/// made.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define LAMELLA_SANITIZED

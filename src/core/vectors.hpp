@@ -1,7 +1,7 @@
 #pragma once
 
 // GCC and clang vectors, for kernels that are compiled for the instruction sets of several processors. They
-// are passed by reference only: by value they would need a calling convention of their own.
+// are passed by reference only: passed by value, they would need a different calling convention.
 
 namespace lamella {
 
@@ -10,8 +10,8 @@ struct Vector {
     typedef double Doubles __attribute__((vector_size(width * sizeof(double)), may_alias));
     typedef float Floats __attribute__((vector_size(width * sizeof(float)), may_alias));
     typedef long long Words __attribute__((vector_size(width * sizeof(long long)), may_alias));
-    /// Those that may begin at any number. (A vector type that is aligned less does not do: clang 14 forgets
-    /// about the alignment behind a template.)
+    /// An unaligned vector. (A vector type with less alignment does not work: clang 14 drops the alignment in
+    /// templates.)
     struct __attribute__((packed, may_alias)) Anywhere {
         Doubles v;
     };

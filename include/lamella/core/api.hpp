@@ -1,8 +1,9 @@
 #pragma once
 
-// What a shared library exports: all that public headers declare between these two, and nothing else.
+// The exports of a shared library: all declarations of public headers between these two macros, and nothing
+// else.
 //
-// A pragma marks each declaration. An attribute of the namespace would not do: clang looks for it where a
+// A pragma marks each declaration. An attribute of the namespace would not work: clang looks for it where a
 // function is defined.
 
 #if defined(__GNUC__)

@@ -1,6 +1,6 @@
 #pragma once
 
-// The one exception type of the library and the short closed list of its kinds.
+// The only exception type of the library, with a closed list of kinds.
 
 #include "lamella/core/api.hpp"
 
@@ -10,20 +10,20 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// What went wrong, in the classes that a caller treats differently. The program's exit codes follow it.
+/// The kinds of failures that a caller treats differently. The program's exit codes follow them.
 enum class ErrorKind {
-    internal,  ///< a broken promise of Lamella itself; please report it
-    usage,     ///< arguments that contradict themselves or cannot be met
-    input,     ///< a file that cannot be read or holds nothing to slice
-    defect,    ///< a defect of the mesh or the layers, where the caller asked for none (strict)
+    internal,  ///< an error in Lamella itself; please report it
+    usage,     ///< arguments that contradict one another or cannot be satisfied
+    input,     ///< a file that cannot be read or contains nothing to slice
+    defect,    ///< a defect of the mesh or the layers, if the caller accepts none (strict)
     limit,     ///< a limit was hit: time, triangles, memory, index range
     output,    ///< a file that cannot be written; nothing was left at its path
     cancelled, ///< the caller asked to stop
 };
 
-/// Every failure that Lamella reports. what() is one line for a person: the file, the place in it (byte or
-/// line), what was found and what was expected. Where it speaks of a field of the options that the caller
-/// gave, the field's name stands between backquotes, as in `max_memory`: a program puts its own name there.
+/// Every failure that Lamella reports. what() is one line for a person: the file, the byte or line in it,
+/// what was found and what was expected. If it mentions a field of the options, the field's name is between
+/// backquotes, as in `max_memory`, so that a program can replace it by the name of its own option.
 class Error : public std::runtime_error {
   public:
     Error(ErrorKind kind, const std::string& text) : std::runtime_error(text), kind_(kind) {}

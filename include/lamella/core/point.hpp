@@ -1,6 +1,6 @@
 #pragma once
 
-// Points and boxes. Lengths are millimetres unless a function says otherwise.
+// Points and boxes. Lengths are in millimetres unless a function states otherwise.
 
 #include "lamella/core/api.hpp"
 
@@ -10,8 +10,8 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// A point of a layer, seen looking down the build direction (x right, y up).
-/// The default order is the lexicographic one (x, then y); it defines the normal form of contours.
+/// A point of a layer, seen looking down the build direction (x right, y up). The default order is
+/// lexicographic (x, then y); it defines the normal form of contours.
 struct Point2 {
     double x = 0;
     double y = 0;

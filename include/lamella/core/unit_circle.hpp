@@ -1,7 +1,7 @@
 #pragma once
 
-// Cosine and sine with the same bits on every machine. Those of the C library differ in the last place
-// between versions, and parts made here must be the same everywhere. Only + - * / and exact functions.
+// Cosine and sine with the same bits on every machine, from + - * / and exact functions only. Those of the C
+// library differ in the last place between versions, but parts made here must be the same everywhere.
 
 #include "lamella/core/api.hpp"
 
@@ -15,12 +15,12 @@ struct CosSin {
     double sin = 0;
 };
 
-/// Of i/n of a turn, n > 0. Within about one unit in the last place, and exactly symmetric: points that
-/// mirror or rotate (by quarter turns) into one another have the same digits. Quarter turns are exact, and at
-/// an eighth of a turn both are equal.
+/// Returns cosine and sine of i/n of a full turn, n > 0. They are accurate to about one unit in the last
+/// place and exactly symmetric: points that are mirror images or rotations by 90 degrees of one another have
+/// the same digits. Multiples of 90 degrees are exact, and at 45 degrees both are equal.
 [[nodiscard]] CosSin cos_sin_turn(std::uint64_t i, std::uint64_t n) noexcept;
 
-/// Of an angle in degrees, finite. Multiples of 90 degrees are exact.
+/// Returns cosine and sine of a finite angle in degrees. Multiples of 90 degrees are exact.
 [[nodiscard]] CosSin cos_sin_degrees(double degrees) noexcept;
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// The version: of the headers, for the preprocessor, and of the library that a program runs with.
+// The version of the headers, for the preprocessor, and the version of the library at run time.
 
 #include "lamella/core/api.hpp"
 
@@ -12,7 +12,8 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Of the library, as in "0.1.0". With a shared library it may be another one than LAMELLA_VERSION.
+/// Returns the version of the library, such as "0.1.0". With a shared library it may differ from
+/// LAMELLA_VERSION.
 [[nodiscard]] const char* version() noexcept;
 
 } // namespace lamella

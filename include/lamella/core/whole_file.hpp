@@ -1,6 +1,6 @@
 #pragma once
 
-// Files that appear whole or not at all.
+// Files that appear complete or not at all.
 
 #include "lamella/core/api.hpp"
 
@@ -10,22 +10,22 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Writes a file that appears whole or not at all. One of that name that is there already is replaced and
-/// keeps its permissions; through a symbolic link, the file that the link points to is. "-" is standard
-/// output; that, pipes and devices are written in place. Throws Error{output}.
+/// Writes a file that appears complete or not at all. An existing file of that name is replaced and its
+/// permissions are kept; for a symbolic link, this is the file that the link points to. "-" is standard
+/// output. Standard output, pipes and devices are written in place. Throws Error{output}.
 void write_whole_file(const std::string& path, std::string_view bytes);
 
-/// Throws the Error{output} with which write_whole_file would begin, such as for a folder that does not exist
-/// or may not be written; so what is written last fails before the work. Nothing is left; standard output,
-/// pipes and devices are not touched.
+/// Throws the Error{output} that write_whole_file would throw at its start, for example if the folder does
+/// not exist or is not writable. So a job can fail before its work instead of after it. Leaves nothing
+/// behind; standard output, pipes and devices are not touched.
 void check_writable(const std::string& path);
 
-/// Removes every file and folder that writers of this process have under a temporary name, whichever thread
-/// they run on; from then on no writer begins a new one. For a program that is about to leave by _exit, since
-/// it is stuck or was told twice to stop: everybody else gets the same from the writers' destructors.
+/// Removes all files and folders that writers of this process have under temporary names, on all threads;
+/// afterwards no writer can create a new one. For a program that is about to call _exit because it is stuck
+/// or was interrupted twice; otherwise the destructors of the writers do the same.
 ///
-/// Async-signal-safe: it takes no lock and no memory. A folder that gets its final name at the same moment
-/// may keep its temporary one.
+/// Async-signal-safe: it takes no lock and allocates no memory. A folder that gets its final name at the same
+/// moment may keep its temporary one.
 void remove_unfinished() noexcept;
 
 } // namespace lamella
