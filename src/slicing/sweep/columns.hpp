@@ -1,6 +1,6 @@
 #pragma once
 
-// The edges of a run, laid out for the kernels.
+// The edges of a run, in the layout that the kernels need.
 
 #include "core/pages.hpp"
 #include "slicing/sweep/cut_graph.hpp"
@@ -15,13 +15,13 @@
 
 namespace lamella {
 
-/// What one worker computes with.
+/// Memory in which one worker computes.
 struct Scratch {
     const PointKernels& kernels = point_kernels();
     CutPoints points;
-    PageArray<double> columns; ///< of a run whose edges have no room in the store
+    PageArray<double> columns; ///< of a run whose edges did not fit into the store
 
-    /// Room for the columns of so many edges, in place of what was there.
+    /// Returns memory for the columns of `edges` edges; its previous content is lost.
     double* columns_for(std::size_t edges) {
         const std::size_t size = EdgeColumns::columns * EdgeColumns::padded(edges);
         if (columns.size() < size)
@@ -30,17 +30,17 @@ struct Scratch {
     }
 };
 
-/// Keeps the columns of the first runs, as many as have room.
+/// Keeps the columns of the first runs, as long as its capacity allows.
 class ColumnStore {
   public:
     static constexpr std::uint64_t not_kept = ~std::uint64_t{0};
 
-    /// Room for so many edges, a multiple of EdgeColumns::lanes.
+    /// Allocates memory for `room` edges, a multiple of EdgeColumns::lanes.
     explicit ColumnStore(std::uint64_t room) : room_(room), columns_(EdgeColumns::columns * room) {
         assert(room % EdgeColumns::lanes == 0);
     }
 
-    /// A place for so many edges, or not_kept where there is no room.
+    /// Reserves space for `edges` edges. Returns its offset, or not_kept if the store is full.
     std::uint64_t reserve(std::size_t edges) {
         const std::size_t stride = EdgeColumns::padded(edges);
         if (room_ - used_ < stride)
@@ -55,8 +55,8 @@ class ColumnStore {
         return columns_.data() + EdgeColumns::columns * place;
     }
 
-    /// Takes back all places. What is still needed is moved to a new place before anything is reserved, in
-    /// ascending order of the old places.
+    /// Releases all reservations. Columns that are still needed must then be moved by move_down before
+    /// anything else is reserved, in ascending order of their old offsets.
     void release() noexcept { used_ = 0; }
     std::uint64_t move_down(std::uint64_t place, std::size_t edges) {
         assert(place >= used_ && place + EdgeColumns::padded(edges) <= room_);
@@ -72,7 +72,7 @@ class ColumnStore {
     PageArray<double> columns_;
 };
 
-/// Prepares the edges of a run for being cut, in memory at `to` that has room for their columns.
+/// Prepares the edges of a run for cutting, at `to`, which must have space for their columns.
 template <class Ends>
 EdgeColumns lay_out_edges(const CutGraph<Ends>& graph, const Ranks& ranks,
                           std::span<const std::uint32_t> nodes, const PointKernels& kernels, double* to) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Who works on a task: the worker that sweeps it alone, or all workers of the executor.
+// The workers of a task: either the one that sweeps it alone, or all workers of the executor.
 
 #include "core/executor.hpp"
 #include "slicing/slabs.hpp"
@@ -16,16 +16,16 @@ namespace lamella {
 
 class Crew {
   public:
-    /// `shared`: all workers take part; nobody else runs a region of the executor meanwhile.
+    /// With `shared`, all workers take part, and nothing else may use the executor meanwhile.
     Crew(Executor& executor, bool shared)
         : executor_(executor), shared_(shared), scratch_(shared ? executor.workers() : 1) {}
 
     [[nodiscard]] const Executor& executor() const noexcept { return executor_; }
     [[nodiscard]] bool shared() const noexcept { return shared_; }
-    /// Of the worker that sweeps.
+    /// Returns the memory of the worker that sweeps.
     [[nodiscard]] Scratch& scratch() noexcept { return scratch_.front(); }
 
-    /// body(i, scratch) for each i in [0, n).
+    /// Calls body(i, scratch) for each i in [0, n).
     template <class Body>
     void for_each(std::uint64_t n, const Body& body) {
         if (!shared_) {
@@ -37,8 +37,8 @@ class Crew {
             n, 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) { body(i, scratch_[worker]); });
     }
 
-    /// body(run, part, scratch) for each run, where `part` is those of the planes that it serves, if there
-    /// are any. Few runs are cut into pieces by their planes, so that all workers have something to do.
+    /// Calls body(run, part, scratch) for each run that serves any of the planes, with the planes that it
+    /// serves as `part`. Divides runs by their planes if there are few of them, so that all workers are busy.
     template <class Body>
     void for_runs(std::span<Run> runs, PlaneRange planes, const Body& body) {
         const auto part_of = [&](const Run& run, std::uint64_t piece, std::uint64_t pieces) -> PlaneRange {
@@ -71,7 +71,7 @@ class Crew {
   private:
     Executor& executor_;
     bool shared_;
-    std::vector<Scratch> scratch_; // one, or one for each worker
+    std::vector<Scratch> scratch_; // one, or one per worker
 };
 
 } // namespace lamella

@@ -17,32 +17,31 @@
 
 // How the graph is built
 //
-// Collect. Workers take chunks of consecutive triangles. An edge is looked up in a small table private to the
-// worker that stays in its second-level cache: most files have the two triangles of an edge close together.
-// Found: the node is complete. Not found: a new node, known from one side so far, takes the slot; whoever sat
-// there is left to the next step. No thread waits for another, and no memory access leaves the cache but to
-// append.
+// Collect. Workers take chunks of consecutive triangles. Each worker looks edges up in a small private table
+// that stays in its second-level cache, because most files have the two triangles of an edge close together.
+// If the edge is found, its node is complete. If not, a new node, known from one side only, takes the slot;
+// the node that it replaces is left to the next step. No thread waits for another, and only appending leaves
+// the cache.
 //
-// Join. Nodes of equal ends are brought together by their hashes (core/key_groups.hpp). Two halves become one
-// node.
+// Join. Hashes bring nodes with equal ends together (core/key_groups.hpp). Two halves become one node.
 //
-// Pair. Where more than two triangles met in an edge, or where hashes collide, the links are assigned anew
-// among the nodes that really have equal ends, by geometry (pairing.hpp).
+// Pair. If an edge has more than two triangles, or if hashes collide, the nodes whose ends are really equal
+// get new links by geometry (pairing.hpp).
 
 namespace lamella {
 
 namespace {
 
-/// Nodes by what is left of their edges' hashes beside the partition: its lower half. Together they are wide
-/// enough that edges which only have that in common are rare.
+/// Nodes with the lower half of the hashes of their edges; the upper bits choose the partition. Edges that
+/// agree in both without being equal are rare.
 using NodePartitions = KeyPartitions<std::uint32_t>;
 
-// What triangles are made of. Corner: what tells a corner from others, as bits: a vertex has the same ones in
-// all its triangles.
+// Sources of triangles. A Corner holds the bits that identify a vertex; they are the same in all triangles of
+// the vertex.
 
 struct FloatCorners {
     using Ends = FloatEnds;
-    /// In two pieces that stay in registers and go to memory, and come from there, as they are.
+    /// Two integers that stay in registers and are read and written without conversion.
     struct Corner {
         std::uint64_t xy;
         std::uint32_t z;
@@ -52,7 +51,7 @@ struct FloatCorners {
     FloatCorners(const TriangleSoup& soup, const Ranks& ranks)
         : data_(soup.data()), stride_(soup.stride()), ranks_(ranks) {}
 
-    /// False when no plane cuts triangle i.
+    /// Returns false if no plane cuts triangle i.
     bool load(std::uint64_t i, std::array<Corner, 3>& corners, std::array<std::uint32_t, 3>& rank) const {
         const std::byte* const triangle = data_ + i * stride_;
         std::array<float, 3> z;
@@ -135,8 +134,7 @@ struct IndexedCorners {
     const PageArray<std::uint32_t>& ranks_;
 };
 
-/// Node numbers come in blocks from one counter, so that workers number nodes without waiting and the numbers
-/// stay dense.
+/// Hands out node numbers in chunks from one counter, so that workers do not wait and the numbers stay dense.
 class CutNodePool {
   public:
     CutNodePool(std::uint64_t capacity, std::uint32_t block) : capacity_(capacity), block_(block) {}
@@ -147,7 +145,7 @@ class CutNodePool {
         std::uint32_t end = 0;
     };
 
-    /// A block that nobody has.
+    /// Returns numbers that no other worker has.
     Block take() {
         const std::uint64_t begin = used_.fetch_add(block_, std::memory_order_relaxed);
         return {begin / block_, static_cast<std::uint32_t>(begin),
@@ -163,8 +161,8 @@ class CutNodePool {
     std::atomic<std::uint64_t> used_{0};
 };
 
-/// One worker's part in collecting. It has copies of what it reads all the time, in memory of its own, so
-/// that no other worker's writing nearby takes that out of its cache.
+/// Collects the nodes of one worker. It copies the data that it reads all the time into memory of its own, so
+/// that writes of other workers nearby do not evict the data from its cache.
 template <class Corners>
 class alignas(128) Collector {
     using Ends = typename Corners::Ends;
@@ -172,7 +170,7 @@ class alignas(128) Collector {
     using Node = CutNode<Ends>;
 
   public:
-    /// `table_size` is a power of two.
+    /// Requires a power of two as `table_size`.
     Collector(const Corners& corners, const CutGraph<Ends>& graph, const NodePartitions& partitions,
               CutNodePool& pool, std::uint32_t block_size, std::size_t table_size)
         : corners_(corners), nodes_(graph.nodes.data()), spans_(graph.spans.data()), partitions_(partitions),
@@ -184,11 +182,11 @@ class alignas(128) Collector {
             add(i);
     }
 
-    /// After the last triangle.
+    /// Must be called after the last triangle.
     void finish() { put_hashes(); }
 
   private:
-    /// The node last seen with this part of a hash, + 1, so that zero is empty.
+    /// The node last seen with this part of a hash, plus 1; 0 if empty.
     struct Slot {
         std::uint32_t tag;
         std::uint32_t node;
@@ -217,8 +215,8 @@ class alignas(128) Collector {
         const std::uint32_t node12 = node_of(1, 2);
         const std::uint32_t node20 = node_of(2, 0);
 
-        // Where an edge runs downwards, contours leave it through this triangle: below the third corner over
-        // the edge at the lower end, above it over the one at the upper end.
+        // Contours leave an edge through the triangle in which it runs downwards: below the third corner over
+        // the edge at its lower end, above that corner over the edge at its upper end.
         const auto link = [&](std::uint32_t from, std::uint32_t upper_rank, std::uint32_t lower_rank,
                               std::uint32_t third_rank, std::uint32_t at_lower, std::uint32_t at_upper) {
             if (upper_rank <= lower_rank)
@@ -248,7 +246,7 @@ class alignas(128) Collector {
             if (other_side && Corners::is(node.ends.low, low) && Corners::is(node.ends.high, high)) {
                 const std::uint32_t found = slot.node - 1;
                 node.entered |= static_cast<unsigned>(entered);
-                slot.node = 0; // complete: a third triangle at this edge must make a node of its own
+                slot.node = 0; // complete: a third triangle at this edge must get a new node
                 return found;
             }
         }
@@ -275,7 +273,7 @@ class alignas(128) Collector {
             block_ = pool_.take();
             next_ = block_.begin;
         }
-        assert(next_ < block_.end); // there are numbers for all nodes that these triangles can have
+        assert(next_ < block_.end); // there are numbers for all nodes of these triangles
         return next_++;
     }
 
@@ -294,13 +292,13 @@ class alignas(128) Collector {
     const NodePartitions& partitions_;
     CutNodePool& pool_;
     CutNodePool::Block block_;
-    std::uint32_t next_ = 0;          ///< number within the block
-    PageArray<std::uint64_t> hashes_; ///< of the block's nodes
+    std::uint32_t next_ = 0;          ///< the next number to assign
+    PageArray<std::uint64_t> hashes_; ///< hashes of the nodes with these numbers
     PageArray<Slot> table_;
 };
 
-/// Whether every node in use leads on, on all planes that cut it, to nodes that these planes cut; or on none
-/// of them, where the mesh ends. And whether as many contours arrive as leave, which makes links one to one.
+/// Returns whether every node in use links to nodes that its planes cut, on all of its planes or, where the
+/// mesh ends, on none; and whether as many contours arrive as leave, which makes links one to one.
 template <class Ends>
 [[maybe_unused]] bool is_complete(const CutGraph<Ends>& graph) {
     std::uint64_t leaving = 0;
@@ -340,7 +338,7 @@ class Builder {
     }
 
     CutGraph<Ends> build() {
-        // At most three nodes for each triangle, and one partly used block for each worker.
+        // There are at most three nodes per triangle, and one partly used chunk of numbers per worker.
         const auto block = static_cast<std::uint32_t>(
             std::clamp<std::uint64_t>(3 * triangles_ / workers_ + 3, 3, partitions_.block_size()));
         const std::uint64_t capacity = 3 * triangles_ + std::uint64_t{block} * workers_;
@@ -366,15 +364,15 @@ class Builder {
   private:
     /// Two nodes of equal hash.
     struct Meeting {
-        std::uint32_t first; ///< the same at each meeting of a group
+        std::uint32_t first; ///< the same in all pairs with one hash
         std::uint32_t other;
     };
 
     struct Worker {
         std::unique_ptr<Collector<Corners>> collector;
-        std::array<Meeting, 16> meetings; ///< under way, oldest at `met` modulo their number
+        std::array<Meeting, 16> meetings; ///< pending, the oldest at `met` modulo their number
         std::size_t met = 0;
-        std::vector<std::uint32_t> crowded; ///< nodes that share their hash with others, repeated
+        std::vector<std::uint32_t> crowded; ///< nodes that share their hash with others, with repetitions
     };
 
     void collect(CutNodePool& pool, std::uint32_t block) {
@@ -399,7 +397,7 @@ class Builder {
                 worker.collector->finish();
     }
 
-    /// In stretches that are still in the cache when they are added.
+    /// Visits and adds small chunks of triangles, so that they are still in the cache when they are added.
     void add_visited(Collector<Corners>& collector, std::uint64_t begin, std::uint64_t end) const {
         constexpr std::uint64_t stretch = 1024;
         for (; begin < end; begin += std::min(stretch, end - begin)) {
@@ -412,7 +410,7 @@ class Builder {
         partitions_.join(
             executor_, [](std::uint32_t hash) { return hash; },
             [&](std::uint32_t first, std::uint32_t other, unsigned w) {
-                // The two nodes may lie anywhere: they are looked at a while after they are asked for.
+                // The two nodes may be anywhere in memory: prefetch them now and use them later.
                 Worker& worker = worker_[w];
                 __builtin_prefetch(&graph_.nodes[first], 1);
                 __builtin_prefetch(&graph_.nodes[other], 1);
@@ -428,7 +426,7 @@ class Builder {
                 meet(worker.meetings[i % places], worker.crowded);
             crowded_.insert(crowded_.end(), worker.crowded.begin(), worker.crowded.end());
         }
-        // A half may have been in a crowd before it became part of another node, which then stands for it.
+        // A half may have been recorded before it became part of another node, which then replaces it.
         for (std::uint32_t& id : crowded_)
             if (!graph_.nodes[id].in_use())
                 id = graph_.nodes[id].split;
@@ -438,7 +436,7 @@ class Builder {
         Node& a = graph_.nodes[meeting.first];
         Node& b = graph_.nodes[meeting.other];
         if (!a.in_use()) {
-            // It is one node with another one already: three are a crowd.
+            // It already became part of another node, so the edge has at least three halves.
             crowded.insert(crowded.end(), {a.split, meeting.other});
             return;
         }
@@ -452,8 +450,9 @@ class Builder {
         }
     }
 
-    /// Nodes are known by the edges that lead to them, so the entered half stays and takes the other's links.
-    /// The other one is no longer in use; as its split it keeps the number of the node that it is part of.
+    /// Nodes are referred to by the edges that link to them, so the entered half stays and takes the links of
+    /// the other half. The other half is no longer in use; its split becomes the number of the node that it
+    /// is part of.
     void unite(std::uint32_t entered_half, std::uint32_t left_half) {
         Node& entered = graph_.nodes[entered_half];
         Node& left = graph_.nodes[left_half];
@@ -477,7 +476,7 @@ class Builder {
     std::vector<Worker> worker_;
     NodePartitions partitions_;
     CutGraph<Ends> graph_;
-    std::vector<std::uint32_t> crowded_; // nodes that share their ends with others, in no order, repeated
+    std::vector<std::uint32_t> crowded_; // nodes that share their ends, unordered, with repetitions
 };
 
 } // namespace

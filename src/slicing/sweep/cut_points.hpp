@@ -1,6 +1,6 @@
 #pragma once
 
-// The points of one contour on one plane, and where it starts in normal form
+// The points of one contour on one plane, and the point where the contour starts in normal form
 // (lamella/contour/normal_form.hpp).
 
 #include "lamella/contour/normal_form.hpp"
@@ -17,17 +17,17 @@
 
 namespace lamella {
 
-/// Where a ring starts in normal form.
+/// The start of a ring in normal form.
 struct RingStart {
     std::size_t index;
-    bool alone; ///< no other point's x is within the tolerance of the least x
-    bool flat;  ///< the ring is a line
+    bool alone; ///< true if no other x is within the tolerance of the least x
+    bool flat;  ///< true if the ring is a line
 };
 
-/// Points in walk order, in memory that serves one contour after the other.
+/// Points in walk order, in memory that is reused for each contour.
 class CutPoints {
   public:
-    /// The cuts of a contour's edges with the plane z, in place of what was here before.
+    /// Replaces the points by the cuts of a contour's edges with the plane z.
     CutSurvey compute(const EdgeColumns& edges, double z) {
         const std::size_t room = EdgeColumns::padded(edges.size);
         if (x_.size() < room) {
@@ -44,7 +44,7 @@ class CutPoints {
         return {x_[i], y_[i]};
     }
 
-    /// The square of the distance between the first point and the last.
+    /// Returns the square of the distance between the first and the last point.
     [[nodiscard]] double squared_closing() const noexcept {
         const double dx = x_[0] - x_[size_ - 1];
         const double dy = y_[0] - y_[size_ - 1];
@@ -67,8 +67,9 @@ class CutPoints {
         size_ = kept;
     }
 
-    /// Of a ring of three points or more, with no point equal to its predecessor, whose least x is `least`.
-    /// `had_repeats`: some were dropped, so that the ring may be a line that turns at a point of two or more.
+    /// Returns the start of a ring. Requires three points or more, none equal to its predecessor, and `least`
+    /// as their least x. `had_repeats` states that repeated points were dropped; the ring may then be a line
+    /// even if it does not fold at its start.
     [[nodiscard]] RingStart start(double least, double tolerance, bool had_repeats) const {
         assert(size_ >= 3);
         const auto next_within = [&](std::size_t from, double value) {
@@ -93,7 +94,7 @@ class CutPoints {
         const CutPoints& points = *this;
         const std::size_t before = start == 0 ? size_ - 1 : start - 1;
         const std::size_t after = start + 1 == size_ ? 0 : start + 1;
-        // A ring turns at its smallest point, unless it comes back upon itself.
+        // A ring turns at its smallest point, unless it folds back there.
         const bool fold = orientation(points[before], points[start], points[after]) == 0;
         if (had_repeats || tie || fold) {
             std::vector<Point2> ring(size_);

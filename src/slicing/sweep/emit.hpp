@@ -1,8 +1,9 @@
 #pragma once
 
-// Emitting layers: when a stretch of planes is complete, the contours of each layer are put in order, each
-// has its place in its layer's array, and its points are computed again, straight into that place. To compute
-// twice is cheaper than to move once: arithmetic in the cache costs a fraction of a trip to memory.
+// Emitting layers: when all contours of a range of planes are known, they are sorted within each layer, each
+// gets its offset in the layer's array, and its points are computed again, directly into that array.
+// Computing twice is cheaper than moving once: arithmetic in the cache costs a fraction of an access to
+// memory.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/normal_form.hpp"
@@ -25,14 +26,14 @@
 
 namespace lamella {
 
-/// A contour that its layer is to have.
+/// A contour of a future layer.
 struct LayerEntry {
     Point2 first;
     std::uint64_t ring; ///< its index
     bool closed;
 };
 
-/// For each plane of a task: the contours that its layer is to have.
+/// The contours of the layer on each plane of a task.
 class EntryLists {
   public:
     void begin_task(PlaneRange planes) {
@@ -40,7 +41,7 @@ class EntryLists {
         lists_.assign(planes.size(), {});
     }
 
-    /// Adds the contours of these runs on planes from `plane` on; their rings are measured.
+    /// Adds the contours of these runs on planes from `plane` on. Requires that their rings are measured.
     void add(std::span<const Run> runs, Runs& all, std::uint32_t plane) {
         for (const Run& run : runs) {
             for (std::uint32_t p = std::max(run.begin, plane); p < run.end; ++p) {
@@ -67,8 +68,8 @@ class EntryLists {
     std::vector<std::vector<LayerEntry>> lists_;
 };
 
-/// Computes the points of a ring into `to`, which has room for ring.count of them. `past_cache`: they are not
-/// read soon.
+/// Computes the points of a ring into `to`, which must have space for ring.count points. `past_cache` is for
+/// points that are not read soon.
 inline void write_ring(const Outline& outline, double z, const Ring& ring, Point2* to, bool past_cache,
                        Scratch& scratch) {
     const EdgeColumns& edges = outline.edges;
@@ -89,8 +90,8 @@ inline void write_ring(const Outline& outline, double z, const Ring& ring, Point
     assert(to[0] == ring.first);
 }
 
-/// Contours that start at the same point (they touch there) are ordered by all their points.
-/// edges_of(run, scratch) are the prepared edges of a run.
+/// Sorts contours that start at the same point, where they touch, by all their points. edges_of(run, scratch)
+/// must return the prepared edges of a run.
 template <class EdgesOf>
 void sort_by_sequence(std::span<LayerEntry> entries, double z, Runs& runs, const EdgesOf& edges_of,
                       Scratch& scratch) {
@@ -108,7 +109,7 @@ void sort_by_sequence(std::span<LayerEntry> entries, double z, Runs& runs, const
         entries[i] = contours[i].second;
 }
 
-/// Puts the contours of a plane in the order of the normal form.
+/// Sorts the contours of a plane into the order of the normal form.
 template <class EdgesOf>
 void put_in_order(std::vector<LayerEntry>& entries, double z, Runs& runs, const EdgesOf& edges_of,
                   Scratch& scratch) {
@@ -128,7 +129,7 @@ void put_in_order(std::vector<LayerEntry>& entries, double z, Runs& runs, const 
     assert(std::is_sorted(entries.begin(), entries.end(), before));
 }
 
-/// Gives each contour its place in the layer's array; the offsets of the layer are these places.
+/// Assigns each contour its offset in the layer's array; these are the offsets of the layer.
 inline void place_contours(const std::vector<LayerEntry>& entries, Runs& runs, Layer& layer) {
     layer.offsets.resize(entries.size() + 1);
     std::uint64_t size = 0;
@@ -141,13 +142,13 @@ inline void place_contours(const std::vector<LayerEntry>& entries, Runs& runs, L
     }
 }
 
-/// Writes the layers of these planes, whose contours are all known, and delivers them.
+/// Computes and delivers the layers of these planes. Requires that all their contours are known.
 template <class EdgesOf>
 void emit(PlaneRange planes, const Plan& plan, const Ranks& ranks, Runs& runs, EntryLists& entries,
           const EdgesOf& edges_of, Crew& crew, PointArena& arena, OrderedDelivery& delivery) {
     constexpr std::uint64_t large_layer = (std::uint64_t{2} << 20) / sizeof(Point2); // a large page
     struct Outgoing {
-        std::uint64_t begin = 0; ///< of its points in the piece of memory that these layers share
+        std::uint64_t begin = 0; ///< offset of its points in the memory that these layers share
         Layer layer;
     };
     assert(planes.end <= plan.layers.size());
@@ -166,8 +167,8 @@ void emit(PlaneRange planes, const Plan& plan, const Ranks& ranks, Runs& runs, E
     }
 
     const PointArena::Piece piece = arena.take(total);
-    // The rings of a run are written layer after layer. Where layers are large, each line of memory has left
-    // the cache since its page was cleared or used before, and is best not fetched again.
+    // The rings of a run are written layer after layer. If layers are large, each cache line was evicted
+    // since its page was last cleared or used, and is best not fetched again.
     const bool past_cache = outgoing.size() > 1 && total / outgoing.size() >= large_layer;
     crew.for_runs(runs.all(), planes, [&](const Run& run, PlaneRange part, Scratch& scratch) {
         Outline outline{{}, run.closed};

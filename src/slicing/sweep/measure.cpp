@@ -11,24 +11,25 @@
 #include <cstdint>
 #include <limits>
 
-// From plane to plane of a run its points move along straight lines. Hence a point that is the leftmost by
-// far on two planes is so between them. Neighbours lie on two edges of a triangle and come together in a
-// corner that is not between the planes: the nearer they are to it the closer, so they are farther from one
-// another between the planes than on one of them. Where a run's first and last plane agree on the start, and
-// all is clear there by more than what rounding can do, the planes between are not measured; else it is
-// halved.
+// From plane to plane of a run its points move along straight lines. Hence a point that is the leftmost by a
+// clear margin on two planes is also the leftmost between them. Two neighbours lie on two edges of a
+// triangle, which meet in a corner outside the range of planes. Their distance grows with the distance from
+// the corner, so between two planes it is larger than on one of the two. If the first and last plane of a run
+// agree on the start, and all margins there exceed rounding errors, the planes between them are not measured.
+// Otherwise the range is halved.
 
 namespace lamella {
 
 namespace {
 
-/// Points whose computed distance exceeds this on two planes of a run are distinct between them, and vice
-/// versa. 0 where that cannot be told.
+/// Returns the tolerance: points whose computed distance exceeds it on two planes of a run are distinct
+/// between them, and likewise for the margin of the leftmost point. Returns 0 if no tolerance can be given.
 ///
-/// As computed a point is less than 7 * 2^-52 times the extent below away from its place (EdgeCut, and no
-/// edge of the run is lower than the distance of the two planes, so that no inverse overflows). Where two
-/// distances are a and b at least in truth, so is every distance between them if it moves along a line. Four
-/// points are in play, two there and two here: 28, and sqrt(2) times as much in the plane.
+/// A computed point is less than 7 * 2^-52 times the extent below away from its exact location (EdgeCut; no
+/// edge of the run is lower than the distance of the two planes, so no inverse overflows). If two exact
+/// distances are at least a and b, and the distance moves along a line, every distance between them is at
+/// least the smaller of a and b. Four points are involved, two on each side of the comparison: 28, times
+/// sqrt(2) in the plane.
 double tolerance_of(const EdgeColumns& edges, double height, const PointKernels& kernels) {
     assert(height > 0);
     const std::size_t stride = edges.stride();
@@ -43,7 +44,7 @@ double tolerance_of(const EdgeColumns& edges, double height, const PointKernels&
     return known ? tolerance : 0;
 }
 
-/// The measuring of one run.
+/// Measures one run.
 class Measurement {
   public:
     Measurement(const Outline& outline, PlaneRange planes, const Ranks& ranks, const Executor& executor,
@@ -51,8 +52,8 @@ class Measurement {
         : outline_(outline), begin_(planes.begin), ranks_(ranks), executor_(executor), rings_(rings),
           scratch_(scratch) {}
 
-    /// Computes the ring of a plane. True when its start is the leftmost point by more than the tolerance and
-    /// all neighbours are farther than that from one another; never when that is 0.
+    /// Computes the ring of a plane. Returns true if its start is the leftmost point by more than the
+    /// tolerance and all neighbours are farther apart than that; always false for tolerance 0.
     bool measure_plane(std::uint32_t plane, double tolerance) {
         end_if_stopping(executor_);
         const bool closed = outline_.closed;
@@ -79,13 +80,13 @@ class Measurement {
         return tolerance > 0 && start.alone && closest > tolerance * tolerance;
     }
 
-    /// A plane that is measured, and whether all was clear there.
+    /// A measured plane, with the result of measure_plane.
     struct Measured {
         std::uint32_t plane;
         bool clear;
     };
 
-    /// Computes the rings between two planes on which they are known.
+    /// Computes the rings between two planes whose rings are known.
     void measure_between(Measured low, Measured high, double tolerance) {
         assert(low.plane < high.plane);
         if (high.plane - low.plane < 2)
@@ -103,7 +104,7 @@ class Measurement {
     }
 
   private:
-    /// Computes a ring that has all its points and starts at the one leftmost point, which is known.
+    /// Computes a ring that keeps all its points and whose only leftmost point is known.
     void reuse_start(std::uint32_t plane, std::uint32_t start) {
         const EdgeColumns& edges = outline_.edges;
         assert(outline_.closed && start < edges.size);
@@ -116,14 +117,14 @@ class Measurement {
         const Point2 first = point(start);
         const Point2 before = point(start == 0 ? edges.size - 1 : start - 1);
         const Point2 after = point(start + 1 == edges.size ? 0 : start + 1);
-        if (orientation(before, first, after) == 0) // it may be a line
+        if (orientation(before, first, after) == 0) // the ring may be a line
             measure_plane(plane, 0);
         else
             rings_[plane - begin_] = {first, start, static_cast<std::uint32_t>(edges.size), 0};
     }
 
     const Outline& outline_;
-    std::uint32_t begin_; // the plane of the first ring
+    std::uint32_t begin_; // plane of the first ring
     const Ranks& ranks_;
     const Executor& executor_;
     std::span<Ring> rings_;
@@ -144,7 +145,7 @@ void measure_rings(const Outline& outline, PlaneRange planes, const Ranks& ranks
     assert(outline.edges.size > 0);
     Measurement measurement(outline, planes, ranks, executor, rings, scratch);
     constexpr std::uint32_t worth_a_tolerance = 4; // planes
-    const bool snaps = ranks.snap_mm() > 0;        // then points leave their lines where a plane is near
+    const bool snaps = ranks.snap_mm() > 0;        // snapped points leave their lines
     if (!outline.closed || planes.size() < worth_a_tolerance || snaps) {
         for (std::uint32_t plane = planes.begin; plane < planes.end; ++plane)
             measurement.measure_plane(plane, 0);

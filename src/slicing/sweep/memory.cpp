@@ -6,14 +6,14 @@
 namespace lamella {
 
 std::uint64_t SlabMemory::bytes(const SlabNeeds& slab) const noexcept {
-    // While nodes are joined, each has its hash and a record beside it; afterwards its place in the order of
-    // starts and, at most, in the list of one task that it reaches into, and each worker marks in an array of
-    // all nodes where it has been.
+    // While nodes are joined, 20 bytes are allowed for the record of each. Later each node has an entry in
+    // the order of starts and, at most, in the list of one task that it reaches into; and each worker has an
+    // array with one entry per node for the nodes that it visited.
     constexpr std::uint64_t joining = sizeof(std::uint64_t) + 12;
     const std::uint64_t walking = 8 + 4 * std::uint64_t{threads};
     const std::uint64_t node = (placed ? sizeof(CutNode<DoubleEnds>) : sizeof(CutNode<FloatEnds>)) +
                                sizeof(PlaneSpan) + std::max(joining, walking);
-    // A point, and the text that a sink makes of it.
+    // A point and the text that a sink makes of it.
     constexpr std::uint64_t point = sizeof(Point2) + 40;
     const std::uint64_t in_flight =
         std::min(std::max(points_in_flight, 2 * slab.most_points), slab.points + slab.most_points);

@@ -1,7 +1,7 @@
 #pragma once
 
-// From layers in any order to a sink's actions in ascending order, with a bound on how far ahead anyone may
-// run.
+// Accepts layers in any order and runs the sink's actions in ascending order, with a bound on how far ahead
+// workers may run.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/slicing/slice.hpp"
@@ -18,21 +18,21 @@
 
 namespace lamella {
 
-/// Hands layers to a sink. The sink's parallel part runs on the calling thread; its ordered parts run one at
-/// a time in plane order, on whichever thread brings the layer that was waited for.
+/// Hands layers to a sink. The parallel part of the sink runs on the calling thread. Its ordered parts run
+/// one at a time in plane order, on the thread that brings the next layer in order.
 class OrderedDelivery {
   public:
     OrderedDelivery(const LayerSink& sink, const Executor& executor, ProgressMeter& progress)
         : sink_(sink), executor_(executor), progress_(progress) {}
 
-    /// Thread-safe. `plane` is the position in the plan; each is delivered once.
+    /// Delivers the layer at position `plane` of the plan. Each layer must be delivered once. Thread-safe.
     void deliver(std::uint32_t plane, Layer&& layer) {
         std::function<void()> action = sink_(std::move(layer));
         std::unique_lock lock(mutex_);
-        assert(plane >= next_ && !waiting_.contains(plane)); // none is delivered twice
+        assert(plane >= next_ && !waiting_.contains(plane)); // no layer is delivered twice
         waiting_.emplace(plane, std::move(action));
         if (draining_)
-            return; // whoever drains will come to it
+            return; // the draining thread will run it
         draining_ = true;
         try {
             while (!waiting_.empty() && waiting_.begin()->first == next_) {
@@ -56,7 +56,7 @@ class OrderedDelivery {
         draining_ = false;
     }
 
-    /// Waits until all planes before `plane` are delivered. Returns false when slicing is being given up.
+    /// Waits until all planes before `plane` are delivered. Returns false if slicing stops.
     [[nodiscard]] bool wait_for(std::uint32_t plane) {
         std::unique_lock lock(mutex_);
         while (next_ < plane) {
@@ -67,7 +67,7 @@ class OrderedDelivery {
         return true;
     }
 
-    /// How many layers the sink is done with; while nobody delivers.
+    /// Returns the number of layers that the sink has finished. Must not be called during a delivery.
     [[nodiscard]] std::uint32_t delivered() const noexcept { return next_; }
 
   private:

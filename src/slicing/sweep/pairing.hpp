@@ -1,12 +1,12 @@
 #pragma once
 
-// Edges with more than two triangles: which arriving triangle goes with which leaving one.
+// Non-manifold edges: pairs each arriving triangle with a leaving one.
 //
-// Around such an edge, seen from above, lie the traces of its triangles as rays. A contour arrives along one
-// ray and leaves along another with the material on its left. So going counter-clockwise a leaving ray opens
-// a wedge of material and an arriving ray closes one: like brackets, an arrival is paired with the nearest
-// open leaving ray before it. Wedges of separate bodies that touch in the edge stay separate, and no two
-// contours cross there.
+// Seen from above, the traces of the triangles of such an edge are rays around a point. A contour arrives
+// along one ray and leaves along another with the material on its left. Counter-clockwise, a leaving ray
+// therefore opens a wedge of material and an arriving ray closes one. They are matched like brackets: an
+// arriving ray is paired with the nearest open leaving ray before it. Wedges of separate bodies that touch in
+// the edge stay separate, and no two contours cross there.
 
 #include "slicing/sweep/cut_graph.hpp"
 
@@ -27,16 +27,17 @@ namespace pairing {
 struct Ray {
     bool arrives;
     float angle;            ///< monotone in the true angle, in [4, 8); rounded, so that coplanar rays tie
-    Point3 third;           ///< the triangle's corner off the edge
-    std::uint32_t triangle; ///< tells identical triangles apart
-    std::uint32_t node;     ///< arriving: that the contour arrives at; leaving: whose links it follows
+    Point3 third;           ///< the triangle's corner that is not on the edge
+    std::uint32_t triangle; ///< distinguishes identical triangles
+    std::uint32_t node;     ///< arriving: the node it arrives at; leaving: index of the links it follows
 };
 
-/// The direction from the edge to the third corner, projected along the edge into a horizontal plane.
+/// Returns the angle of the direction from the edge to the third corner, projected along the edge into a
+/// horizontal plane.
 inline float ray_angle(const Point3& low, const Point3& high, const Point3& third) {
-    // Scaled by powers of two, which changes no digit: else differences, and products of them, of coordinates
-    // above 1e154 overflow to a NaN, which has no place in an order. Heights have a scale of their own, so
-    // that a flat and wide mesh does not vanish.
+    // Scaling by powers of two changes no digit. Without it, differences of coordinates above 1e154 and their
+    // products overflow to NaN, which cannot be sorted. Heights have a scale of their own, so that a flat and
+    // wide mesh does not vanish.
     const double largest =
         std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z), std::abs(high.x), std::abs(high.y),
                   std::abs(high.z), std::abs(third.x), std::abs(third.y), std::abs(third.z)});
@@ -64,16 +65,16 @@ inline float ray_angle(const Point3& low, const Point3& high, const Point3& thir
     const double y = third_y * dz - up * edge_y;
     const double size = std::abs(x) + std::abs(y);
     if (!(size > 0))
-        return 4; // all three corners on a line: no direction
+        return 4; // all three corners are collinear: there is no direction
     const double slope = x / size;
-    // Far from 0, where floats would tell rounding errors apart; and what lies just before the whole turn, by
-    // such an error, is where it begins.
+    // The range [4, 8) is so far from 0 that floats do not distinguish rounding errors. An angle that such an
+    // error puts just below the full turn becomes the first angle.
     const auto angle = static_cast<float>(y >= 0 ? 5 - slope : 7 + slope);
     return angle < 8 ? angle : 4;
 }
 
-/// Counter-clockwise; at the same angle wedges close before others open, and identical triangles nest, so
-/// that every copy of a duplicated body is linked to itself.
+/// Orders rays counter-clockwise. At the same angle wedges close before others open, and identical triangles
+/// nest, so that every copy of a duplicated body is linked to itself.
 inline bool before(const Ray& a, const Ray& b) {
     if (a.angle != b.angle)
         return a.angle < b.angle;
@@ -85,7 +86,7 @@ inline bool before(const Ray& a, const Ray& b) {
     return a.arrives ? key(b) < key(a) : key(a) < key(b);
 }
 
-/// The pairs (arriving, leaving) as indices into the sorted rays; what stays over is left out.
+/// Returns the pairs (arriving, leaving) as indices into the sorted rays. Unpaired rays are omitted.
 inline std::vector<std::pair<std::size_t, std::size_t>> match(const std::vector<Ray>& rays) {
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
     std::vector<std::size_t> open;
@@ -100,7 +101,7 @@ inline std::vector<std::pair<std::size_t, std::size_t>> match(const std::vector<
             unmatched.push_back(i);
         }
     }
-    // Once more around: wedges that lie across the angle zero.
+    // A second turn pairs wedges that contain the angle zero.
     for (const std::size_t i : unmatched) {
         if (open.empty())
             break;
@@ -114,9 +115,9 @@ inline std::vector<std::pair<std::size_t, std::size_t>> match(const std::vector<
 
 } // namespace pairing
 
-/// Assigns the links of nodes with equal ends anew. `crowded` names every such node at least once; nodes
-/// not in use are passed over. Returns the number of edges. O(nodes of the graph), and only called when there
-/// are any.
+/// Assigns new links to nodes with equal ends. `crowded` must contain every such node at least once; nodes
+/// not in use are ignored. Returns the number of non-manifold edges. O(nodes of the graph + c log c) for c
+/// crowded nodes; only called if there are any.
 template <class Ends>
 std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_t> crowded,
                                  Executor& executor) {
@@ -138,7 +139,8 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
         return low_is_shared ? graph.high(other) : graph.low(other);
     };
 
-    // Arriving triangles are known to the nodes before the edge: one pass over all nodes finds them.
+    // The triangle that arrives at a node is stored in the node that links to it: one pass over all nodes
+    // finds it.
     std::vector<bool> is_crowded(graph.count);
     for (const std::uint32_t id : crowded)
         is_crowded[id] = true;
@@ -161,7 +163,7 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
     std::vector<Arrival> arrivals;
     for (std::vector<Arrival>& part : found) {
         arrivals.insert(arrivals.end(), part.begin(), part.end());
-        part = std::vector<Arrival>(); // lets go of the memory, too
+        part = std::vector<Arrival>(); // frees the memory
     }
     const auto by_node = [](const Arrival& a, const Arrival& b) {
         return a.node < b.node;
@@ -183,7 +185,7 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
         PlaneSpan span{};
         rays.clear();
         links.clear();
-        std::vector<std::uint32_t> spare; // nodes that no contour arrives at, to carry links that stay over
+        std::vector<std::uint32_t> spare; // nodes without an arriving contour, for the unpaired links
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t id = crowded[i];
             Node& node = graph.nodes[id];
@@ -226,7 +228,7 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
             place(rays[arriving].node, rays[leaving].node);
         for (std::uint32_t link = 0; link < links.size(); ++link) {
             if (!placed[link]) {
-                assert(!spare.empty()); // a link that no contour arrives at came with a node of that kind
+                assert(!spare.empty()); // each unpaired link came with such a node
                 place(spare.back(), link);
                 spare.pop_back();
             }

@@ -1,6 +1,6 @@
 #pragma once
 
-// How many nodes of the cut graph are alive on each plane, and how many begin there.
+// Numbers of nodes of the cut graph that are alive on each plane, and that begin there.
 
 #include "core/executor.hpp"
 #include "slicing/sweep/cut_graph.hpp"
@@ -13,24 +13,24 @@
 
 namespace lamella {
 
-/// A worker's fixed share of the nodes, and how many of them begin and end on each plane.
+/// A chunk of consecutive nodes for one worker, and the numbers of them that begin and end on each plane.
 struct NodeShare {
     std::uint32_t begin;
     std::uint32_t end;
     std::vector<std::uint32_t> begins; ///< per plane, and one more entry
-    std::vector<std::uint32_t> ends;   ///< likewise: on the plane behind the last one that cuts the node
+    std::vector<std::uint32_t> ends;   ///< likewise, on the plane after the last one that cuts the node
 };
 
 struct PlaneLoads {
-    std::vector<std::uint64_t> points; ///< per plane: the nodes alive on it, each of which is a point there
-    std::vector<std::uint64_t> begun;  ///< per plane, and one more entry: nodes that begin before it
-    std::uint64_t most_points = 0;     ///< on one plane
-    std::uint64_t all_points = 0;      ///< on all planes
+    std::vector<std::uint64_t> points; ///< per plane: nodes alive on it, each of which is a point there
+    std::vector<std::uint64_t> begun;  ///< per plane, and one more: nodes that begin before it
+    std::uint64_t most_points = 0;     ///< largest number on one plane
+    std::uint64_t all_points = 0;      ///< sum over all planes
 
     [[nodiscard]] std::uint32_t planes() const noexcept { return static_cast<std::uint32_t>(points.size()); }
 };
 
-/// Divides the nodes into as many shares as are worth a worker each, and counts.
+/// Divides the nodes into chunks, at most one per worker and each large enough for a thread, and counts them.
 template <class Ends>
 std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t planes, Executor& executor) {
     constexpr std::uint64_t worth_a_thread = 1U << 15; // nodes
@@ -54,7 +54,7 @@ std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t pl
     return result;
 }
 
-/// Adds the shares up.
+/// Returns the sums over all chunks.
 inline PlaneLoads loads_of(const std::vector<NodeShare>& shares, std::uint32_t planes) {
     PlaneLoads loads;
     loads.points.resize(planes);
@@ -75,7 +75,7 @@ inline PlaneLoads loads_of(const std::vector<NodeShare>& shares, std::uint32_t p
         loads.begun[p + 1] = loads.begun[p] + begins;
     }
     assert(loads.begun.front() == 0);
-    assert(planes == 0 || loads.points.front() == loads.begun[1]); // nothing is alive before it begins
+    assert(planes == 0 || loads.points.front() == loads.begun[1]); // no node is alive before it begins
     return loads;
 }
 

@@ -1,7 +1,5 @@
 #pragma once
 
-// Memory for points.
-
 #include "lamella/core/point.hpp"
 
 #include "core/pages.hpp"
@@ -16,12 +14,12 @@
 
 namespace lamella {
 
-/// Memory for the points of layers, in blocks that live as long as a layer uses them. Blocks are large, so
-/// that they lie in large pages; only what is touched of them takes memory. A block that its layers let go of
-/// while slicing goes on is used again: memory that was written before costs a fraction of fresh memory.
+/// Memory for the points of layers. Memory is allocated in large areas, so that they lie in large pages; only
+/// touched parts take memory. An area lives as long as a layer uses it. An area that its layers released
+/// during slicing is reused: memory that was written before costs a fraction of fresh memory.
 class PointArena {
   public:
-    /// `expected`: the points of the whole result; small results take small blocks.
+    /// Expects this many points in the whole result; small results get small areas.
     explicit PointArena(std::uint64_t expected)
         : usual_(std::min(expected, largest_usual)), returned_(std::make_shared<Returned>()) {}
 
@@ -45,7 +43,7 @@ class PointArena {
   private:
     static constexpr std::uint64_t largest_usual = (std::uint64_t{8} << 20) / sizeof(Point2);
 
-    /// Moved from list to list, which takes no memory: a destructor gives it back.
+    /// A list, because moving an element between lists allocates nothing: a destructor returns the memory.
     using Memory = std::list<PageArray<Point2>>;
 
     struct Returned {
@@ -64,8 +62,8 @@ class PointArena {
         Block(const Block&) = delete;
         Block& operator=(const Block&) = delete;
 
-        Memory memory;                    ///< one array
-        std::weak_ptr<Returned> returned; ///< gone when slicing is over: then the memory goes too
+        Memory memory;                    ///< a single array
+        std::weak_ptr<Returned> returned; ///< expired after slicing; then the memory is freed
     };
 
     Memory find_memory(std::uint64_t size) {
@@ -79,7 +77,7 @@ class PointArena {
                 found.splice(found.end(), returned, large);
                 return found;
             }
-            returned.clear(); // all too small by now
+            returned.clear(); // all are too small now
         }
         found.emplace_back(std::max(size + size / 8, usual_));
         return found;

@@ -10,19 +10,19 @@
 #include <limits>
 #include <utility>
 
-// The width of the vectors is a template parameter; each instantiation is inlined into a function that is
+// The width of the vectors is a template parameter. Each instantiation is inlined into a function that is
 // compiled for the instruction set of that width.
 
 namespace lamella {
 
 namespace {
 
-/// At a multiple of 64 bytes.
+/// Returns whether a column starts at a multiple of 64 bytes.
 [[maybe_unused]] bool is_aligned(const double* column) {
     return reinterpret_cast<std::uintptr_t>(column) % 64 == 0;
 }
 
-/// EdgeCut::shortened.
+/// Computes EdgeCut::shortened.
 template <int width>
 [[gnu::always_inline]] inline void shorten(const typename Vector<width>::Doubles& from,
                                            typename Vector<width>::Doubles& to) {
@@ -55,7 +55,7 @@ template <int width>
     }
 }
 
-/// The cuts of `width` edges, from edge i on. `snaps`: edges.snap is above 0.
+/// Computes the cuts of `width` edges from edge i on. `snaps` must be true if edges.snap is above 0.
 template <int width, bool snaps>
 [[gnu::always_inline]] inline void cut_some(const EdgeColumns& edges, std::size_t i, double z,
                                             typename Vector<width>::Doubles& x,
@@ -75,7 +75,7 @@ template <int width, bool snaps>
     y = at<width>(column + 4 * stride).v + s * at<width>(column + 5 * stride).v;
 }
 
-/// (before[last], v[0], ..., v[last - 1])
+/// Computes (before[last], v[0], ..., v[last - 1]).
 template <int width, std::size_t... k>
 [[gnu::always_inline]] inline void
 shift_in(const typename Vector<width>::Doubles& before, const typename Vector<width>::Doubles& v,
@@ -93,7 +93,7 @@ template <int width, bool snaps>
     constexpr double infinity = std::numeric_limits<double>::infinity();
     V least = V{} + infinity;
     V closest = V{} + infinity;
-    // NaN is not less than anything: the first point has no predecessor.
+    // The first point has no predecessor: NaN is not less than anything.
     V x_before = V{} + std::numeric_limits<double>::quiet_NaN();
     V y_before = x_before;
     std::size_t i = 0;
@@ -135,7 +135,7 @@ template <int width, bool snaps>
     return result;
 }
 
-/// (x[0], y[0], x[1], y[1], ...) in two vectors.
+/// Computes (x[0], y[0], x[1], y[1], ...) in two vectors.
 template <int width, std::size_t... k>
 [[gnu::always_inline]] inline void
 interleave(const typename Vector<width>::Doubles& x, const typename Vector<width>::Doubles& y,
@@ -145,7 +145,7 @@ interleave(const typename Vector<width>::Doubles& x, const typename Vector<width
     second = __builtin_shufflevector(x, y, (k % 2 * width + k / 2 + width / 2)...);
 }
 
-/// Stores past the cache. `to` is a multiple of the vector's size.
+/// Stores past the cache. `to` must be a multiple of the vector's size.
 template <int width>
 [[gnu::always_inline]] inline void stream(const typename Vector<width>::Doubles& v, double* to) {
     [[maybe_unused]] auto& place = *reinterpret_cast<typename Vector<width>::Doubles*>(to);
@@ -162,7 +162,7 @@ template <int width>
 #endif
 }
 
-/// Makes what was streamed visible before whatever this thread stores next.
+/// Makes the streamed data visible before any later store of this thread.
 [[gnu::always_inline]] inline void end_stream() {
 #if defined(__x86_64__)
     asm volatile("sfence" : : : "memory");
@@ -185,7 +185,7 @@ template <int width, bool past_cache, bool snaps>
                                        Point2* to) {
     using V = typename Vector<width>::Doubles;
     constexpr auto lanes = std::make_index_sequence<width>{};
-    constexpr std::uintptr_t line = 64; // only whole lines are worth going past the cache
+    constexpr std::uintptr_t line = 64; // only whole lines are worth writing past the cache
     assert(begin <= end && end <= edges.size);
     std::size_t i = begin;
     if constexpr (past_cache)

@@ -1,8 +1,8 @@
 #pragma once
 
-// The inner loops of the sweep: from prepared edges to points. Each exists once as plain code and is compiled
-// for several vector widths; the widest one that the processor has is chosen at run time. All give the same
-// bits: the operations of EdgeCut::at, none of them fused or reordered.
+// The inner loops of the sweep, which compute points from prepared edges. Each is written once in plain code
+// and compiled for several vector widths; the widest one that the processor supports is chosen at run time.
+// All give the same bits: they perform the operations of EdgeCut::at without fusing or reordering them.
 
 #include "lamella/core/point.hpp"
 
@@ -13,7 +13,7 @@
 namespace lamella {
 
 /// n edges in walk order, as six columns of doubles (see EdgeCut): z0, inverse_dz, x0, dx, y0, dy. Columns
-/// start at multiples of 64 bytes and are padded to whole multiples; the padding may hold anything.
+/// start at multiples of 64 bytes and are padded to whole multiples; the content of the padding is arbitrary.
 struct EdgeColumns {
     double* data;
     std::size_t size;
@@ -28,29 +28,30 @@ struct EdgeColumns {
     [[nodiscard]] std::size_t stride() const noexcept { return padded(size); }
 };
 
-/// What is learnt of a contour on one plane while its points are computed.
+/// Properties of a contour on one plane, found while its points are computed.
 struct CutSurvey {
     double least_x;
-    /// The least square of a distance between a point and the one before it (the last and the first are not
-    /// compared): zero where two are equal, and where they are nearer than 1e-162.
+    /// Least squared distance between a point and the one before it (the last and the first are not
+    /// compared): zero if two are equal or nearer than 1e-162.
     double closest;
 };
 
 struct PointKernels {
-    /// Turns columns that hold the ends of edges (z, x and y of the base in the columns z0, x0 and y0, those
-    /// of the far end in the columns inverse_dz, dx and dy) into prepared edges, as EdgeCut's constructor.
+    /// Converts columns that hold the ends of edges (z, x and y of the base in the columns z0, x0 and y0,
+    /// those of the far end in the columns inverse_dz, dx and dy) into prepared edges, like EdgeCut's
+    /// constructor.
     void (*prepare)(EdgeColumns edges);
-    /// x[i], y[i] = the cut of edge i with the plane z, for i < edges.size; up to padded(size) values are
-    /// written. x and y start at multiples of 64 bytes. edges.size >= 1.
+    /// Sets x[i], y[i] to the cut of edge i with the plane z, for i < edges.size. Writes up to padded(size)
+    /// values. Requires edges.size >= 1, and x and y at multiples of 64 bytes.
     CutSurvey (*survey)(EdgeColumns edges, double z, double* x, double* y);
-    /// to[i - begin] = the cut of edge i with the plane z, for begin <= i < end.
+    /// Sets to[i - begin] to the cut of edge i with the plane z, for begin <= i < end.
     void (*cut)(EdgeColumns edges, std::size_t begin, std::size_t end, double z, Point2* to);
-    /// The same for places that are not in the cache and are not read soon: where the processor can, it
-    /// writes whole lines to memory without fetching them first. On lines that are in the cache it is slower.
+    /// Does the same for memory that is not in the cache and not read soon: if the processor can, it writes
+    /// whole lines without fetching them first. Slower than `cut` if the lines are in the cache.
     void (*cut_past_cache)(EdgeColumns edges, std::size_t begin, std::size_t end, double z, Point2* to);
-    /// The largest |values[i]|, i < n.
+    /// Returns the largest |values[i]|, i < n.
     double (*largest)(const double* values, std::size_t n);
-    /// The first i in [from, n) with x[i] <= value, else n.
+    /// Returns the first i in [from, n) with x[i] <= value, or n.
     std::size_t (*find_not_above)(const double* x, std::size_t from, std::size_t n, double value);
 };
 
@@ -60,10 +61,11 @@ struct PointKernelSet {
     const PointKernels* kernels; ///< never null; they live as long as the program
 };
 
-/// All sets that this processor can run, the narrowest first: "plain" always, then "avx2" and "avx512".
+/// Returns all sets that this processor can run, the narrowest first: "plain" always, then "avx2" and
+/// "avx512".
 [[nodiscard]] std::span<const PointKernelSet> point_kernel_sets() noexcept;
 
-/// The widest of them.
+/// Returns the widest of these sets.
 [[nodiscard]] const PointKernels& point_kernels() noexcept;
 
 } // namespace lamella

@@ -2,8 +2,8 @@
 
 // Runs: contours over the planes that one walk serves.
 //
-// A sequence of nodes stays valid up to the first event in it: a node that ends or turns to its other
-// successor. All planes up to there are a run, but for a bound on its length.
+// A sequence of nodes remains valid up to its first event: a node that ends or changes to its other
+// successor. All planes up to there are a run, whose length is bounded.
 
 #include "lamella/core/point.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -25,26 +25,26 @@ namespace lamella {
 struct Run {
     std::uint32_t begin;
     std::uint32_t end;
-    std::uint32_t size; ///< nodes
+    std::uint32_t size; ///< number of nodes
     bool closed;
-    std::uint64_t nodes;   ///< where they start among those of all runs
+    std::uint64_t nodes;   ///< offset of its nodes among those of all runs
     std::uint64_t rings;   ///< its ring on plane p is rings[this + p - begin]
-    std::uint64_t columns; ///< where its edges are in the column store, or not_kept
+    std::uint64_t columns; ///< offset of its edges in the column store, or not_kept
 };
 
 /// One contour on one plane.
 struct Ring {
-    Point2 first;        ///< the point it starts at
-    std::uint32_t start; ///< the index of that point, after repeated points are dropped
-    std::uint32_t count; ///< points kept; 0 when the contour shrank to a point or a line
-    std::uint64_t place; ///< in the layer's array
+    Point2 first;        ///< the point at which it starts
+    std::uint32_t start; ///< index of that point after repeated points are dropped
+    std::uint32_t count; ///< number of points kept; 0 if it shrank to a point or a line
+    std::uint64_t place; ///< offset in the layer's array
 };
 
-/// The runs of a task that later planes, or planes not yet written, need. They are in the order in which they
-/// were found, and so are their nodes and their rings.
+/// The runs of a task that are needed by later planes or by planes not yet written. They are in the order in
+/// which they were found, and so are their nodes and their rings.
 class Runs {
   public:
-    /// To be called before the first plane of a task, without any runs left of the one before.
+    /// Must be called before the first plane of a task. Requires that no runs of the previous task are left.
     void begin_task(PlaneRange planes) {
         assert(runs_.empty() && nodes_.empty() && rings_.empty());
         planes_ = planes;
@@ -53,7 +53,7 @@ class Runs {
 
     void reserve_nodes(std::size_t nodes) { nodes_.reserve(nodes); }
 
-    /// A run from `plane` on, whose rings are not measured yet.
+    /// Adds a run from `plane` on, with rings not measured yet.
     Run& add(std::uint32_t plane, const NodeSequence& sequence) {
         assert(plane >= planes_.begin && plane < sequence.valid_until && sequence.valid_until <= planes_.end);
         assert(runs_.empty() || runs_.back().begin <= plane);
@@ -74,13 +74,13 @@ class Runs {
     [[nodiscard]] std::span<const std::uint32_t> nodes(const Run& run) const noexcept {
         return std::span(nodes_).subspan(run.nodes, run.size);
     }
-    /// The rings of a run on planes of its own.
+    /// Returns the rings of a run on some of its planes.
     [[nodiscard]] std::span<Ring> rings(const Run& run, PlaneRange planes) noexcept {
         assert(run.begin <= planes.begin && planes.begin <= planes.end && planes.end <= run.end);
         return std::span(rings_).subspan(index_of(run, planes.begin), planes.size());
     }
 
-    /// The index of a ring among those of all runs, until runs are forgotten.
+    /// Returns the index of a ring among those of all runs. It is valid until runs are forgotten.
     [[nodiscard]] static std::uint64_t index_of(const Run& run, std::uint32_t plane) noexcept {
         return run.rings + plane - run.begin;
     }
@@ -96,16 +96,17 @@ class Runs {
         return *std::prev(behind);
     }
 
-    /// To be called when all runs that begin on a plane are there. True when most of what is kept belongs to
-    /// runs that have ended, and it is so much that it is time to write what they have and to forget them.
+    /// Must be called when all runs that begin on a plane are known. Returns true if it is time to write and
+    /// forget runs: those that have ended hold many nodes, and at least as many as were alive when runs were
+    /// last forgotten.
     [[nodiscard]] bool end_plane(std::uint32_t plane) noexcept {
         constexpr std::uint64_t enough = 1U << 15; // nodes
         stale_ += ending_[plane + 1 - planes_.begin];
         return stale_ >= enough && stale_ >= alive_then_;
     }
 
-    /// Forgets the runs that end before `plane` and moves the others together, as do their columns in the
-    /// store. No plane before is looked at again.
+    /// Forgets the runs that end at or before `plane`, and moves the others and their columns in the store
+    /// together. Earlier planes must not be accessed again.
     void forget_before(std::uint32_t plane, ColumnStore& store) {
         std::vector<Run> runs;
         std::vector<Ring> rings;
@@ -135,11 +136,11 @@ class Runs {
     }
 
   private:
-    PlaneRange planes_; // of the task
+    PlaneRange planes_; // planes of the task
     std::vector<Run> runs_;
     std::vector<std::uint32_t> nodes_;
     std::vector<Ring> rings_;
-    std::vector<std::uint64_t> ending_; ///< per plane of the task and behind it: nodes of runs that end there
+    std::vector<std::uint64_t> ending_; ///< per plane of the task and after it: nodes of runs that end there
     std::uint64_t stale_ = 0;           ///< nodes of runs that have ended
     std::uint64_t alive_then_ = 0;      ///< nodes when runs were forgotten last
 };

@@ -11,7 +11,7 @@ constexpr std::uint64_t plane_cost = 64; // in points
 constexpr std::uint64_t worth_a_thread = 1U << 15;
 constexpr std::uint64_t worth_a_task = 32; // planes
 
-/// One task that all workers share.
+/// Returns one task that all workers share.
 std::vector<SweepTask> one_for_all(std::uint32_t planes, unsigned workers, std::uint64_t group) {
     return {{{0, planes}, static_cast<std::uint32_t>(std::min<std::uint64_t>(group, planes)), workers > 1}};
 }
@@ -61,7 +61,7 @@ std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers, std::
     std::uint64_t walked = nodes;
     for (std::uint32_t p = 0; p < planes; ++p) {
         const std::uint64_t cost = loads.points[p] + plane_cost;
-        // Of a task of many planes, a part of one more is little.
+        // In a task of many planes, exceeding the target by part of a plane matters little.
         if (tasks.empty() || filled + (many_planes ? cost / 2 : cost) > target) {
             tasks.push_back({{p, p}, planes});
             filled = 0;
@@ -71,12 +71,12 @@ std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers, std::
         tasks.back().planes.end = p + 1;
     }
     assert(covers_every_plane_once(tasks, planes));
-    // Where layers are delivered on the way, long tasks let some slice while others deliver.
+    // If layers are delivered during slicing, long tasks let some workers slice while others deliver.
     if (tasks.size() <= 1 || (bounded && many_planes))
         return tasks;
     const std::uint64_t walking = std::min<std::uint64_t>(workers, tasks.size());
     const bool no_sooner = walking * nodes <= walked + walked / 16;
-    // What reaches into short tasks is to take no more memory than one number for each node.
+    // The nodes that reach into short tasks must not take more memory than one number per node.
     const bool too_many_carried = bounded && walked > 2 * nodes;
     if (no_sooner || too_many_carried)
         return one_for_all(planes, workers, group);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Who sweeps which planes.
+// Divides planes into tasks for the workers.
 
 #include "lamella/slicing/plan.hpp"
 
@@ -11,26 +11,27 @@
 
 namespace lamella {
 
-/// Planes that one worker sweeps, or all of them together.
+/// Planes that one worker sweeps, or all workers together.
 struct SweepTask {
     PlaneRange planes;
-    std::uint32_t group; ///< planes that may be in flight together
-    bool shared = false; ///< all workers share the work on each group
+    std::uint32_t group; ///< largest number of planes in flight together
+    bool shared = false; ///< true if all workers share the work on these planes
 
     friend bool operator==(const SweepTask&, const SweepTask&) = default;
 };
 
-/// Divides the planes among the workers: ascending tasks, none of them empty, that cover every plane once.
-/// `points_in_flight` bounds the points of `workers` + 1 tasks, or of a group; 0: any number.
+/// Divides the planes among the workers: returns ascending, non-empty tasks that cover every plane once.
+/// `points_in_flight` bounds the points of `workers` + 1 tasks, or of the planes of a shared task that are in
+/// flight together; 0: no bound.
 ///
-/// Tasks are of about equal work, as a rule. A task pays for walking once over all that is alive on its first
-/// plane, so there are few of them where planes are few and large, and more where that cost is lost among the
-/// planes, to level out what the estimate of the work misses.
+/// Usually tasks are of about equal work. At its first plane, a task must walk over everything that is alive
+/// there. So there are few tasks if planes are few and large, and more if that cost is small, to compensate
+/// for errors in the estimated work.
 ///
-/// There is one task, on which all workers share the work, where the bound on points in flight leaves no room
-/// for a task of each worker; and where tasks would walk over as much as one worker that walks for all, as on
-/// upright parts: what follows the walk is then shared evenly. But where the bound makes tasks of many planes
-/// all the same, these are better: some workers slice while others deliver.
+/// There is a single shared task in two cases. First, if the bound on points in flight leaves no space for a
+/// task of each worker. Second, if tasks together would walk over as much as one worker that walks for all,
+/// as on upright parts; the work after the walk is then shared evenly. If the bound still permits tasks of
+/// many planes, these are preferred, because some workers slice while others deliver.
 [[nodiscard]] std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers,
                                               std::uint64_t points_in_flight);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where the walks of a plane start.
+// The nodes at which the walks of a plane start.
 
 #include "core/executor.hpp"
 #include "core/pages.hpp"
@@ -18,15 +18,16 @@
 
 namespace lamella {
 
-/// The nodes by the plane they begin on, and those that reach into a task from below.
+/// The nodes sorted by the plane on which they begin, and the nodes that reach into a task from below.
 class StartIndex {
   public:
-    /// Of the graph whose nodes were counted in `shares`, added up in `loads` and divided into `tasks`.
+    /// Requires that the nodes of the graph were counted in `shares`, added up in `loads` and divided into
+    /// `tasks`.
     template <class Ends>
     StartIndex(const CutGraph<Ends>& graph, const std::vector<NodeShare>& shares, const PlaneLoads& loads,
                const std::vector<SweepTask>& tasks, Executor& executor)
         : starts_before_(loads.begun), starts_(loads.begun.back()) {
-        // The task that a plane lies in.
+        // Each plane's task.
         const std::uint32_t planes = loads.planes();
         std::vector<std::uint32_t> task_of(planes);
         for (std::uint32_t t = 0; t < tasks.size(); ++t)
@@ -46,19 +47,20 @@ class StartIndex {
                     carried_[places.carried[s][t]++] = id;
             }
         });
-        // The last share has filled the starts of each plane, and what is carried into each task, to the end.
+        // The last element has filled the starts of each plane, and the nodes carried into each task, to the
+        // end.
         assert(std::equal(places.starts.back().begin(), places.starts.back().end(), loads.begun.begin() + 1));
         assert(std::equal(places.carried.back().begin(), places.carried.back().end(),
                           carried_before_.begin() + 1));
     }
 
-    /// Nodes that begin on the plane.
+    /// Returns the nodes that begin on the plane.
     [[nodiscard]] std::span<const std::uint32_t> starts(std::uint32_t plane) const noexcept {
         assert(plane + std::size_t{1} < starts_before_.size());
         return starts_.span().subspan(starts_before_[plane],
                                       starts_before_[plane + 1] - starts_before_[plane]);
     }
-    /// Nodes alive on the first plane of a task that begin before.
+    /// Returns the nodes that are alive on the first plane of a task and begin before it.
     [[nodiscard]] std::span<const std::uint32_t> carried(std::size_t task) const noexcept {
         assert(task + 1 < carried_before_.size());
         return carried_.span().subspan(carried_before_[task],
@@ -66,10 +68,10 @@ class StartIndex {
     }
 
   private:
-    /// Where each share of the nodes writes next.
+    /// The offset at which each chunk of the nodes writes next.
     struct Places {
-        std::vector<std::vector<std::uint64_t>> starts;  ///< per share and plane
-        std::vector<std::vector<std::uint64_t>> carried; ///< per share and task
+        std::vector<std::vector<std::uint64_t>> starts;  ///< per chunk and plane
+        std::vector<std::vector<std::uint64_t>> carried; ///< per chunk and task
     };
 
     Places places_of(const std::vector<NodeShare>& shares, const PlaneLoads& loads,
@@ -84,9 +86,9 @@ class StartIndex {
                 places.starts[s][p] = std::exchange(place, place + shares[s].begins[p]);
             assert(place == loads.begun[p + 1]);
         }
-        // What each share has for each task, and then where it goes.
+        // First the number of nodes that each chunk has for each task, then their offset.
         for (std::size_t s = 0; s < shares.size(); ++s) {
-            std::uint64_t open = 0; // begun below the plane and not ended there
+            std::uint64_t open = 0; // nodes that began below the plane and have not ended
             for (std::uint32_t p = 0; p < planes; ++p) {
                 open -= shares[s].ends[p];
                 if (tasks[task_of[p]].planes.begin == p)

@@ -22,27 +22,27 @@
 
 // The sweep engine
 //
-// Ranks turn heights into integers, and the cut graph links every cut edge to its successors (cut_graph.hpp).
-// What is left is to read contours off the graph. The planes are divided into tasks (schedule.hpp), each for
-// one worker, or one task for all of them. For one plane after the other:
+// Ranks convert heights to integers, and the cut graph links every cut edge to its successors
+// (cut_graph.hpp). The contours are then read from the graph. The planes are divided into tasks
+// (schedule.hpp), each for one worker, or one task for all workers. On one plane after the other:
 //
 //     walk       follow the links from every node that begins there: walk.hpp
-//     run        the sequence of nodes serves all planes up to the first event in it: runs.hpp
-//     measure    learn of each plane of the run where its ring starts and how many points it has: measure.hpp
-//     emit       once a stretch of planes is complete, put the rings of each layer in order and compute the
-//                points again, straight into their places: emit.hpp
+//     run        the sequence of nodes serves all planes up to its first event: runs.hpp
+//     measure    on each plane of the run, find the start of the ring and its number of points: measure.hpp
+//     emit       once a range of planes is complete, sort the rings of each layer and compute the points
+//                again, directly into the arrays of the layers: emit.hpp
 //
-// The result is in normal form, so nothing of this order of work can be seen in it.
+// The result is in normal form, so it does not depend on the order of this work.
 
 namespace lamella {
 
 namespace {
 
-/// The sweep of one worker over one task after the other.
+/// Sweeps one task after the other on behalf of one worker.
 template <class Ends>
 class alignas(128) Sweep {
   public:
-    /// All tasks are shared, or none is.
+    /// Requires that either all tasks are shared, or none.
     Sweep(const CutGraph<Ends>& graph, const StartIndex& starts, const PlaneLoads& loads, const Ranks& ranks,
           const Plan& plan, bool shared, Executor& executor, OrderedDelivery& delivery)
         : graph_(graph), starts_(starts), ranks_(ranks), plan_(plan), delivery_(delivery),
@@ -52,7 +52,8 @@ class alignas(128) Sweep {
             runs_.reserve_nodes(loads.begun.back());
     }
 
-    /// Tasks come in ascending order. `carried`: the nodes that reach into this one from below.
+    /// Sweeps a task. Requires tasks in ascending order, and in `carried` the nodes that reach into this one
+    /// from below.
     void sweep(const SweepTask& task, std::span<const std::uint32_t> carried) {
         assert(task.shared == crew_.shared() && task.group > 0);
         const PlaneRange planes = task.planes;
@@ -84,17 +85,17 @@ class alignas(128) Sweep {
     }
 
   private:
-    /// Columns that stay are to stay in one core's cache; and where all workers share the work they do not.
+    /// Stored columns must stay in the cache of one core, which they do not if all workers share the work.
     static std::uint64_t room_for_columns(const PlaneLoads& loads, bool shared) {
         constexpr std::uint64_t most = 1U << 16; // edges: 3 MB
         return shared ? 0 : std::min(most, EdgeColumns::padded(8 * loads.all_points));
     }
 
-    /// In a task of one's own a run is measured now, while its nodes are in the cache.
+    /// Adds a run. In a task of one worker it is measured now, while its nodes are in the cache.
     void add_run(std::uint32_t plane, const NodeSequence& sequence) {
         Run& run = runs_.add(plane, sequence);
         if (crew_.shared())
-            return; // measured by all when the walk is over
+            return; // all workers measure it after the walk
         skip_walks(run);
         run.columns = columns_.reserve(run.size);
         measure_run(run, {run.begin, run.end}, crew_.scratch());
@@ -102,13 +103,13 @@ class alignas(128) Sweep {
 
     void measure_together(std::span<Run> runs, PlaneRange planes) {
         crew_.for_runs(runs, planes, [&](const Run& run, PlaneRange part, Scratch& scratch) {
-            if (part.begin == run.begin) // the first of its pieces
+            if (part.begin == run.begin) // the first part of the run
                 skip_walks(run);
             measure_run(run, part, scratch);
         });
     }
 
-    /// Later planes need no walk where the run goes.
+    /// Marks the nodes of the run: its later planes need no walk over them.
     void skip_walks(const Run& run) const {
         if (run.end > run.begin + 1)
             walk_.skip(runs_.nodes(run), run.end);
@@ -119,14 +120,14 @@ class alignas(128) Sweep {
                       runs_.rings(run, planes), scratch);
     }
 
-    /// The edges of a run, in their place in the store if they have one.
+    /// Lays out the edges of a run, in the store if the run has an offset there.
     EdgeColumns lay_out(const Run& run, Scratch& scratch) const {
         return lay_out_edges(graph_, ranks_, runs_.nodes(run), scratch.kernels,
                              run.columns == ColumnStore::not_kept ? scratch.columns_for(run.size)
                                                                   : columns_.at(run.columns));
     }
 
-    /// The edges of runs that were laid out before.
+    /// Returns a function that gives the edges of runs that were laid out before.
     [[nodiscard]] auto edges_of() const {
         return [this](const Run& run, Scratch& scratch) -> EdgeColumns {
             if (run.columns == ColumnStore::not_kept)

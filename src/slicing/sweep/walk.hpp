@@ -1,8 +1,8 @@
 #pragma once
 
-// Reading contours off the cut graph: from a node that begins on a plane, follow `next` until the start is
-// reached. A contour without a new node is the continuation of one on the plane below; it is not searched
-// for, but after `longest_run` planes, from one of its nodes.
+// Reads contours from the cut graph: from a node that begins on a plane, follows `next` until it reaches the
+// start. If no node of a contour begins on a plane, the contour continues one from the plane below and is not
+// walked again, except from one of its nodes after `longest_run` planes.
 
 #include "lamella/slicing/plan.hpp"
 
@@ -19,30 +19,30 @@
 
 namespace lamella {
 
-/// The nodes of a contour, in the order in which it visits them. They are the same, and link to one another,
-/// on all planes from the one that was walked to the one before `valid_until`.
+/// The nodes of a contour, in the order in which the contour visits them. They are the same, and link to one
+/// another, on all planes from the one that was walked to the one before `valid_until`.
 struct NodeSequence {
     std::span<const std::uint32_t> nodes;
     std::uint32_t valid_until;
     bool closed;
 };
 
-/// The walks of one worker over the planes of one task after the other.
+/// Walks for one worker over the planes of one task after the other.
 template <class Ends>
 class Walk {
   public:
     explicit Walk(const CutGraph<Ends>& graph) : graph_(graph), visited_until_(graph.count, Fill::zero) {}
 
-    /// To be called before the first plane of a task. Tasks come in ascending order.
+    /// Must be called before the first plane of a task. Requires tasks in ascending order.
     void begin_task(PlaneRange planes) {
         assert(planes.begin < planes.end && planes.begin >= planes_.end);
         planes_ = planes;
         restarts_.assign(planes.size(), {});
     }
 
-    /// found(NodeSequence) once for every contour of the plane that visits one of the starts, or a node of a
-    /// sequence that ended just below, unless it was found on a plane before and is still valid. Planes of a
-    /// task come in ascending order.
+    /// Calls found(NodeSequence) once for every contour on the plane that visits a node in `starts` or
+    /// `carried`, or a node of a sequence that ended just below. Omits contours that were found on an earlier
+    /// plane and are still valid. Requires planes in ascending order within a task.
     template <class Found>
     void walk(std::uint32_t plane, std::span<const std::uint32_t> starts,
               std::span<const std::uint32_t> carried, const Found& found) {
@@ -56,8 +56,8 @@ class Walk {
             join_segments(plane, found);
     }
 
-    /// Planes before `end` need no walk over these nodes: a contour that was found serves them. From any
-    /// number of threads at once, for different nodes, while nobody walks.
+    /// Marks nodes whose contour is known on the planes before `end`, which then need no walk over them. May
+    /// be called from any number of threads at once, for different nodes, but not during a walk.
     void skip(std::span<const std::uint32_t> nodes, std::uint32_t end) const {
         for (const std::uint32_t node : nodes) {
             assert(visited_until_[node] != 0 && visited_until_[node] <= end);
@@ -66,31 +66,31 @@ class Walk {
     }
 
   private:
-    /// What was walked from one start to where it met the start of a walk, or the end of the mesh.
+    /// The nodes from the start of one walk to the start of another walk, or to the end of the mesh.
     struct Segment {
         std::uint32_t start; ///< its first node
-        std::uint32_t next;  ///< the segment it ran into, at first by its first node; no_node: the mesh ended
+        std::uint32_t next;  ///< the segment that follows, at first by its first node; no_node: none
         std::uint64_t begin;
         std::uint64_t end;
         std::uint32_t valid_until;
     };
 
-    /// A walk under way.
+    /// A walk in progress.
     struct Walker {
         std::uint32_t node;
         std::uint32_t start;
         std::uint32_t valid_until;
-        std::uint64_t candidate; ///< the next one to look at
+        std::uint64_t candidate; ///< the next candidate to examine
         std::uint64_t candidates_end;
         std::vector<std::uint32_t> sequence;
     };
 
-    /// A contour is walked again after so many planes, though nothing in it changes: what is kept of it for
-    /// each plane to come is bounded then, however many layers a part has.
+    /// A contour is walked again after this many planes even if nothing in it changes. This bounds the data
+    /// that are kept of it for later planes, for any number of layers.
     static constexpr std::uint32_t longest_run = 64;
 
-    /// Several walks at a time hide the memory's latency where nodes lie scattered; one is enough where the
-    /// graph fits the cache.
+    /// Several walks at a time hide the latency of memory if nodes are scattered; one suffices if the graph
+    /// fits into the cache.
     static constexpr std::size_t most_walkers = 20;
     static constexpr std::uint64_t candidates_per_walker = 64;
 
@@ -104,7 +104,7 @@ class Walk {
             walker_.resize(walkers);
         std::size_t active = 0;
         for (std::size_t w = 0; w < walkers; ++w) {
-            // Each has its own share of the candidates, so that they are far apart in the file and rarely
+            // Each walker has candidates of its own, so that walkers are far apart in the file and rarely
             // meet.
             walker_[active].candidate = count * w / walkers;
             walker_[active].candidates_end = count * (w + 1) / walkers;
@@ -127,7 +127,7 @@ class Walk {
         }
     }
 
-    /// Finds the walker's next unvisited candidate. False when there is none.
+    /// Finds the walker's next unvisited candidate. Returns false if there is none.
     bool set_out(Walker& walker, std::uint32_t plane, std::span<const std::uint32_t> candidates) {
         while (walker.candidate < walker.candidates_end) {
             const std::uint32_t node = candidates[walker.candidate++];
@@ -142,12 +142,12 @@ class Walk {
         return false;
     }
 
-    /// Visits one node. False when the walk is over.
+    /// Visits one node. Returns false if the walk is over.
     template <class Found>
     bool step(Walker& walker, std::uint32_t plane, const Found& found) {
         const std::uint32_t id = walker.node;
         if (visited_until_[id] > plane) {
-            if (!walker.sequence.empty()) // else another walk came by before this one took its first step
+            if (!walker.sequence.empty()) // else another walk visited the start before this one began
                 finish(walker, plane, id, found);
             return false;
         }
@@ -184,7 +184,7 @@ class Walk {
     }
 
     /// Joins walks that ran into one another. Links are one to one, so a walk can only run into the start of
-    /// another, and at most one runs into each: they form rings and chains of walks.
+    /// another, and at most one walk runs into each. Hence the walks form rings and chains.
     template <class Found>
     void join_segments(std::uint32_t plane, const Found& found) {
         std::sort(segments_.begin(), segments_.end(),
@@ -234,8 +234,9 @@ class Walk {
         assert(plane < sequence.valid_until && sequence.valid_until <= planes_.end);
         if (sequence.valid_until < planes_.end) {
             std::vector<std::uint32_t>& again = restarts_[sequence.valid_until - planes_.begin];
-            // Only a closed contour is sure to go on through a node that begins where its sequence ends, if
-            // anything changes there. If nothing does, any node will do.
+            // If something changes where the sequence of a closed contour ends, the contour continues through
+            // a node that begins there. If nothing changes, any node serves as the start. Open contours have
+            // no such guarantee.
             if (!sequence.closed)
                 again.insert(again.end(), sequence.nodes.begin(), sequence.nodes.end());
             else if (sequence.valid_until == end_of_run(plane))
@@ -245,14 +246,14 @@ class Walk {
     }
 
     const CutGraph<Ends>& graph_;
-    PlaneRange planes_;                      // of the task
+    PlaneRange planes_;                      // planes of the task
     PageArray<std::uint32_t> visited_until_; // per node: the plane before which it needs no visit
     std::vector<Walker> walker_;
-    std::vector<Segment> segments_;      // of the plane that is walked
-    std::vector<std::uint32_t> pending_; // the nodes of the segments
-    std::vector<std::uint32_t> joined_;  // of a contour that is made of segments
-    /// Per plane of the task: the nodes of chains whose sequence ends before it, and one of each contour that
-    /// is to be walked again.
+    std::vector<Segment> segments_;      // segments of the current plane
+    std::vector<std::uint32_t> pending_; // nodes of the segments
+    std::vector<std::uint32_t> joined_;  // nodes of a contour made of segments
+    /// Per plane of the task: the nodes of chains whose sequence ends before it, and one node of each contour
+    /// that must be walked again.
     std::vector<std::vector<std::uint32_t>> restarts_;
 };
 
