@@ -8,19 +8,19 @@
 
 // Conventional slicing
 //
-// The flowchart of King, Rennie and Bennett (2021, Fig. 1), after Xu et al. (2016). For each plane: cut every
-// triangle of the mesh; then sort the segments end to end. The end of a contour is compared with both end
-// points of every segment that is left, one after the other, and the first one that coincides is appended,
-// until the contour is back at its beginning.
+// This is the flowchart of King, Rennie and Bennett (2021, Fig. 1), after Xu et al. (2016). For each plane,
+// it cuts every triangle of the mesh and then sorts the segments end to end. It compares the end of a contour
+// with both end points of every remaining segment, one after the other, and appends the first one that
+// coincides, until the contour is back at its beginning.
 //
-// Points say nothing about which triangles are neighbours. Where more than two segments meet in a point
-// (Fig. 2), the first one in the list is taken, and it may belong to another contour.
+// Points do not show which triangles are neighbours. If more than two segments meet in a point (Fig. 2), the
+// first one in the list is taken, and it may belong to another contour.
 
 namespace lamella {
 
 namespace {
 
-/// One triangle on one plane.
+/// The intersection of one triangle with one plane.
 struct Segment {
     Point2 from;
     Point2 to;
@@ -57,7 +57,7 @@ class Conventional {
         }
     }
 
-    /// Takes one contour out of the list. It runs as its first segment does.
+    /// Moves one contour from the list to the layer. The contour has the direction of its first segment.
     void sort_contour(LayerBuilder& layer) {
         Segment* start = segments_.first;
         segments_.remove(start);
@@ -72,7 +72,7 @@ class Conventional {
             }
             ++counts_.inserted.back;
         }
-        // It does not close: what comes before its beginning belongs to it, too.
+        // The contour does not close: segments before its beginning belong to it, too.
         std::reverse(contour_.begin(), contour_.end());
         while (append_segment())
             ++counts_.inserted.front;
@@ -81,6 +81,7 @@ class Conventional {
     }
 
     /// Moves the first segment with an end point at the end of the contour from the list to the contour.
+    /// Returns false if there is none.
     bool append_segment() {
         engine_.check_cancelled();
         ++counts_.searches;
@@ -100,7 +101,7 @@ class Conventional {
     const SerialEngine& engine_;
     MatchingCounts& counts_;
     NodePool<Segment> memory_;
-    LinkedList<Segment> segments_; ///< that belong to no contour yet, in the order of the triangles
+    LinkedList<Segment> segments_; ///< in no contour yet, in the order of the triangles
     std::vector<Point2> contour_;
 };
 

@@ -5,10 +5,11 @@
 
 // Efficient contour construction
 //
-// Zhang and Joshi (2015), as King, Rennie and Bennett (2021) describe it in section 3.1. One triangle after
-// the other; for each plane that cuts it, from top to bottom, one intersection: where the contour enters the
-// triangle. It is inserted into the lists of its plane at once, found by comparing edges with both ends of
-// every list. Completed lists stay where they are and are looked at again and again.
+// This is the method of Zhang and Joshi (2015), as King, Rennie and Bennett (2021) describe it in section
+// 3.1. It takes one triangle after the other. For each plane that cuts the triangle, from top to bottom, it
+// makes one intersection, where the contour enters the triangle. It inserts the intersection into the lists
+// of its plane at once, by comparing its edges with both ends of every list. Completed lists remain where
+// they are and are searched again and again.
 
 namespace lamella {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// Edge matching (King, Rennie and Bennett 2021, section 3.2): two triangles that met in an edge on one plane
-// meet in it on every plane that cuts it. So of the planes that cut a triangle in the same two edges only the
-// first needs a search; on the others an IN goes where the one before it went.
+// Edge matching (King, Rennie and Bennett 2021, section 3.2): two triangles that share an edge on one plane
+// share it on every plane that cuts it. Of the planes that cut a triangle in the same two edges, only the
+// first therefore needs a search. On the others, an IN is inserted at the position of the IN before it.
 
 #include "slicing/paper/intersection_lists.hpp"
 
@@ -17,28 +17,27 @@ struct LinkedIntersectionNode {
     const Edge* to;
     LinkedIntersectionNode* next = nullptr;
     LinkedIntersectionNode* previous = nullptr;
-    /// Leads to the ILL that was given the next IN of this triangle, on the plane below.
+    /// The ILL that received the next IN of this triangle, on the plane below.
     IntersectionList<LinkedIntersectionNode>* edge_link = nullptr;
 };
 
-/// The lists of an engine with edge links, and its four cases. Each places `node` as the IN before it on the
-/// same triangle and the same edges, `before`, was placed on the plane above.
+/// The lists of an engine with edge links, and its four cases. Each case inserts `node` like `before`, the IN
+/// on the plane above that has the same triangle and the same edges.
 ///
-/// A link is followed only as far as it holds: the list that it leads to must end (begin) with the edge that
-/// is looked for. It always does where no edge has more than two triangles. Where it does not, the IN is
-/// inserted by search.
+/// A link is used only if it still holds: the list that it refers to must end (or begin) with the required
+/// edge. It always does if no edge has more than two triangles. Otherwise the IN is inserted by search.
 class EdgeLinkedLists : public IntersectionLists<LinkedIntersectionNode> {
   public:
     using Node = LinkedIntersectionNode;
     using IntersectionLists::IntersectionLists;
 
-    /// Case 1.
+    /// Case 1: into a new list.
     Placed into_new(std::uint32_t plane, Node* node) {
         ++counts().by_edge_link.new_list;
         return insert_into_new(plane, node);
     }
 
-    /// Case 2: behind the neighbour that `before` was put behind.
+    /// Case 2: after the neighbour after which `before` was inserted.
     Placed at_back(std::uint32_t plane, Node* node, const Node& before) {
         List* list = list_that_ends_at(node, before.previous->edge_link);
         if (list == nullptr)
@@ -47,7 +46,7 @@ class EdgeLinkedLists : public IntersectionLists<LinkedIntersectionNode> {
         return insert_at_back(list, node);
     }
 
-    /// Case 3: before the neighbour that `before` was put before.
+    /// Case 3: before the neighbour before which `before` was inserted.
     Placed at_front(std::uint32_t plane, Node* node, const Node& before) {
         List* list = list_that_begins_at(node, before.next->edge_link);
         if (list == nullptr)
@@ -56,8 +55,8 @@ class EdgeLinkedLists : public IntersectionLists<LinkedIntersectionNode> {
         return insert_at_front(list, node);
     }
 
-    /// Case 4: between the neighbours that `before` was put between. What were two lists on the plane above
-    /// may be two ends of one here.
+    /// Case 4: between the neighbours between which `before` was inserted. Two lists on the plane above may
+    /// be the two ends of one list here.
     Placed between(std::uint32_t plane, Node* node, const Node& before) {
         List* first = list_that_ends_at(node, before.previous->edge_link);
         List* second = list_that_begins_at(node, before.next->edge_link);
@@ -73,9 +72,9 @@ class EdgeLinkedLists : public IntersectionLists<LinkedIntersectionNode> {
 
     /// Inserts the INs of a triangle from top to bottom, and stores their edge links.
     ///
-    /// place(plane, node, before, how) is the engine's chain of cases: it puts `node` where `before` tells,
-    /// which was inserted as `how` says, one of new_list, back, front and link. closed(plane, list) is told
-    /// of every list that was completed.
+    /// place(plane, node, before, how) is the engine's chain of cases. It inserts `node` like `before`, which
+    /// was inserted by the case `how`: new_list, back, front or link. closed(plane, list) is called for every
+    /// completed list.
     template <class Place, class Closed>
     void insert_triangle(const SerialEngine& engine, const TriangleSections& sections, const Place& place,
                          const Closed& closed) {
@@ -89,7 +88,7 @@ class EdgeLinkedLists : public IntersectionLists<LinkedIntersectionNode> {
             const Edge* to = make_edge(section.to);
             for (std::uint32_t plane = section.end; plane-- > section.begin;) {
                 Node* node = make_node(cut.at(engine.z(plane)), from, to);
-                // None of the four cases follows on a completed contour.
+                // None of the four cases follows a completed contour.
                 const bool first_on_these_edges = plane + 1 == section.end;
                 const Placed now = first_on_these_edges || placed.how == Inserted::close
                                        ? insert_by_search(plane, node)

@@ -6,9 +6,9 @@
 
 // Enhanced efficient contour construction
 //
-// King, Rennie and Bennett (2021), sections 3.2 and 3.3 and Fig. 9: edge matching; lists that were completed
-// move to a CLL of their own, where no search looks at them; and the cases are tested in the order of how
-// often they occur in Table 4.
+// These are sections 3.2 and 3.3 and Fig. 9 of King, Rennie and Bennett (2021). The method uses edge
+// matching. Completed lists move to a CLL of their own, which no search examines. The cases are tested in the
+// order of their frequencies in Table 4.
 
 namespace lamella {
 

@@ -1,12 +1,12 @@
 #pragma once
 
-// The data structures of efficient contour construction, in the words of King, Rennie and Bennett (2021,
-// section 3.1), who took them from Zhang and Joshi (2015): IN, ILL and CLL.
+// The data structures of efficient contour construction, in the terms of King, Rennie and Bennett (2021,
+// section 3.1), who adopted them from Zhang and Joshi (2015): IN, ILL and CLL.
 //
 // IN    intersection node: the intersection of one triangle with one plane. It has the point where the
-//       contour enters the triangle; its neighbour has the one where it leaves.
-// EP    edge pointer of an IN: leads to the vertices of an edge of the triangle that the plane cuts. An IN
-//       has two of them, and they alone decide what matches.
+//       contour enters the triangle; its neighbour has the point where the contour leaves it.
+// EP    edge pointer of an IN: refers to the vertices of an edge of the triangle that the plane cuts. An IN
+//       has two EPs, and they alone decide which INs match.
 // ILL   intersection linked list: INs in the order of the contour.
 // CLL   contour linked list: the ILLs of one plane.
 
@@ -26,7 +26,7 @@ namespace lamella {
 
 /// IN (Fig. 4).
 struct IntersectionNode {
-    Point2 point;     ///< where the plane cuts the edge `from`
+    Point2 point;     ///< the cut of the edge `from` by the plane
     const Edge* from; ///< EP
     const Edge* to;   ///< EP: `from` of the IN that follows
     IntersectionNode* next = nullptr;
@@ -40,14 +40,14 @@ struct IntersectionList {
     Node* last;
     IntersectionList* next = nullptr;     ///< in the CLL
     IntersectionList* previous = nullptr; ///< in the CLL
-    bool complete = false;                ///< a ring: nothing can be added any more
+    bool complete = false;                ///< a ring: no IN can be added
 };
 
-/// CLL. New lists come last.
+/// CLL. New lists are appended.
 template <class Node>
 using ContourList = LinkedList<IntersectionList<Node>>;
 
-/// What was done with an IN.
+/// The case in which an IN was inserted.
 enum class Inserted { new_list, front, back, link, close };
 
 /// All CLLs of a mesh, and the six cases of inserting an IN (section 3.1).
@@ -58,7 +58,7 @@ class IntersectionLists {
 
     struct Placed {
         Inserted how;
-        List* list; ///< that holds the IN now
+        List* list; ///< the list that holds the IN now
     };
 
     explicit IntersectionLists(const SerialEngine& engine) : engine_(engine), active_(engine.planes()) {
@@ -70,10 +70,11 @@ class IntersectionLists {
         return nodes_.make({point, from, to});
     }
 
-    /// The lists of a plane that are searched.
+    /// Returns the lists of a plane that are searched.
     [[nodiscard]] ContourList<Node>& active(std::uint32_t plane) { return active_[plane]; }
 
-    /// Goes through all lists of the plane for those whose last or first IN matches, and inserts. O(lists).
+    /// Searches the lists of the plane for those whose last or first IN matches, and inserts `node`.
+    /// O(lists).
     Placed insert_by_search(std::uint32_t plane, Node* node) {
         engine_.check_cancelled();
         ++counts_.searches;
@@ -81,7 +82,7 @@ class IntersectionLists {
         List* begins = nullptr; // the IN precedes its first IN
         for (List* list = active_[plane].first; list != nullptr; list = list->next) {
             ++counts_.comparisons;
-            // A complete list still has ends, which match one another.
+            // A complete list still has ends, which match each other.
             if (ends == nullptr && *list->last->to == *node->from && !list->complete)
                 ends = list;
             if (begins == nullptr && *list->first->from == *node->to && !list->complete)
@@ -122,7 +123,8 @@ class IntersectionLists {
         return {Inserted::back, list};
     }
 
-    /// `second` is emptied and leaves the CLL. It leads to `first` from then on (`holder_of`).
+    /// Joins two lists by `node`. `second` is emptied, leaves the CLL and refers to `first` from then on
+    /// (`holder_of`).
     Placed insert_between(std::uint32_t plane, List* first, List* second, Node* node) {
         assert(first != second && !first->complete && !second->complete);
         assert(*first->last->to == *node->from && *node->to == *second->first->from);
@@ -144,7 +146,7 @@ class IntersectionLists {
         return {Inserted::close, list};
     }
 
-    /// The list that holds the INs which this one once held. Amortised O(log lists).
+    /// Returns the list that holds the INs of `list` now. Amortised O(log lists).
     static List* holder_of(List* list) {
         while (list->first == nullptr) {
             if (list->next->first == nullptr)
@@ -154,8 +156,8 @@ class IntersectionLists {
         return list;
     }
 
-    /// Gives the contours of a CLL to a layer. Lists that never closed are chains: the last point of one is
-    /// where the contour leaves its last triangle, for there is no neighbour to supply it.
+    /// Adds the contours of a CLL to a layer. Lists that never closed are chains. The last point of a chain
+    /// is the point where the contour leaves its last triangle, because no neighbour has it.
     void write(const ContourList<Node>& contours, std::uint32_t plane, LayerBuilder& layer) {
         for (const List* list = contours.first; list != nullptr; list = list->next) {
             points_.clear();
@@ -168,7 +170,7 @@ class IntersectionLists {
     }
 
     [[nodiscard]] MatchingCounts& counts() noexcept { return counts_; }
-    /// With the memory that all of it takes.
+    /// Returns the counts with the allocated memory.
     [[nodiscard]] MatchingCounts final_counts() const {
         assert(counts_.inserted.total() == counts_.by_edge_link.total() + counts_.searches);
         MatchingCounts counts = counts_;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Linked lists, and memory for their nodes: as many as there are, none moved, all of them freed together.
+// Linked lists, and memory for their nodes, which do not move and are all freed together.
 
 #include <algorithm>
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace lamella {
 
-/// Leads through nodes of a pool, each of which knows its neighbours.
+/// A list through nodes of a pool, each of which points to its neighbours.
 template <class Node>
 struct LinkedList {
     Node* first = nullptr;
@@ -32,7 +32,7 @@ struct LinkedList {
 template <class T>
 class NodePool {
   public:
-    /// The node stays where it is as long as the pool lives.
+    /// Returns a new node, which does not move during the life of the pool.
     T* make(const T& value) {
         if (blocks_.empty() || blocks_.back().size() == blocks_.back().capacity()) {
             const std::size_t size =
@@ -45,7 +45,7 @@ class NodePool {
 
     void clear() { blocks_.clear(); }
 
-    /// As allocated, room for further nodes included.
+    /// Returns the allocated bytes, including space for further nodes.
     [[nodiscard]] std::uint64_t bytes() const noexcept {
         std::uint64_t nodes = 0;
         for (const std::vector<T>& block : blocks_)

@@ -1,7 +1,7 @@
 #pragma once
 
-// What the engines of the EECC paper have in common around their own work. They run on one thread, walk the
-// triangles of an indexed mesh, and hand layers over in order.
+// The common parts of the engines of the EECC paper. They run on one thread, process the triangles of an
+// indexed mesh, and hand layers over in order.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
@@ -25,8 +25,8 @@
 
 namespace lamella {
 
-/// An edge is the addresses of its two vertices, the lower one first: edges are the same when these are.
-/// Coordinates are never compared.
+/// An edge, as the addresses of its two vertices, the lower one first. Edges are equal if these are;
+/// coordinates are never compared.
 struct Edge {
     const Point3* low;
     const Point3* high;
@@ -35,7 +35,8 @@ struct Edge {
 };
 
 /// The planes [begin, end) that cut a triangle in the same two edges. The section of the triangle leads from
-/// `from`, which runs downwards in the triangle, to `to`, which runs upwards: material is on the left.
+/// the edge `from`, which runs downwards in the triangle, to the edge `to`, which runs upwards: material is
+/// on the left.
 struct TriangleSection {
     std::uint32_t begin;
     std::uint32_t end;
@@ -43,12 +44,12 @@ struct TriangleSection {
     Edge to;
 };
 
-/// The upper one first; one of them, or both, may have no planes.
+/// The upper section first; one or both may have no planes.
 using TriangleSections = std::array<TriangleSection, 2>;
 
 class SerialEngine {
   public:
-    /// Welds the mesh where it is a soup (that time is reported by itself), and ranks its vertices.
+    /// Welds the mesh if it is a soup (this time is reported separately), and ranks its vertices.
     explicit SerialEngine(const SliceJob& job) : job_(job), executor_(job.execution), ranks_(job.plan) {
         executor_.check_cancelled();
         if (job.mesh.indexed() == nullptr) {
@@ -73,10 +74,12 @@ class SerialEngine {
                                                          : EdgeCut(*edge.high, *edge.low, ranks_.snap_mm());
     }
 
-    /// Throws Error{cancelled} when a stop was requested. Cheap; to be called within every list search.
+    /// Throws Error{cancelled} when a stop was requested. It is cheap and must be called within every list
+    /// search.
     void check_cancelled() const { executor_.check_cancelled(); }
 
-    /// No planes at all where a triangle names a vertex twice: it has no area and its two cut edges are one.
+    /// Returns the sections of a triangle. They have no planes if the triangle repeats a vertex: it has no
+    /// area, and its two cut edges are one.
     [[nodiscard]] TriangleSections sections(std::size_t triangle) const noexcept {
         const std::array<std::uint32_t, 3>& corners = mesh().triangles[triangle];
         if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
@@ -102,7 +105,7 @@ class SerialEngine {
         return sections;
     }
 
-    /// body(triangle) for one triangle after the other, as the stage `link`.
+    /// Calls body(triangle) for one triangle after the other, as the stage `link`.
     template <class Body>
     void for_triangles(const Body& body) {
         const std::size_t n = mesh().triangles.size();
@@ -115,8 +118,8 @@ class SerialEngine {
         progress.finish();
     }
 
-    /// fill(plane, layer) for one plane after the other, upwards, as the stage `slice`; each layer goes to
-    /// the sink at once. To be called last.
+    /// Calls fill(plane, layer) for one plane after the other, upwards, as the stage `slice`, and passes each
+    /// layer to the sink at once. Must be called last.
     template <class Fill>
     void deliver(const Fill& fill) {
         job_.report.link_seconds = linking_.seconds();
