@@ -66,7 +66,7 @@ struct FloatCorners {
         for (std::size_t k = 0; k < 3; ++k) {
             std::array<float, 2> xy;
             std::memcpy(&xy, triangle + 12 * k, 8);
-            xy = {xy[0] + 0.0F, xy[1] + 0.0F}; // -0 is +0
+            xy = {xy[0] + 0.0F, xy[1] + 0.0F}; // -0 becomes +0
             corners[k] = {std::bit_cast<std::uint64_t>(xy), std::bit_cast<std::uint32_t>(z[k] + 0.0F)};
         }
         return true;

@@ -41,7 +41,7 @@ std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers, std::
         workers = 1;
 
     const bool bounded = points_in_flight != 0;
-    const std::uint64_t per_task = points_in_flight / (workers + 1ULL); // one may wait for its turn
+    const std::uint64_t per_task = points_in_flight / (workers + 1ULL); // one task may wait for its turn
     const std::uint64_t largest_layer = std::max<std::uint64_t>(1, loads.most_points);
     const std::uint64_t planes_of_task = bounded ? per_task / largest_layer : planes;
     const std::uint64_t group =
