@@ -37,16 +37,16 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-// Of a mesh file: below, a second thread costs more than it brings.
+// Bytes of a mesh file per thread: for smaller files, a second thread costs more than it gains.
 constexpr std::uint64_t bytes_per_thread = 16'000'000;
 constexpr std::size_t most_warnings = 8;
-// Small files go to a worker together, since a message costs as much as slicing one of them; but not so many,
-// nor for so long, that anybody would wait for their results.
+// Small files are sent to a worker together, since a message costs as much as slicing one of them. Their
+// number and time are limited so that results are not delayed noticeably.
 constexpr std::uint64_t small_file = 100'000; // bytes
 constexpr std::size_t most_together = 32;
 constexpr double longest_together = 0.05; // seconds
-// A batch that is stopped waits so long for answers: well below the patience of Interrupt, which ends the
-// program before it could tell them.
+// A batch that is stopped waits this long for answers. The limit is well below that of Interrupt, which would
+// end the program before the answers are printed.
 constexpr double longest_stop = 0.3; // seconds
 
 double seconds_since(Clock::time_point start) {
@@ -57,7 +57,7 @@ Json name_or_null(const std::string& name) {
     return name.empty() ? Json() : Json(name);
 }
 
-/// One line of the results.
+/// Returns one line of the results.
 Json record_of(const BatchItem& item, const BatchResult& result) {
     const FileResult& file = result.file;
     std::vector<std::uint64_t> hashes;
@@ -100,19 +100,20 @@ Json sliced(const BatchItem& item, const SliceItem& slice, const Execution& exec
         return record_of(item, result);
     } catch (...) {
         Failure failure = failure_of(std::current_exception());
-        // Where there is one file only, its name need not be said.
+        // Errors of a job with a single file may omit its name.
         if (failure.text.find(item.input) == std::string::npos)
             failure.text = fmt::format("{}: {}", item.input, failure.text);
         return record_of(item, failure, seconds_since(start), written);
     }
 }
 
-/// As a worker sends it.
+/// Returns the record as a worker sends it.
 std::string as_line(const Json& record) {
     return compact_json(record) + '\n';
 }
 
-/// In a message, whatever names and texts there are: these take up to six bytes for one.
+/// Returns a line that fits into a message despite long names and texts: escapes take up to six bytes for
+/// one.
 std::string short_line(Json record) {
     constexpr std::size_t most_text = 1000;
     std::string line = as_line(record);
@@ -125,7 +126,8 @@ std::string short_line(Json record) {
     return as_line(record);
 }
 
-/// A line for each of a task's files, or only for the first ones: who asked shall not wait long.
+/// Returns a line for each of a task's files, or for the first ones only, so that the caller does not wait
+/// long.
 std::string lines_of(const WorkerTask& task, const std::vector<BatchItem>& items, const SliceItem& slice,
                      const CancelFlag& cancel) {
     const Clock::time_point start = Clock::now();
@@ -136,7 +138,7 @@ std::string lines_of(const WorkerTask& task, const std::vector<BatchItem>& items
         const std::string line =
             short_line(sliced(items[i], slice, {.threads = task.threads, .cancel = &cancel}));
         if (!lines.empty() && lines.size() + line.size() > WorkerTeam::longest_answer)
-            break; // it is done again
+            break; // this file is done again later
         lines += line;
     }
     assert(lines.size() <= WorkerTeam::longest_answer);
@@ -157,7 +159,7 @@ void make_folders(const std::vector<BatchItem>& items) {
     }
 }
 
-/// Files in their order, as many at once as there are threads for.
+/// Slices the files in order, as many at once as there are threads for.
 class Batch {
   public:
     Batch(const std::vector<BatchItem>& items, unsigned threads, const SliceItem& slice,
@@ -169,7 +171,7 @@ class Batch {
                                            return lines_of(task, items, slice, cancel);
                                        }) {}
 
-    /// Returns whether it came to the end.
+    /// Returns whether all files were finished.
     bool run(const Execution& execution) {
         while (told_ < items_.size() && !execution.cancelled()) {
             start_some(execution);
@@ -179,7 +181,7 @@ class Batch {
         }
         if (told_ == items_.size())
             return true;
-        // What is done is told. Workers that are stuck are ended with the team.
+        // Completed results are still printed. Workers that are stuck are ended with the team.
         stopping_ = true;
         team_.stop();
         const Clock::time_point stop = Clock::now();
@@ -217,7 +219,7 @@ class Batch {
     }
 
   private:
-    /// A task waits until the threads that it is worth are free; so large files cannot starve.
+    /// Starts tasks. A task waits until its number of threads is free, so large files cannot starve.
     void start_some(const Execution& execution) {
         while (!execution.cancelled()) {
             if (tasks_.empty() && next_ < items_.size())
@@ -231,17 +233,18 @@ class Batch {
             } catch (const Error& error) {
                 if (error.kind() != ErrorKind::limit || !team_.is_busy())
                     throw;
-                return; // one of those at work takes it later
+                return; // a busy worker takes it later
             }
             tasks_.pop_front();
             free_ -= task.threads;
         }
     }
 
-    /// A file, or several small ones: the fewer, the less is left to be shared out.
+    /// Returns a task of one file, or of several small ones. The fewer files remain, the smaller the task, so
+    /// that all workers stay busy.
     WorkerTask take_next() {
         const auto bytes_of = [this](std::size_t i) {
-            std::error_code error; // of a pipe, say, which may take as long as it likes
+            std::error_code error; // of a pipe, for example, whose size is unknown
             const std::uintmax_t bytes = fs::file_size(items_[i].input, error);
             return error ? std::nullopt : std::optional(bytes);
         };
@@ -273,13 +276,14 @@ class Batch {
         if (answer.text) {
             std::size_t done = task.first;
             for (std::string_view rest = *answer.text; !rest.empty(); ++done) {
-                const std::size_t line = std::min(rest.find('\n'), rest.size() - 1) + 1; // one may be cut off
+                const std::size_t line =
+                    std::min(rest.find('\n'), rest.size() - 1) + 1; // the last one may be incomplete
                 waiting_.emplace(done, rest.substr(0, line));
                 rest.remove_prefix(line);
             }
-            start_alone(done); // the rest takes long
+            start_alone(done); // the remaining files take long
         } else if (task.count > 1) {
-            start_alone(task.first); // it is not known which of them ended the process
+            start_alone(task.first); // any of them may have ended the process
         } else if (!stopping_) {
             const BatchItem& item = items_[task.first];
             waiting_.emplace(task.first,
@@ -288,8 +292,7 @@ class Batch {
         }
     }
 
-    /// Prints the results of which all before have been printed; once no more are to come, all that there
-    /// are.
+    /// Prints results in order, each once all before it are printed; after a stop, all results that exist.
     void tell() {
         for (; !waiting_.empty() && (stopping_ || waiting_.begin()->first == due_); ++due_) {
             const std::string line = std::move(waiting_.extract(waiting_.begin()).mapped());
@@ -312,21 +315,21 @@ class Batch {
     }
 
     const std::vector<BatchItem>& items_;
-    unsigned most_; ///< threads for one file
+    unsigned most_; ///< upper bound on threads for one file
     unsigned threads_;
     unsigned free_;
     Messages& messages_;
     const std::function<void(const Progress&)>& progress_;
-    std::vector<Clock::time_point> starts_; ///< of tasks, by their first file
-    std::deque<WorkerTask> tasks_;          ///< that wait for threads
+    std::vector<Clock::time_point> starts_; ///< by the first file of each task
+    std::deque<WorkerTask> tasks_;          ///< waiting for threads
     std::map<std::size_t, std::string> waiting_;
     std::map<std::string, std::size_t> failures_; ///< by kind
-    std::size_t next_ = 0;                        ///< not yet in any task
-    std::size_t due_ = 0;                         ///< whose result is the next to be printed
-    std::size_t told_ = 0;                        ///< how many have been printed
+    std::size_t next_ = 0;                        ///< first file without a task
+    std::size_t due_ = 0;                         ///< file whose result is printed next
+    std::size_t told_ = 0;                        ///< number of printed results
     std::size_t succeeded_ = 0;
     bool stopping_ = false;
-    WorkerTeam team_; ///< last: its end needs nothing of the rest
+    WorkerTeam team_; ///< last: its destructor does not use the other members
 };
 
 } // namespace

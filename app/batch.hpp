@@ -1,6 +1,6 @@
 #pragma once
 
-// lamella slice --batch: many files, each sliced by itself.
+// lamella slice --batch: many files, each sliced as a separate job.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/pipeline/slice_file.hpp"
@@ -18,41 +18,41 @@
 namespace lamella::app {
 
 struct BatchArguments {
-    std::string source; ///< a folder or a list; "" for no batch
+    std::string source; ///< a folder or a list; "" if there is no batch
     std::optional<std::uint64_t> jobs;
 };
 [[nodiscard]] OptionGroup batch_options(BatchArguments& target);
 
-/// One file of a batch and where its results go; "" for what is not asked for.
+/// One file of a batch and the paths of its results; "" for results not requested.
 struct BatchItem {
     std::string input;
     std::string output;
     std::string stats;
 };
 
-/// What became of one file.
+/// Results of one file.
 struct BatchResult {
     FileResult file;
     std::vector<std::string> warnings;
-    std::string stats; ///< what goes to BatchItem::stats
+    std::string stats; ///< content of BatchItem::stats
 };
 
-/// All of a batch, in order. `output` and `stats` are patterns as OutputNames takes them, or "";
-/// `extension` is that of outputs; `read` are files that the command reads besides, and no result may
-/// replace. Throws what batch_inputs, OutputNames and check_distinct throw.
+/// Returns all items of a batch, in order. `output` and `stats` are patterns for OutputNames, or "";
+/// `extension` is that of outputs; `read` are other files that the command reads, which no result may
+/// overwrite. Throws the errors of batch_inputs, OutputNames and check_distinct.
 [[nodiscard]] std::vector<BatchItem> batch_items(const BatchArguments& arguments, const std::string& output,
                                                  std::string_view extension, const std::string& stats,
                                                  std::span<const NamedFile> read);
 
-/// Slices one file; runs in worker processes. May throw whatever it will.
+/// Slices one file; runs in worker processes. May throw anything.
 using SliceItem = std::function<BatchResult(const BatchItem&, const Execution&)>;
 
 /// Slices all files on worker processes that share the threads of `execution`, prints one JSON object for
-/// each on standard output, in the order of the files, and sums up on standard error. A file that fails,
-/// crashes or is stopped by a limit is told as such and holds up nobody. Returns the exit code.
+/// each on standard output, in the order of the files, and a summary on standard error. A file that fails,
+/// crashes or exceeds a limit is reported as such and does not affect the others. Returns the exit code.
 ///
-/// Throws Error{cancelled} when a stop was requested, after the results that there are, and Error{output}
-/// when folders for outputs cannot be made or nobody takes the results.
+/// Throws Error{cancelled} when a stop was requested, after printing the existing results, and Error{output}
+/// if output folders cannot be created or standard output cannot be written.
 [[nodiscard]] int run_batch(const std::vector<BatchItem>& items, const BatchArguments& arguments,
                             const SliceItem& slice, const Execution& execution, Messages& messages);
 

@@ -27,7 +27,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Without the extension, nor that of gzip.
+/// Returns the name without the extension, and without that of gzip.
 fs::path stem_of(const fs::path& path) {
     const fs::path name = path.filename();
     return extension_of(name) == ".gz" ? name.stem().stem() : name.stem();
@@ -37,15 +37,16 @@ fs::path stem_of(const fs::path& path) {
     throw Error(ErrorKind::input, fmt::format("{}: {}", source, what));
 }
 
-/// Pipes, sockets and devices: they may never end, and nobody named them.
+/// Returns whether a path is a pipe, socket or device. Their data may never end, and the user did not name
+/// them.
 bool is_stream(const fs::path& path) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
     return fs::is_other(status);
 }
 
-/// Appends the meshes in a folder and in those within it, but for the folder `apart`. Where one cannot be
-/// listed, `fail` is given its path and the reason.
+/// Appends the meshes in a folder and its subfolders, except for the folder `apart`. Calls `fail` with the
+/// path and the reason if a folder cannot be listed.
 template <class Fail>
 void find_meshes(const fs::path& folder, const fs::path& apart, std::vector<std::string>& found,
                  const Fail& fail) {
@@ -57,7 +58,7 @@ void find_meshes(const fs::path& folder, const fs::path& apart, std::vector<std:
             continue;
         std::error_code ignored;
         if (entries->is_directory(ignored)) {
-            // No links: they may lead in a circle.
+            // Links are not followed: they may form a cycle.
             if (!entries->is_symlink(ignored) &&
                 (apart.empty() || fs::weakly_canonical(path, ignored) != apart))
                 find_meshes(path, apart, found, fail);
@@ -78,7 +79,7 @@ std::vector<std::string> files_in(const std::string& folder, const std::string& 
     find_meshes(folder, apart, found, [&](const fs::path& at, const std::error_code& why) {
         if (at == folder)
             refuse(folder, fmt::format("the folder cannot be listed: {}", why.message()));
-        // One of the files that fail: whoever opens it is told the same.
+        // The folder is added to the files that fail: opening it gives the same error.
         found.push_back(at.string());
     });
     if (found.empty())
@@ -122,7 +123,7 @@ std::vector<std::string> files_listed(const std::string& list) {
     return lines;
 }
 
-/// The deepest folder that all paths lie in.
+/// Returns the deepest folder that contains all paths.
 fs::path common_folder(std::span<const fs::path> paths) {
     std::optional<fs::path> common;
     for (const fs::path& path : paths) {
@@ -141,7 +142,7 @@ fs::path common_folder(std::span<const fs::path> paths) {
     return common.value_or(fs::path());
 }
 
-/// The pattern with these in the places of {name}, {folder} and {index}.
+/// Returns the pattern with these values for {name}, {folder} and {index}.
 std::string filled(std::string_view pattern, const std::array<std::string, 3>& values) {
     constexpr std::array<std::string_view, 3> placeholders{"{name}", "{folder}", "{index}"};
     std::string text;
@@ -164,7 +165,7 @@ std::string filled(std::string_view pattern, const std::array<std::string, 3>& v
     return text.append(rest);
 }
 
-/// "out/a.cli", ".obj": "out/a.obj.cli".
+/// Returns "out/a.obj.cli" for "out/a.cli" and ".obj".
 std::string with_tag(const fs::path& name, const std::string& tag) {
     return (name.parent_path() / (name.stem().string() + tag + name.extension().string())).string();
 }
@@ -221,7 +222,7 @@ void OutputNames::note_folders(const fs::path& name) {
                         fmt::format("{}: would lie within the result {}; choose another folder",
                                     name.string(), folder.string()));
         if (!folders_.insert(folder.string()).second)
-            return; // and so are those above it
+            return; // its parent folders are known, too
     }
 }
 

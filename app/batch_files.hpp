@@ -1,6 +1,6 @@
 #pragma once
 
-// Which files a batch works on, and what their results are called.
+// Input files of a batch, and the names of its results.
 
 #include <filesystem>
 #include <span>
@@ -11,37 +11,36 @@
 
 namespace lamella::app {
 
-/// What a batch is made of: a folder, of which all files of meshes are taken, those in folders within it,
-/// too, ordered by path; or a list, one path a line in its order ("-": on standard input). A list that holds
-/// a NUL is taken apart at those instead, as `find -print0` writes it. Empty lines and lines that begin with
-/// # do not count; paths in a list are relative to the working folder.
+/// Returns the files of a batch. The source is a folder, whose mesh files are taken, also from subfolders,
+/// ordered by path; or a list, with one path a line, in the order of the list ("-": on standard input). A
+/// list that contains a NUL is split at NULs instead, as `find -print0` writes it. Empty lines and lines that
+/// begin with # are ignored; paths in a list are relative to the working folder.
 ///
-/// Of a folder, hidden files and folders, links to folders, pipes, devices and what lies in `results` (where
-/// that is another folder) are left out. A folder within it that cannot be listed stands among the files, to
-/// fail as one of them.
+/// Hidden files and folders, links to folders, pipes, devices and the contents of `results` (if that is
+/// another folder) are skipped in folders. A subfolder that cannot be listed is returned as a file, which
+/// later fails.
 ///
-/// Throws Error{input} where the source cannot be read or names nothing, and Error{usage} for a list with the
-/// name of a mesh.
+/// Throws Error{input} if the source cannot be read or is empty, and Error{usage} for a list with the name of
+/// a mesh.
 [[nodiscard]] std::vector<std::string> batch_inputs(const std::string& source, const std::string& results);
 
-/// Throws Error{usage} where a result would be written over one of the inputs, or over another result, as
-/// through a symbolic link.
+/// Throws Error{usage} if a result would overwrite one of the inputs or another result, for example through a
+/// symbolic link.
 void check_distinct(std::span<const std::string> inputs, std::span<const std::string> outputs);
 
-/// Gives out names, none of them twice, nor one that is a folder of another.
+/// Assigns unique names, none of which is a folder of another.
 class OutputNames {
   public:
-    /// One for each input. `pattern` is a path with {name} (of the input, without its extension), {folder}
-    /// (from the folder that all inputs share to the input's; "." where that is the same) or {index} (from 0)
-    /// in it; without any of them it is a folder, in which the folders of the inputs are repeated, and
-    /// `extension` is put behind the names.
+    /// Returns one name for each input. `pattern` is a path with {name} (of the input, without its
+    /// extension), {folder} (from the common folder of all inputs to that of the input; "." if they are
+    /// equal) or {index} (from 0) in it. Without a placeholder it is a folder, in which the folders of the
+    /// inputs are repeated, and `extension` is appended to the names.
     ///
-    /// Where inputs would get the same name, all of them but the first get their own extension before the
-    /// new one, and a number where that does not help: a.stl, a.obj: a.cli, a.obj.cli. The names depend on
-    /// nothing but the inputs, their order, and what has been given out before.
+    /// If several inputs would get the same name, all but the first keep their own extension before the new
+    /// one, and get a number if that does not suffice: a.stl, a.obj: a.cli, a.obj.cli. The names depend only
+    /// on the inputs, their order, and earlier names.
     ///
-    /// Throws Error{usage} for a placeholder that does not exist, and for names in the folder of a name that
-    /// was given out before.
+    /// Throws Error{usage} for an unknown placeholder, and for names within a folder that is an earlier name.
     [[nodiscard]] std::vector<std::string> give(std::span<const std::string> inputs,
                                                 const std::string& pattern, std::string_view extension);
 
@@ -50,10 +49,10 @@ class OutputNames {
     void note_folders(const std::filesystem::path& name);
 
     std::unordered_set<std::string> taken_;
-    std::unordered_set<std::string> folders_; ///< of what is taken
+    std::unordered_set<std::string> folders_; ///< parent folders of names in taken_
 };
 
-/// Whether `pattern` has a placeholder, else it is a folder.
+/// Returns whether `pattern` has a placeholder; otherwise it is a folder.
 [[nodiscard]] bool has_placeholder(std::string_view pattern) noexcept;
 
 } // namespace lamella::app

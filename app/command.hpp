@@ -1,7 +1,7 @@
 #pragma once
 
-// What a command of the program is: its operands, its options and what it does. One table of these feeds the
-// parser, --help, the man page, shell completion and configuration files.
+// Commands of the program: their operands, options and actions. One table of commands feeds the parser,
+// --help, the man page, shell completion and configuration files.
 
 #include "lamella/core/execution.hpp"
 
@@ -19,7 +19,7 @@ namespace lamella::app {
 
 struct Command;
 
-/// What the text of an option's value stands for; configuration files and statistics take the same.
+/// Type of an option's value; configuration files and statistics use the same types.
 enum class ValueKind {
     flag,
     count,
@@ -41,19 +41,20 @@ struct Option {
     std::string placeholder = {}; ///< of the value in help texts, such as "MM"
     std::string help;
     std::vector<std::string> choices = {}; ///< for ValueKind::choice
-    std::string preset = {};               ///< the value where none is given, as text; may be empty
-    /// Takes the value ("true" or "false" for a flag). Throws Error{usage} whose text says what is wrong with
-    /// it; the parser puts the option in front.
+    std::string preset = {};               ///< default value, as text; may be empty
+    /// Takes the value ("true" or "false" for a flag). Throws Error{usage} that describes an invalid value;
+    /// the parser prepends the option.
     std::function<void(const std::string& text)> set = {};
-    /// Whether it makes sense in a configuration file.
+    /// True if the option is allowed in a configuration file.
     bool configurable = true;
-    /// The name of an option without which this one says nothing; "" for none.
+    /// Name of an option without which this one has no effect; "" for none.
     std::string goes_with = {};
-    /// Given after a file, it holds for that one; before the first file, for all (Operand::own_options).
+    /// Given after a file, the option applies to that file; before the first file, to all
+    /// (Operand::own_options).
     bool of_each_file = false;
-    /// What the command line or the configuration file gave, once parsed: the last of several values.
+    /// Value of the command line or the configuration file, once parsed: the last of several values.
     std::optional<std::string> given = {};
-    /// The same, of what was given for all files.
+    /// The same for values given for all files.
     std::optional<std::string> given_for_all = {};
 };
 
@@ -68,21 +69,21 @@ struct OptionGroup {
     std::vector<Option> options;
 };
 
-/// What an operand was given.
+/// Value of an operand.
 struct GivenOperand {
     std::string text;
-    std::vector<Setting> settings = {}; ///< for it alone
+    std::vector<Setting> settings = {}; ///< options for it alone
 };
 
 /// An argument without a name, such as the file to slice.
 struct Operand {
     std::string placeholder; ///< such as "FILE"
     std::string help;
-    std::vector<std::string> choices = {}; ///< empty: the name of a file; "-" is a standard stream
-    bool written = false;                  ///< of a file: it is written, not read
+    std::vector<std::string> choices = {}; ///< empty: the operand is a file; "-" is a standard stream
+    bool written = false;                  ///< the file is written, not read
     bool required = true;
-    bool repeated = false;    ///< may be given any number of times; the last one only
-    bool own_options = false; ///< options behind it may hold for it alone (Option::of_each_file)
+    bool repeated = false;    ///< may be repeated; only the last operand can be
+    bool own_options = false; ///< options after it may apply to it alone (Option::of_each_file)
     std::function<void(const std::string& text)> set;
     std::vector<GivenOperand> given = {}; ///< once parsed
 };
@@ -92,7 +93,7 @@ struct Example {
     std::string effect;
 };
 
-/// What a running command is given.
+/// Arguments of a running command.
 struct Context {
     const Command& command;
     Messages& messages;
@@ -110,22 +111,22 @@ struct Command {
     std::function<int(const Context&)> run;
 };
 
-/// The option of that name, or nullptr.
+/// Returns the option of that name, or nullptr.
 [[nodiscard]] Option* find_option(Command& command, std::string_view name);
 [[nodiscard]] const Option* find_option(const Command& command, std::string_view name);
 
-/// A file that was given, and by what, such as "--stats".
+/// A file that was given, and the option or operand that names it, such as "--stats".
 struct NamedFile {
     std::string name;
     std::string path;
 };
-/// Files to read or to write (ValueKind::input or output).
+/// Returns the files to read or to write (ValueKind::input or output).
 [[nodiscard]] std::vector<NamedFile> files_of(const Command& command, ValueKind kind);
 
-/// All commands, in the order in which help lists them.
+/// Returns all commands, in the order in which help lists them.
 [[nodiscard]] std::vector<Command> all_commands();
 
-/// The exit codes of the program, for help texts, the man page and main.
+/// An exit code of the program, for help texts, the man page and main.
 struct ExitCode {
     int code;
     const char* meaning;

@@ -37,13 +37,13 @@ struct CompareArguments {
     RunOptions run;
 };
 
-/// A plane that does not agree, and what its layers have besides contours.
+/// A plane that differs, with the details of its layers besides contours.
 struct Differing {
     const ComparedPlane* plane;
     const PlaneDetails* details;
 };
 
-/// Orders differences by size: a layer that one file does not have is the largest.
+/// Returns the size of a difference, for sorting: that of a missing layer is the largest.
 double size_of(const Differing& one) {
     if (!one.plane->first || !one.plane->second)
         return std::numeric_limits<double>::infinity();
@@ -145,13 +145,13 @@ Json parameters_json(const std::vector<ParameterDifference>& parameters) {
     return list;
 }
 
-/// What one of two layers at a plane has and the other has not.
+/// Area of the symmetric difference of two layers at a plane.
 struct AreaDifference {
     double z = 0;
     double mm2 = 0;
 };
 
-/// Of all planes where it is not 0.
+/// Returns those of all planes where it is not 0.
 std::vector<AreaDifference> area_differences(const StackComparison& found, const LayerStack& first,
                                              const LayerStack& second) {
     std::vector<AreaDifference> differences;

@@ -77,7 +77,7 @@ bool holds_vectors(const LayerFile& file) {
                        [](const LayerPart& part) { return part.exposure.has_value(); });
 }
 
-/// Each exposure of the file with its figures: the beam goes through the parts of a layer one after the
+/// Returns each exposure of the file with its figures. The beam exposes the parts of a layer one after the
 /// other.
 std::vector<ExposureResult> exposures_of(const LayerFile& file) {
     std::vector<ExposureResult> exposures;
@@ -96,8 +96,8 @@ std::vector<ExposureResult> exposures_of(const LayerFile& file) {
     return exposures;
 }
 
-/// Times and energies are told where the file says speeds and powers; jumps at a speed that it does not say
-/// take no time.
+/// Returns the figures of vectors. Times and energies are included if the file contains speeds and powers;
+/// jumps at an unknown speed take no time.
 Figures vector_figures(const std::vector<ExposureResult>& exposures) {
     const auto all_have = [&](double ParameterSet::*number) {
         return std::all_of(exposures.begin(), exposures.end(), [&](const ExposureResult& one) {
@@ -121,7 +121,7 @@ Figures vector_figures(const std::vector<ExposureResult>& exposures) {
 Figures figures_of(const LayerFile& file, const std::vector<ExposureResult>& exposures) {
     LayerMeasure all;
     double volume_mm3 = 0;
-    std::uint64_t other_hatches = 0; // of no exposure
+    std::uint64_t other_hatches = 0; // without an exposure
     for (const LayerPart& part : file.parts)
         for (const Layer& layer : part.layers) {
             other_hatches += part.exposure ? 0 : layer.hatches.size() / 2;
@@ -143,7 +143,7 @@ Figures figures_of(const LayerFile& file, const std::vector<ExposureResult>& exp
         figures.push_back(
             {"hatches", other_hatches, "hatched", counted(other_hatches, "line") + " of no exposure"});
     if (holds_vectors(file)) {
-        // Contours of an exposure lie within those of others: they bound no volume together.
+        // Contours of an exposure lie within those of others, so they do not bound a volume together.
         std::erase_if(figures, [](const Figure& figure) { return figure.key == "volume_mm3"; });
         for (Figure& figure : vector_figures(exposures))
             figures.push_back(std::move(figure));

@@ -24,13 +24,14 @@ namespace {
 constexpr std::string_view config = "config";
 constexpr std::string_view dump_config = "dump-config";
 constexpr std::string_view help = "help";
-constexpr std::string_view timeout = "timeout"; // of commands that have it
+constexpr std::string_view timeout = "timeout"; // of commands with this option
 
 [[noreturn]] void refuse(const std::string& text) {
     throw Error(ErrorKind::usage, text);
 }
 
-/// A command line taken apart, in its order, nothing applied yet: a file's options come first.
+/// A parsed command line in its order, before anything is applied: options of a configuration file come
+/// first.
 struct Words {
     struct Word {
         Option* option;       ///< null for an operand
@@ -68,7 +69,7 @@ class Splitter {
     }
 
   private:
-    /// Some commands write to an argument.
+    /// Returns a hint for commands that write to an argument.
     [[nodiscard]] std::string instead_of_output(std::string_view name) const {
         if (name != "output" && name != "o")
             return {};
@@ -117,7 +118,8 @@ class Splitter {
         out_.words.push_back({&option, typed, words_[next_++]});
     }
 
-    /// Negative numbers and "-" are values; a value that looks like an option can be given with "=".
+    /// Returns whether a word is an option. Negative numbers and "-" are values; a value that looks like an
+    /// option can be given with "=".
     [[nodiscard]] bool is_option(const std::string& word) const {
         return word.starts_with("--") || (word.size() > 1 && word[0] == '-' && by_letter(word[1]) != nullptr);
     }
@@ -149,8 +151,8 @@ void check_path(const std::string& path) {
         refuse("the name of a file is empty");
 }
 
-/// What the system calls standard input or output is "-" here: only one file is read from the one, and
-/// nothing else is written between the bytes of the other.
+/// Returns "-" for the system's names of standard input or output. So only one file is read from standard
+/// input, and nothing else is written between the bytes on standard output.
 std::string file_name(const std::string& text, bool written) {
     const std::string_view name = written ? "stdout" : "stdin";
     const std::string_view number = written ? "1" : "0";
@@ -160,12 +162,12 @@ std::string file_name(const std::string& text, bool written) {
                : text;
 }
 
-/// Gives a command its options and operands, one after the other.
+/// Assigns options and operands to a command, one after the other.
 class Assignment {
   public:
     explicit Assignment(Command& command) : command_(command) {}
 
-    /// `origin` says where the text came from, in case it is wrong.
+    /// Sets an option. `origin` is the source of the text, for errors.
     void set(Option& option, const std::string& origin, const std::string& given) {
         const std::string text =
             is_file(option.kind) ? file_name(given, option.kind == ValueKind::output) : given;
@@ -229,7 +231,7 @@ class Assignment {
   private:
     Command& command_;
     std::size_t taken_ = 0;
-    GivenOperand* file_ = nullptr; ///< the last one with options of its own
+    GivenOperand* file_ = nullptr; ///< the last one with its own options
 };
 
 template <class AnyOption, class AnyCommand>
@@ -245,7 +247,7 @@ bool is_on(const std::optional<std::string>& given) {
     return given && *given != "false";
 }
 
-/// Options that say nothing without another one.
+/// Throws for options that have no effect without another one.
 void check_company(const Command& command) {
     const auto says = [](const GivenOperand& file, const Option& option) {
         return std::any_of(file.settings.begin(), file.settings.end(),

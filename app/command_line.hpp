@@ -1,6 +1,6 @@
 #pragma once
 
-// From the words of a command line to a command whose options are set.
+// Parses a command line and sets the options of a command.
 
 #include "command.hpp"
 
@@ -9,21 +9,21 @@
 
 namespace lamella::app {
 
-/// What the common options of every command ask for.
+/// Request made by the common options of every command.
 enum class Wish { run, help, dump_config };
 
-/// Sets the options and operands of a command: first what its configuration file says (--config), then what
-/// the command line says. Files of the configuration file only count where the command line names none.
-/// Throws Error{usage} with a suggestion where there is one, also for options without the one that they go
-/// with, and where two files are to be read from standard input.
+/// Sets the options and operands of a command: first those of its configuration file (--config), then those
+/// of the command line. Files in the configuration file are used only if the command line names none. Throws
+/// Error{usage}, with a suggestion if there is one, also for options without the one that they require, and
+/// if two files are to be read from standard input.
 ///
-/// A --timeout of the command line holds for reading the configuration file, too, which may be a pipe.
+/// A --timeout on the command line also applies to reading the configuration file, which may be a pipe.
 [[nodiscard]] Wish parse(Command& command, std::span<const std::string> words, const Messages& messages);
 
-/// The options that every command has.
+/// Returns the options that every command has.
 [[nodiscard]] OptionGroup common_options(bool configurable);
 
-/// ", did you mean --layer-height?" or "": to be put behind an unknown option's name.
+/// Returns ", did you mean --layer-height?" or "", to be appended to an unknown option's name.
 [[nodiscard]] std::string option_suggestion(const Command& command, std::string_view name,
                                             std::string_view hyphens);
 

@@ -81,7 +81,7 @@ TriangleSoup sheet(const MakeArguments& arguments) {
     return make_sheet(shape);
 }
 
-/// A body that is always the same.
+/// Returns a body without parameters.
 template <TriangleSoup (*make)()>
 TriangleSoup fixed(const MakeArguments& /*arguments*/) {
     return make();
@@ -127,7 +127,7 @@ TriangleSoup cylinder(const MakeArguments& arguments) {
 
 struct Body {
     std::string_view name;
-    std::string_view options; ///< that it understands, besides the common ones
+    std::string_view options; ///< supported options, besides the common ones
     TriangleSoup (*make)(const MakeArguments& arguments);
 };
 constexpr std::array<Body, 11> bodies{{{"sheet", "holes segments size thickness order", sheet},
@@ -144,7 +144,7 @@ constexpr std::array<Body, 11> bodies{{{"sheet", "holes segments size thickness 
 
 constexpr std::string_view shape_title = "What it is like";
 
-/// Refuses an option that this body would ignore.
+/// Rejects an option that this body would ignore.
 void check_options(const Body& body, const Command& command) {
     const auto understands = [&](const Option& option) {
         return fmt::format(" {} ", body.options).find(fmt::format(" {} ", option.name)) != std::string::npos;
@@ -181,7 +181,7 @@ OptionGroup shape_options(MakeArguments& target) {
              {"wall", "hole", "split", "shuffle"}, target.order)}};
 }
 
-/// In the format of the extension: STL unless it is that of another one.
+/// Writes the mesh in the format of the extension, STL by default.
 void write_mesh(const std::string& output, const TriangleSoup& soup, const MakeArguments& arguments) {
     const std::string extension = extension_of(output);
     if (arguments.ascii && extension == ".ply")
@@ -197,13 +197,13 @@ void write_mesh(const std::string& output, const TriangleSoup& soup, const MakeA
         write_stl(output, soup);
 }
 
-/// What was made.
+/// Figures of the generated body.
 struct Made {
     std::uint64_t triangles = 0;
     Box3 box;
 };
 
-/// A lattice goes to its file while it is made: it may be larger than memory.
+/// Writes a lattice while it is generated: it may be larger than memory.
 Made stream_lattice(const std::string& output, const MakeArguments& arguments, const Transform& pose) {
     const LatticeShape shape = lattice_shape(arguments);
     Made made{.triangles = lattice_triangles(shape), .box = {}};
@@ -227,7 +227,7 @@ Made make_whole(const std::string& output, const MakeArguments& arguments, const
     return {soup.size(), bounding_box(soup)};
 }
 
-/// Whether the body goes to a binary STL file as it is made.
+/// Returns whether the body is written to a binary STL file while it is generated.
 bool can_stream(const std::string& output, const MakeArguments& arguments) {
     const std::string extension = extension_of(output);
     return arguments.body == "lattice" && !arguments.shuffle && !arguments.ascii && extension != ".ply" &&

@@ -59,7 +59,7 @@ OptionGroup output_options(ScanCommandArguments& target) {
     return group;
 }
 
-/// Vectors are no material: a hatch has no contours, and each contour would be hatched.
+/// Rejects scan vectors, which are not material: hatches have no contours, and each contour would be hatched.
 void check_layers(const LayerFile& file) {
     for (const LayerPart& part : file.parts)
         if (part.exposure)

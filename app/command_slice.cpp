@@ -43,7 +43,7 @@
 namespace lamella::app {
 namespace {
 
-/// Where one file's parts stand.
+/// Placement of the parts of one file.
 struct InputOptions {
     PlacementOptions placement;
     std::optional<std::uint64_t> copies;
@@ -54,7 +54,7 @@ struct InputOptions {
 
 struct SliceArguments {
     std::vector<PlateInput> inputs;
-    /// Of the file named last; before the first one, of all files.
+    /// Options of the file named last; before the first file, options of all files.
     InputOptions of_input;
     InputOptions of_all;
     std::optional<std::array<double, 3>> build_volume;
@@ -82,7 +82,7 @@ struct SliceArguments {
     Communicator* team = nullptr; ///< see slice_command
 };
 
-/// Options of how the slice file is written say nothing without one.
+/// Returns options for writing the slice file, which have no effect without one.
 std::vector<Option> with_output(std::vector<Option> options) {
     for (Option& option : options)
         option.goes_with = "output";
@@ -107,7 +107,7 @@ OptionGroup output_options(SliceArguments& target) {
     return group;
 }
 
-/// What has been said of the file named last is complete.
+/// Completes the options of the file named last.
 void finish_input(SliceArguments& target) {
     PlateInput& input = target.inputs.back();
     const InputOptions& options = target.of_input;
@@ -204,7 +204,7 @@ OptionGroup timed_run_options(SliceArguments& target) {
     return group;
 }
 
-/// What is asked for, if anything is.
+/// Returns the strategy if scan vectors are requested.
 std::optional<ScanStrategy> strategy_of(const SliceArguments& arguments) {
     const bool scans = arguments.scan || !arguments.scanning.file.empty();
     if (!scans && !arguments.scanning.changes.empty())
@@ -213,7 +213,7 @@ std::optional<ScanStrategy> strategy_of(const SliceArguments& arguments) {
     return scans ? std::optional(arguments.scanning.strategy()) : std::nullopt;
 }
 
-/// A shard is stamped with the content of its inputs and its output.
+/// Checks the inputs and the output of a shard, whose contents its stamp records.
 void check_shard(const SliceArguments& arguments) {
     if (!arguments.shard)
         return;
@@ -234,7 +234,7 @@ void check_shard(const SliceArguments& arguments) {
             fmt::format("--shard goes with files that lamella merge can read; {} is none", format.name));
 }
 
-/// Such a folder is made anew, and nothing may be in it.
+/// Checks that no result lies in an output folder, which is created anew.
 void check_folder(const SliceArguments& arguments) {
     if (arguments.output.empty() || !layer_format(arguments.writing.format, arguments.output).directory)
         return;
@@ -335,7 +335,7 @@ std::string summary(const FileJob& job, const FileResult& result) {
     return text;
 }
 
-/// The extension of a batch's outputs where `pattern` does not have it. "" for formats of folders.
+/// Returns the extension of a batch's outputs if `pattern` does not contain it; "" for formats of folders.
 std::string_view batch_extension(const SliceArguments& arguments) {
     if (arguments.output.empty() || has_placeholder(arguments.output))
         return {};
@@ -367,8 +367,8 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
         Deadline(arguments.timeout, one_line(input_name(arguments.batch.source)), context.messages, execution)
             .run([&](const Execution&) { return make_job(arguments); });
     check_conflict(model.shard.has_value(), true, "--batch and --shard", "share out the list instead");
-    model.layer_statistics = true; // for the hashes
-    Messages unheard;              // what becomes of a file is told by its record
+    model.layer_statistics = true; // needed for the hashes
+    Messages unheard;              // the records of the files contain the messages
     unheard.set_style(ProgressStyle::silent);
     const SliceItem slice = [&](const BatchItem& item, const Execution& given) {
         FileJob job = model;
@@ -385,7 +385,7 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
     return run_batch(items, arguments.batch, slice, execution, context.messages);
 }
 
-/// The stamp, where a shard has one; else "".
+/// Returns the path of the stamp if a shard has one; else "".
 std::string stamp_of(const SliceArguments& arguments) {
     return arguments.shard && !arguments.output.empty() && arguments.output != "-"
                ? stamp_path(arguments.output)
@@ -401,7 +401,7 @@ void check_files_of_team(const Command& command) {
                             input.name));
 }
 
-/// All processes fail together.
+/// Throws on all processes if their jobs differ.
 void check_job_of_team(const Command& command, const FileJob& job, Communicator& processes) {
     const std::vector<std::string> all = processes.gather(compact_json(job_parameters(command, job)));
     for (const std::string& other : all)
@@ -411,8 +411,8 @@ void check_job_of_team(const Command& command, const FileJob& job, Communicator&
                         fmt::format("the processes were not given one job: {}", difference));
 }
 
-/// The statistics and the stamp are written when all else is done, so nobody shall slice for hours what
-/// cannot be told then. All processes fail together.
+/// Checks early that statistics and stamp can be written, since they are written after hours of slicing. All
+/// processes fail together.
 void check_places(const SliceArguments& arguments, Communicator& processes) {
     std::string refusal;
     if (processes.process() == 0) {
@@ -444,7 +444,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     Communicator& processes = arguments.team != nullptr ? *arguments.team : alone();
     const Execution execution = arguments.run.execution(context);
     FileJob job;
-    Json origin; // of a shard that is stamped
+    Json origin; // origin of a shard with a stamp
     const auto slice = [&](const Execution& run) -> std::optional<FileResult> {
         job = make_job(arguments);
         if (job.shard && arguments.team != nullptr)
@@ -487,13 +487,13 @@ int run_slice(SliceArguments& arguments, const Context& context) {
             else
                 write_text_file(arguments.stats, text);
         }
-        // Last: what is stamped is finished, with all that was asked for.
+        // The stamp is written last: it marks a shard as finished, with all requested results.
         if (!origin.is_null())
             stamp_shard(job, arguments.stats, result, origin, execution);
     });
     const bool to_output = arguments.output == "-" || arguments.stats == "-" || arguments.report == "-";
     context.messages.written(summary(job, result), to_output ? "-" : arguments.output);
-    finish_printing(); // while the deadline counts
+    finish_printing(); // still within the deadline
     return 0;
 }
 

@@ -34,7 +34,7 @@ struct ViewArguments {
     std::string input;
     std::string output;
     std::optional<double> layer_height;
-    std::string slice_at; ///< "" where nothing is given
+    std::string slice_at; ///< "" if not given
     PlacementOptions placement;
     LayerStepOptions making;
     ReadLimits limits;
@@ -54,7 +54,7 @@ Diagnosis diagnosis_of(const Plate& plate, const Execution& execution) {
     return diagnose(weld(joined(plate, execution), execution), options, execution);
 }
 
-/// The number of layers.
+/// Writes the page of a mesh; returns the number of layers.
 std::uint64_t view_mesh(const ViewArguments& arguments, MeshFile mesh, const std::string& output,
                         Messages& messages, const Execution& execution) {
     Plate plate = load_plate(input_of(arguments), std::move(mesh), execution);
@@ -68,7 +68,7 @@ std::uint64_t view_mesh(const ViewArguments& arguments, MeshFile mesh, const std
         job.layering.at = slice_at_named(arguments.slice_at);
     job.max_memory = arguments.limits.max_memory.value_or(0);
     job.steps = arguments.making.steps();
-    job.layer_statistics = job.steps.any(); // the page tells what became of each
+    job.layer_statistics = job.steps.any(); // the page shows the changes of each layer
     job.report = {
         .path = output, .page = page_options(arguments.input), .notes = [&](const FileResult& result) {
             PageNotes notes = run_notes(result);
@@ -82,7 +82,7 @@ std::uint64_t view_mesh(const ViewArguments& arguments, MeshFile mesh, const std
     return result.report.layers;
 }
 
-/// The number of layers.
+/// Writes the page of layers; returns their number.
 std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const std::string& output,
                           Messages& messages, const Execution& execution) {
     if (arguments.placement.given() || arguments.layer_height || !arguments.slice_at.empty())
@@ -114,7 +114,8 @@ std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const 
     return info.layers;
 }
 
-/// Beside the reader, not beside the file: "parts/rook.stl" makes rook.html here.
+/// Returns the path of the page, in the working folder rather than that of the file: "parts/rook.stl" becomes
+/// rook.html.
 std::string output_of(const ViewArguments& arguments) {
     if (!arguments.output.empty())
         return arguments.output;

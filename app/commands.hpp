@@ -8,8 +8,8 @@
 
 namespace lamella::app {
 
-/// `team`: processes that slice one plate together, of which the first one tells the results; nullptr: this
-/// process alone.
+/// `team` are processes that slice one plate together, of which the first reports the results; nullptr is
+/// this process alone.
 [[nodiscard]] Command slice_command(Communicator* team = nullptr);
 [[nodiscard]] Command info_command();
 [[nodiscard]] Command compare_command();

@@ -22,7 +22,7 @@ std::string with_prefixes(std::string_view text, std::string_view special, std::
     return out;
 }
 
-/// Inside single quotes.
+/// Returns the text for use inside single quotes.
 std::string shell_quoted(std::string_view text) {
     std::string out;
     for (const char c : text)
@@ -30,7 +30,7 @@ std::string shell_quoted(std::string_view text) {
     return out;
 }
 
-/// All options of a command in one list.
+/// Returns all options of a command in one list.
 std::vector<const Option*> options_of(const Command& command) {
     std::vector<const Option*> options;
     for (const OptionGroup& group : command.groups)
@@ -43,7 +43,8 @@ std::string bash_pattern(const Option& option) {
     return option.letter != 0 ? fmt::format("-{}|--{}", option.letter, option.name) : "--" + option.name;
 }
 
-/// Choices are offered for the first operand only, until one of them is there.
+/// Returns the completion of operands. Choices are offered for the first operand only, until one of them is
+/// present.
 std::string bash_operands(const Command& command) {
     const std::string files = "compopt -o default; return";
     if (command.operands.empty() || command.operands.front().choices.empty())
@@ -55,7 +56,7 @@ std::string bash_operands(const Command& command) {
         fmt::join(choices, " "));
 }
 
-/// The case of one command: values after options that take one, option names, operands.
+/// Returns the case of one command: values after options that take one, option names, operands.
 std::string bash_case(const Command& command) {
     std::string text = fmt::format("    {})\n        case \"$previous\" in\n", command.name);
     std::vector<std::string> names;
@@ -122,7 +123,8 @@ std::string fish_option(const Command& command, const Option& option) {
     return text + fmt::format(" -d '{}'\n", with_prefixes(option.help, "'\\", "\\"));
 }
 
-/// Choices are offered until one of them is there, files after it; without choices, files.
+/// Returns the completion of operands. Choices are offered until one of them is present, files after it;
+/// without choices, files.
 std::string fish_operands(const Command& command) {
     const std::string here =
         fmt::format("complete -c lamella -n '__fish_seen_subcommand_from {}", command.name);
@@ -132,7 +134,7 @@ std::string fish_operands(const Command& command) {
         if (operand.choices.empty()) {
             text += fmt::format("{}{}' -F\n", here, choices.empty() ? "" : "; and " + choices);
         } else {
-            std::vector<std::string> others = operand.choices; // than the command, such as help
+            std::vector<std::string> others = operand.choices; // all except the command itself, such as help
             std::erase(others, command.name);
             choices = fmt::format("__fish_seen_subcommand_from {}", fmt::join(others, " "));
             text += fmt::format("{}; and not {}' -a '{}'\n", here, choices, fmt::join(operand.choices, " "));

@@ -22,7 +22,7 @@ namespace {
 constexpr std::string_view inputs_key = "input";
 constexpr std::string_view path_key = "path";
 
-/// Throws when the command has no such option or it has no place in a file.
+/// Returns the option. Throws if the command has no such option or a file must not contain it.
 Option& option_of(Command& command, const std::string& place, std::string_view key) {
     Option* const option = find_option(command, key);
     if (option != nullptr && !option->configurable)
@@ -35,7 +35,7 @@ Option& option_of(Command& command, const std::string& place, std::string_view k
 
 std::optional<std::string> as_text(const TomlValue& value);
 
-/// Numbers as the command line takes a list of them; nothing when an item is no number.
+/// Returns numbers in the form of a list on the command line; nothing if an item is not a number.
 std::optional<std::string> list_as_text(const TomlList& items) {
     std::string list;
     for (const TomlValue& item : items) {
@@ -46,7 +46,7 @@ std::optional<std::string> list_as_text(const TomlList& items) {
     return list;
 }
 
-/// A value of the file as it would stand on the command line; nothing for one that no option can have.
+/// Returns a value of the file in the form of the command line; nothing for a value that no option can have.
 std::optional<std::string> as_text(const TomlValue& value) {
     if (const auto* text = value.as<std::string>())
         return *text;
@@ -61,7 +61,7 @@ std::optional<std::string> as_text(const TomlValue& value) {
     return std::nullopt;
 }
 
-/// Goes through a table of the file.
+/// Reads a table of the file.
 class Reading {
   public:
     explicit Reading(Command& command) : command_(command) {}
@@ -152,7 +152,7 @@ std::string toml_line(const Option& option, const std::string& text) {
     return fmt::format("{} = {}\n", option.name, toml_value(option, text));
 }
 
-/// What is in effect for all files; "" for nothing, also where it would say nothing.
+/// Returns the value in effect for all files; "" for none, and if the option has no effect.
 std::string text_for_all(const Command& command, const Option& option) {
     const auto given = [](const Option& one) {
         return one.of_each_file ? one.given_for_all : one.given;
@@ -163,7 +163,7 @@ std::string text_for_all(const Command& command, const Option& option) {
     return option.kind == ValueKind::flag && text == "false" ? std::string() : text;
 }
 
-/// Of several values the last one counts.
+/// Returns the table of an input. The last of several values counts.
 std::string input_text(const Command& command, const GivenOperand& input) {
     std::string text = fmt::format("\n[[{}]]\n{} = {}\n", inputs_key, path_key, toml_quoted(input.text));
     for (const OptionGroup& group : command.groups)
@@ -193,7 +193,7 @@ std::string config_text(const Command& command) {
             if (!option.configurable)
                 continue;
             const std::string text = text_for_all(command, option);
-            // What is only a preset contradicts nothing, so it stays a comment.
+            // A mere default must not conflict with other options, so it is a comment.
             if (!text.empty())
                 set += (option.given || option.given_for_all ? "" : "# ") + toml_line(option, text);
             else

@@ -14,11 +14,11 @@
 namespace lamella::app {
 namespace {
 
-// A handler of signals can be given nothing, and may ask for no memory.
+// A signal handler takes no arguments of ours, and must not allocate memory.
 std::atomic<ProgressStyle> told_as = ProgressStyle::none;
 
 struct LastWords {
-    std::string_view for_people; ///< on a line of their own: a bar may stand on this one
+    std::string_view for_people; ///< begins with a line break: a progress bar may be on the current line
     std::string_view for_programs;
 };
 constexpr LastWords lost_input{
@@ -43,14 +43,14 @@ extern "C" void at_crash(int number) {
     if (number == SIGXCPU && told_as != ProgressStyle::silent)
         leave_with(time_is_up, limit_exit_code);
     remove_unfinished();
-    raise(number); // with its default action again, once this handler is left
+    raise(number); // the default action follows when this handler returns
 }
 
 } // namespace
 
 void leave_at_once(std::string_view last_words, int exit_code) noexcept {
     remove_unfinished();
-    // What is stuck may be a write to standard error: nobody reads it, or not soon enough.
+    // A blocked write to standard error may be the reason why the program is stuck.
     pollfd error_output{STDERR_FILENO, POLLOUT, 0};
     if (poll(&error_output, 1, 0) > 0)
         static_cast<void>(!write(STDERR_FILENO, last_words.data(), last_words.size()));
@@ -58,7 +58,7 @@ void leave_at_once(std::string_view last_words, int exit_code) noexcept {
 }
 
 void prepare_for_crashes() noexcept {
-    // A reader that went away and a file that grew too large are errors of writing, not ends of the program.
+    // A closed pipe and a file that became too large are errors of writing; they must not end the program.
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
     for (const int number : {SIGBUS, SIGSEGV, SIGILL, SIGFPE, SIGABRT, SIGXCPU}) {

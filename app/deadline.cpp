@@ -14,11 +14,11 @@
 namespace lamella::app {
 namespace {
 
-// Reading may wait for standard input for ever, and so may telling for somebody to read. Between them there
-// are gigabytes to let go of, and a temporary file.
+// Waiting for standard input, or for a reader of the results, may take for ever, so the program is ended soon
+// then. In between, releasing gigabytes and a temporary file takes longer.
 constexpr std::chrono::milliseconds short_patience{700};
 constexpr std::chrono::seconds patience{20};
-constexpr double longest_seconds = 1e9; // some thirty years: clocks can count further
+constexpr double longest_seconds = 1e9; // some thirty years, within the range of clocks
 
 } // namespace
 
@@ -66,7 +66,7 @@ Execution Deadline::execution() {
 void Deadline::check() const {
     if (!seconds_)
         return;
-    // Of several processes of one run, another one may have come to its end a moment sooner.
+    // Another process of the same run may have reached its deadline a moment earlier.
     constexpr std::chrono::seconds skew{1};
     std::unique_lock lock(mutex_);
     done_.wait_for(lock, skew, [this] { return expired_ || given_.cancelled(); });
@@ -84,7 +84,7 @@ void Deadline::watch() {
         return;
     expired_ = true;
     done_.notify_all();
-    lock.unlock(); // whoever is waiting for the stop may want to report progress
+    lock.unlock(); // a thread that waits for the stop may report progress
     stop_.request();
     lock.lock();
     const bool reading = !started_ || (last_.stage == Stage::read && last_.done < last_.total);

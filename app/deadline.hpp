@@ -1,6 +1,6 @@
 #pragma once
 
-// --timeout: an end to a computation that takes too long.
+// --timeout: a time limit of a computation.
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
@@ -15,20 +15,20 @@
 
 namespace lamella::app {
 
-/// Stops a computation when its time is up. Should it be stuck then (such as waiting for standard input), the
-/// program is ended a short while after with exit code 5.
+/// Stops a computation when its time is up. If the program is stuck then (for example waiting for standard
+/// input), it is ended a short while later with exit code 5.
 class Deadline {
   public:
-    /// Without `seconds` there is no end. `what` stands at the begin of the message: the file that is worked
-    /// on.
+    /// Without `seconds` there is no limit. `what` is the beginning of the message: the file that is being
+    /// processed.
     Deadline(std::optional<double> seconds, std::string what, const Messages& messages,
              const Execution& execution);
     ~Deadline();
     Deadline(const Deadline&) = delete;
     Deadline& operator=(const Deadline&) = delete;
 
-    /// What `work(execution)` returns, with the execution given, stopped by it or by the deadline. Where that
-    /// was the deadline, Error{limit} says how far the computation came.
+    /// Returns `work(execution)`, with the given execution, which it or the deadline stops. If the deadline
+    /// did, Error{limit} describes how far the computation had come.
     template <class Work>
     auto run(const Work& work) {
         try {
@@ -40,8 +40,8 @@ class Deadline {
         }
     }
 
-    /// The output has its name: what is still to come is to tell of it. Where the time is up before that is
-    /// done, the program is ended as if it were stuck.
+    /// Notes that the output is complete: only reporting remains. If the time is up before that is done, the
+    /// program is ended as if it were stuck.
     void note_output(std::string output);
 
   private:
@@ -56,11 +56,11 @@ class Deadline {
     const Execution& given_;
     CancelFlag stop_;
     mutable std::mutex mutex_;
-    mutable std::condition_variable done_; ///< or expired
+    mutable std::condition_variable done_; ///< notified when done or expired
     Progress last_;
-    bool started_ = false; ///< `last_` is a report
-    bool told_ = false;    ///< only telling is left
-    std::string output_;   ///< then; "" or "-" where it is no file
+    bool started_ = false; ///< `last_` is valid
+    bool told_ = false;    ///< only reporting remains
+    std::string output_;   ///< the complete output; "" or "-" if it is not a file
     bool ending_ = false;
     bool expired_ = false;
     std::thread watcher_;

@@ -21,14 +21,14 @@
 namespace lamella::app {
 namespace {
 
-/// Places of each kind that are listed.
+/// Number of listed locations of each kind.
 constexpr std::size_t listed = 3;
 
 Point3 middle(const Box3& box) {
     return {box.min.x / 2 + box.max.x / 2, box.min.y / 2 + box.max.y / 2, box.min.z / 2 + box.max.z / 2};
 }
 
-/// "3 of 2 meshes: gear, gear 2, axle".
+/// Returns a text such as "3 of 2 meshes: gear, gear 2, axle".
 std::string parts_text(const MeshFile& file, const Plate& plate) {
     return fmt::format("{} of {}: {}", grouped(plate.parts.size()),
                        file.objects.size() == 1 ? "one mesh"
@@ -36,13 +36,13 @@ std::string parts_text(const MeshFile& file, const Plate& plate) {
                        labels_text(plate.parts));
 }
 
-/// What is listed of the objects of a file: all of them, or nothing where there is nothing to tell.
+/// Returns whether the objects of a file are listed: some are not parts.
 bool has_roles(const MeshFile& file) {
     return std::any_of(file.bodies.begin(), file.bodies.end(),
                        [](const MeshBody& body) { return body.role != MeshRole::part; });
 }
 
-/// "subtracted", "left out".
+/// Returns "subtracted", "left out" or "read".
 std::string_view use_of(const MeshFile& file, const MeshBody& body) {
     if (body.left_out)
         return "left out";
@@ -84,8 +84,8 @@ Json bodies_json(const MeshFile& file) {
 struct Defect {
     DefectWords words;
     std::uint64_t count;
-    std::vector<std::string> places; ///< the first of them
-    std::string addition = {};       ///< to their meaning
+    std::vector<std::string> places; ///< the first locations
+    std::string addition = {};       ///< appended to their meaning
 };
 
 template <class Places, class Tell>
@@ -112,11 +112,11 @@ std::string shell_text(const Shell& shell) {
                        point_text(middle(shell.box)));
 }
 
-/// "; 2 of 3 rims are no wider than rounding ...".
+/// Returns "; 2 of 3 rims are no wider than rounding ...".
 std::string slits_text(const Diagnosis& found) {
     if (found.slits == 0)
         return {};
-    // A plane that meets a slit at a small angle finds its sides farther apart.
+    // If a plane intersects a slit at a small angle, the sides are farther apart on the plane.
     constexpr double least = 1e-6;
     const int power = static_cast<int>(std::ceil(std::log10(std::max(least, 10 * found.widest_slit_mm))));
     return fmt::format(
@@ -249,7 +249,7 @@ Json meetings_json(const SelfIntersections& found) {
     return json;
 }
 
-/// Of the triangles as the file stores them.
+/// Returns the figures, with the number of triangles as the file stores them.
 Figures figures_of(const MeshFile& file, const Diagnosis& found) {
     Inspection counts = found.counts;
     counts.triangles = file.stored_triangles;

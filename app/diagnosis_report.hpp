@@ -1,6 +1,6 @@
 #pragma once
 
-// What `lamella info` tells of a mesh: size, shells, defects and where they are.
+// Report of `lamella info` about a mesh: size, shells, and defects with their locations.
 
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/pipeline/plate.hpp"
@@ -13,7 +13,7 @@
 
 namespace lamella::app {
 
-/// What weld and diagnosis take at most, for each triangle of a mesh in memory.
+/// Upper bound on the memory of welding and diagnosis, for each triangle of a mesh in memory.
 inline constexpr std::uint64_t diagnosis_bytes_per_triangle = 128;
 
 [[nodiscard]] std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate& plate);

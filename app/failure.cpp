@@ -19,7 +19,7 @@
 namespace lamella::app {
 namespace {
 
-/// A field that texts of the library name, as in `max_memory`, and what the user gave instead.
+/// A field name in texts of the library, such as `max_memory`, and the corresponding option.
 struct FieldOption {
     std::string_view field;
     std::string_view option;
@@ -40,8 +40,8 @@ constexpr std::array field_options{
     FieldOption{"`strict`", "--strict"},
     FieldOption{"`threads`", "--threads"},
     FieldOption{"`weld_tolerance_mm`", "--weld-tolerance"},
-    // Of a strategy, which options change in all rules at once: the first that is looked at is named. A cell
-    // has to suit the overlap, which rules have each for itself.
+    // Fields of a strategy, which options change in all rules at once: errors name the first field that is
+    // checked. The cell must suit the overlap of each rule separately.
     FieldOption{"`contours.beam_offset`", "--beam-offset"},
     FieldOption{"`contours.count`", "--contours"},
     FieldOption{"`contours.distance`", "--contour-distance"},

@@ -1,6 +1,6 @@
 #pragma once
 
-// What went wrong, as exit codes and results tell it.
+// Errors as exit codes and results.
 
 #include "lamella/core/error.hpp"
 
@@ -12,32 +12,33 @@
 
 namespace lamella::app {
 
-/// The exit code of a limit.
+/// Exit code of a limit.
 constexpr int limit_exit_code = 5;
-/// The exit code of a batch of which some files failed.
+/// Exit code of a batch with failed files.
 constexpr int batch_failed_exit_code = 7;
 
-/// What std::bad_alloc means to people.
+/// Message for std::bad_alloc.
 constexpr std::string_view out_of_memory =
     "memory ran out; free some, or work on less at once: fewer parts, copies, layers or files";
 
 struct Failure {
     std::string_view kind; ///< the name of the ErrorKind, such as "input"; or "crash"
     int exit_code = 1;
-    std::string text; ///< for a person
+    std::string text; ///< for people
 };
 
-/// A text of the library, with options in the place of the fields that it names, such as `max_memory`.
+/// Returns a text of the library in which field names, such as `max_memory`, are replaced by options.
 [[nodiscard]] std::string with_options(std::string text);
 
-/// Of any exception.
+/// Converts any exception.
 [[nodiscard]] Failure failure_of(const std::exception_ptr& error);
 
-/// Of a process that ended before it could tell; `status` as of waitpid, `path` the file that it worked on.
+/// Converts the end of a process that could not report itself; `status` is that of waitpid, `path` the file
+/// that it worked on.
 [[nodiscard]] Failure failure_of_process(int status, const std::string& path);
 
-/// Does what is left to do once `output` is complete. An Error of it says so; not of standard output or
-/// nothing.
+/// Does the work that remains once `output` is complete. An Error then adds that the output is complete,
+/// unless it is standard output or there is none.
 template <class Work>
 void after_output(const std::string& output, const Work& work) {
     try {

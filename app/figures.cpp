@@ -42,7 +42,7 @@ std::string shells_text(const Inspection& found) {
                        found.cavities == 1 ? "a cavity" : "cavities");
 }
 
-/// Texts of terminals are plain ASCII; a page has room for more.
+/// Returns the text with typographic signs, for pages; terminals get plain ASCII.
 std::string typeset(std::string text) {
     for (const auto& [plain, sign] : {std::pair{" x ", " × "}, {"mm2", "mm²"}, {"mm3", "mm³"}})
         for (auto at = text.find(plain); at != std::string::npos; at = text.find(plain))
@@ -50,7 +50,7 @@ std::string typeset(std::string text) {
     return text;
 }
 
-/// Of this program: what getrusage tells includes the process that started it.
+/// Returns the peak of this program: that of getrusage includes the process that started it.
 std::uint64_t peak_rss_bytes() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {
@@ -63,7 +63,7 @@ std::uint64_t peak_rss_bytes() {
     return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-/// Rows of the 4 by 4 matrix from the file's coordinates to the layers'.
+/// Returns the rows of the 4 by 4 matrix from the file's coordinates to those of the layers.
 Json matrix_json(const Transform& map) {
     Json rows = Json::array();
     for (std::size_t r = 0; r < 3; ++r)
@@ -151,8 +151,7 @@ Json parts_json(const FileResult& result) {
     return parts;
 }
 
-/// Objects and lists of plain values take one line each: a layer, a point, a row of a matrix.
-/// Of all files that have any.
+/// Returns the figures of all files with such layers.
 Json near_faces_json(const FileResult& result) {
     Json files = Json::array();
     for (std::size_t file = 0; file < result.files.size(); ++file)

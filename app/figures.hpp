@@ -1,7 +1,7 @@
 #pragma once
 
-// The figures of meshes, of layers and of runs. Each is described once, and told from that as JSON, in lines
-// for people, and on pages.
+// Figures of meshes, layers and runs. Each is described once, and printed from that as JSON, in lines for
+// people, and on pages.
 
 #include "lamella/mesh/self_intersections.hpp"
 #include "lamella/pipeline/slice_file.hpp"
@@ -22,7 +22,7 @@ struct Figure {
     std::string_view key; ///< in JSON
     Json value;
     std::string_view name = {}; ///< for people
-    std::string text = {};      ///< its value for people; "" where they are not told
+    std::string text = {};      ///< value for people; "" if they do not see it
     Tone tone = Tone::plain;    ///< on pages
 };
 using Figures = std::vector<Figure>;
@@ -31,19 +31,19 @@ using Figures = std::vector<Figure>;
 [[nodiscard]] Figures defect_figures(const Inspection& found);
 [[nodiscard]] Figures meeting_figures(const SelfIntersections& found);
 [[nodiscard]] Figures layer_figures(std::uint64_t layers, const LayerMeasure& all, double volume_mm3);
-/// Of all files, usable or not.
+/// Returns the number in all files, usable or not.
 [[nodiscard]] std::uint64_t triangles_read(const FileResult& result);
 [[nodiscard]] Figures run_figures(const FileResult& result);
 
-/// Those with these keys, in the order of the keys.
+/// Returns the figures with these keys, in the order of the keys.
 [[nodiscard]] Figures picked(const Figures& figures, const std::vector<std::string_view>& keys);
 [[nodiscard]] Json as_json(const Figures& figures);
-/// Of a result.
+/// Returns the lines of a result.
 [[nodiscard]] std::string as_lines(const Figures& figures);
 [[nodiscard]] std::vector<PageFact> as_facts(const Figures& figures);
 
 [[nodiscard]] Json point_json(const Point3& p);
-/// What `tell` makes of the first few places.
+/// Returns the JSON that `tell` makes of the first few locations.
 template <class Places, class Tell>
 [[nodiscard]] Json list_json(const Places& places, const Tell& tell) {
     Json list = Json::array();
@@ -51,25 +51,25 @@ template <class Places, class Tell>
         list.push_back(tell(places[i]));
     return list;
 }
-/// [[x, y, z], [x, y, z]]
+/// Returns [[x, y, z], [x, y, z]].
 [[nodiscard]] Json box_json(const Box3& box);
-/// "(1, 2, 3)"
+/// Returns "(1, 2, 3)".
 [[nodiscard]] std::string point_text(const Point3& p);
-/// "20 x 30 x 10 mm"
+/// Returns "20 x 30 x 10 mm".
 [[nodiscard]] std::string size_text(const Box3& box);
 
-/// What is missing where contours stay open.
+/// Returns the gaps of open contours.
 [[nodiscard]] Json open_gaps_json(const OpenGaps& gaps);
-/// Rings that bound no material, and what they enclose; empty where there are none.
+/// Returns the rings that bound no material, and their volume; empty if there are none.
 [[nodiscard]] Json inverted_json(const InvertedLayers& inverted);
-/// What `lamella slice --stats` writes; docs/program.md lists the keys.
+/// Returns the output of `lamella slice --stats`; docs/program.md lists the keys.
 [[nodiscard]] Json stats_json(const Command& command, const FileJob& job, const FileResult& result);
-/// What each of several processes did.
+/// Returns the figures of each of several processes.
 [[nodiscard]] Json processes_json(const std::vector<ProcessFigures>& figures);
-/// As text with a line end; names that are not UTF-8 get replacement characters.
+/// Returns the text with a line end; names that are not UTF-8 get replacement characters.
 [[nodiscard]] std::string json_text(const Json& object);
 
-/// "rook, rook 2, axle": the labels of the first few.
+/// Returns the labels of the first few: "rook, rook 2, axle".
 template <class Parts>
 [[nodiscard]] std::string labels_text(const Parts& parts) {
     std::string text;

@@ -1,5 +1,5 @@
 // The formatting library, compiled into the program: distributions have it as a shared library only, which
-// would bring in a shared standard library beside the one that is linked in (CMakeLists.txt).
+// would load a shared standard library besides the one that is linked in (CMakeLists.txt).
 
 #include <fmt/format-inl.h>
 

@@ -6,8 +6,9 @@ namespace lamella::app {
 
 namespace {
 
-/// Blocks from `own_pages` bytes on are given back when they are freed, others where more than `kept` bytes
-/// lie free. By itself the allocator learns both from the blocks that it meets, and would never forget them.
+/// Allocations of at least `own_pages` bytes are returned to the system when they are freed, smaller ones if
+/// more than `kept` bytes are free. By default the allocator adapts both thresholds to the sizes that it
+/// encounters, and never lowers them again.
 void set_heap(int own_pages, int kept) noexcept {
     mallopt(M_MMAP_THRESHOLD, own_pages);
     mallopt(M_TRIM_THRESHOLD, kept);

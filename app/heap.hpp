@@ -1,15 +1,15 @@
 #pragma once
 
-// What becomes of memory that was freed.
+// Handling of freed memory.
 
 namespace lamella::app {
 
-/// It stays with the process, up to some ten megabytes for each thread: every layer asks for about as much as
-/// the one before it, and pages that come anew from the system cost more than what is computed in them.
+/// Keeps freed memory in the process, up to some ten megabytes for each thread. Every layer needs about as
+/// much as the one before it, and fresh pages from the system cost more than the computation on them.
 void keep_freed_memory() noexcept;
 
-/// It goes back to the system, but for a few megabytes: for processes that wait for tasks, of which one may
-/// be large.
+/// Returns freed memory to the system, except for a few megabytes: for processes that wait for tasks, one of
+/// which may be large.
 void return_freed_memory() noexcept;
 
 } // namespace lamella::app

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t width = 80;
 
-/// Words in lines of at most `width`, each line after the first begun by `indent` blanks.
+/// Wraps words into lines of at most `width`; each line after the first is indented by `indent` spaces.
 std::string wrapped(std::string_view text, std::size_t indent) {
     std::string out;
     std::size_t column = indent;

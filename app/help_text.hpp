@@ -1,6 +1,6 @@
 #pragma once
 
-// What --help prints, made from the tables of commands.
+// Text of --help, made from the tables of commands.
 
 #include "command.hpp"
 
@@ -14,9 +14,9 @@ namespace lamella::app {
 /// `lamella slice --help`
 [[nodiscard]] std::string command_help(const Command& command);
 
-/// "FILE [options]": what stands behind the command's name.
+/// Returns the text after the command's name: "FILE [options]".
 [[nodiscard]] std::string synopsis(const Command& command);
-/// "-o, --output FILE" and the help with its preset.
+/// The text is "-o, --output FILE", and the help with its default.
 [[nodiscard]] std::string option_head(const Option& option);
 [[nodiscard]] std::string option_body(const Option& option);
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr int cancelled_exit_code = 130;
 constexpr int patience_ms = 700;
-constexpr int together_ms = 200; // who ends a process and then its group sends two signals, which mean one
+constexpr int together_ms = 200; // ending a process and then its group sends two signals that mean one
 
 int checked(int descriptor) {
     if (descriptor < 0)
@@ -29,14 +29,14 @@ int checked(int descriptor) {
     return descriptor;
 }
 
-/// Whoever started the program may want it to go on, as nohup does.
+/// Returns whether the parent set the signal to be ignored so that the program goes on, as nohup does.
 bool is_ignored(int number) {
     struct sigaction action {};
     return sigaction(number, nullptr, &action) == 0 && (action.sa_flags & SA_SIGINFO) == 0 &&
            action.sa_handler == SIG_IGN;
 }
 
-/// Waits for any of them; how many there are, 0 after the time is up.
+/// Waits for any of the descriptors; returns the number that are ready, 0 after the time is up.
 int wait_for(std::span<pollfd> awaited, int milliseconds) {
     int ready = 0;
     do {
@@ -62,13 +62,13 @@ void block_interrupts() {
 }
 
 Interrupt::Interrupt(const Messages& messages, const sigset_t& signals) : messages_(messages) {
-    // Threads started later inherit the mask: the signals reach nobody but the descriptor.
+    // Threads started later inherit the mask, so only the descriptor receives the signals.
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     signals_ = checked(signalfd(-1, &signals, SFD_CLOEXEC));
     ending_ = checked(eventfd(0, EFD_CLOEXEC));
     watcher_ = std::thread([this] { watch(); });
-    // A thread that is only starting may hold locks of the allocator; a copy of the process by fork would
-    // find them locked for ever.
+    // A starting thread may hold locks of the allocator; a fork of the process would copy them locked for
+    // ever.
     watching_.wait();
 }
 
@@ -90,11 +90,11 @@ void Interrupt::watch() {
     std::string words;
     try {
         words = messages_.last_words("cancelled", cancelled_exit_code);
-    } catch (const std::bad_alloc&) { // then it ends without
+    } catch (const std::bad_alloc&) { // without last words then
     }
     wait_for(std::span(awaited).last(1), together_ms);
     std::array<signalfd_siginfo, 8> first{};
-    static_cast<void>(!read(signals_, first.data(), sizeof first)); // so that a second one shows
+    static_cast<void>(!read(signals_, first.data(), sizeof first)); // makes a second signal visible
     if (awaited[1].revents == 0)
         wait_for(awaited, patience_ms - together_ms);
     if (awaited[1].revents == 0)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Ctrl-C, the terminate signal, and the end of the terminal.
+// Ctrl-C, the termination signal, and the end of the terminal.
 
 #include "lamella/core/execution.hpp"
 
@@ -12,19 +12,19 @@
 
 namespace lamella::app {
 
-/// SIGINT, SIGTERM and SIGHUP, but for those that the program was started to ignore.
+/// Returns SIGINT, SIGTERM and SIGHUP, except those that the program was started to ignore.
 [[nodiscard]] sigset_t interrupts() noexcept;
 
-/// Keeps these from this thread and all that it starts: what comes before there is an Interrupt waits for it.
+/// Blocks these for this thread and all that it starts: earlier signals stay pending until there is an
+/// Interrupt.
 void block_interrupts();
 
-/// While it lives, these signals request cancelling instead of ending the program, so that temporary files
-/// are removed. To be made before any other thread. Should the program be stuck (such as waiting for standard
-/// input) a short while after the signal, or should another signal come, its temporary files are removed for
-/// it and it is ended at once with exit code 130.
+/// During its lifetime these signals request cancelling instead of ending the program, so that temporary
+/// files are removed. Must be created before any other thread. If the program is stuck (for example waiting
+/// for standard input) a short while after the signal, or if another signal arrives, its temporary files are
+/// removed and it is ended at once with exit code 130.
 ///
-/// Its thread does nothing but wait, from the end of the constructor until a signal: the process may be
-/// forked.
+/// Between the end of the constructor and a signal, its thread only waits, so the process may be forked.
 class Interrupt {
   public:
     explicit Interrupt(const Messages& messages, const sigset_t& signals = interrupts());

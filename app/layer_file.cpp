@@ -18,7 +18,7 @@
 namespace lamella::app {
 namespace {
 
-/// Never empty.
+/// Returns the box, which is never empty.
 Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
     Box3 box;
     for (const PartInfo& part : info.parts)
@@ -30,7 +30,7 @@ Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
     return box;
 }
 
-/// Steps leave out what is no material, but for a rule that says what is.
+/// Reports inverted rings. Steps drop them as non-material, unless a fill rule defines the material.
 void tell_inverted(const LayerSteps& steps, const LayerFile& file, bool strict, Messages& messages,
                    const Execution& execution) {
     if (steps.fill != FillRule::none)

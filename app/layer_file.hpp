@@ -1,6 +1,6 @@
 #pragma once
 
-// Layers that were read from a slice file: what is said and asked of them before they are written again.
+// Layers from a slice file: their messages and steps before they are written again.
 
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -13,22 +13,23 @@
 
 namespace lamella::app {
 
-/// Parts without a label are called as PartInfo calls them. The box reaches from the bottom of the first
-/// layer to the top of the last. Throws Error{input} for a file without layers.
+/// Returns the header. Parts without a label get the default of PartInfo. The box extends from the bottom of
+/// the first layer to the top of the last. Throws Error{input} for a file without layers.
 [[nodiscard]] LayerFileInfo info_of(const LayerFile& file);
 
-/// Tells what is odd about the file, or lost of it. For --strict: throws Error{defect} with the first of it.
+/// Prints the warnings of the file, and its lost content. With `strict`, throws Error{defect} with the first
+/// one.
 void tell(const LayerFile& file, const std::vector<std::string>& warnings, bool strict, Messages& messages);
 
-/// What steps changed.
+/// Changes made by steps.
 struct StepChanges {
     std::vector<LayerChanges> planes;
     LayerChanges all;
 };
 
-/// Takes the steps, and tells as above of rings that bound no material, of hatch lines that are left out with
-/// the contours that they fill, and where no contour is left. Throws Error{usage} for steps on scan vectors:
-/// hatches are other parts than their contours, which would be moved alone. `memory`: as of
+/// Takes the steps. Reports as above rings that bound no material, hatch lines that are dropped together with
+/// the contours that they fill, and results without contours. Throws Error{usage} for steps on scan vectors:
+/// hatches and their contours are different parts, and only contours would be offset. `memory` is that of
 /// lamella::take_steps.
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
                        const Execution& execution, std::uint64_t memory);

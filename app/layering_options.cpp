@@ -38,7 +38,7 @@ std::vector<HeightRange> parse_height_ranges(std::string_view text) {
 
 namespace {
 
-/// What says where to cut, and the options that it leaves nothing to say.
+/// Throws if two options define the heights of cuts, or one has no effect beside another.
 void check_ways(const LayeringOptions& options) {
     struct Given {
         std::string_view name;

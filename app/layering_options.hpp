@@ -1,6 +1,6 @@
 #pragma once
 
-// The options of where a mesh is cut.
+// Options for the heights at which a mesh is cut.
 
 #include "lamella/slicing/layering.hpp"
 
@@ -34,7 +34,7 @@ struct LayeringOptions {
 
 [[nodiscard]] OptionGroup layering_options(LayeringOptions& target);
 
-/// "0:5=0.1,5:20=0.2". Throws Error{usage}; whether ranges overlap is for the plan to say.
+/// Parses "0:5=0.1,5:20=0.2". Throws Error{usage}; overlaps of ranges are checked by the plan.
 [[nodiscard]] std::vector<HeightRange> parse_height_ranges(std::string_view text);
 
 } // namespace lamella::app

@@ -20,7 +20,8 @@ int main(int argc, char** argv) {
     MpiProcesses processes;
     const int code = run_program({slice_command(&processes)}, std::vector<std::string>(argv + 1, argv + argc),
                                  processes.process() == 0);
-    // All fail together, but for what nobody foresaw: then the others wait for this one in vain.
+    // All processes fail together, except for unforeseen errors: then the others would wait for this one in
+    // vain.
     constexpr std::chrono::seconds patience{10};
     constexpr std::chrono::hours for_ever{24 * 365};
     if (!processes.meet(code == 0 ? for_ever : patience))

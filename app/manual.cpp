@@ -14,7 +14,7 @@
 namespace lamella::app {
 namespace {
 
-/// Text that troff prints as it is.
+/// Returns the text escaped so that troff prints it unchanged.
 std::string plain(std::string_view text) {
     std::string out;
     for (const char c : text) {
@@ -25,7 +25,7 @@ std::string plain(std::string_view text) {
         else
             out += c;
     }
-    // A line must not begin as a request does.
+    // A line must not begin like a request.
     if (out.starts_with('.') || out.starts_with('\''))
         out.insert(0, "\\&");
     return out;

@@ -9,7 +9,7 @@
 
 namespace lamella::app {
 
-/// lamella.1 in troff's man macros.
+/// Returns lamella.1 in troff's man macros.
 [[nodiscard]] std::string manual_page(std::span<const Command> commands);
 
 } // namespace lamella::app

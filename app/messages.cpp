@@ -17,8 +17,8 @@ namespace lamella::app {
 namespace {
 
 void put(const std::string& text) {
-    // One write, so that lines of several programs on one terminal do not mix. Nobody is left to be told when
-    // standard error cannot be written.
+    // A single write, so that lines of several programs on one terminal do not mix. A failure of standard
+    // error cannot be reported anywhere.
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
     static_cast<void>(std::fflush(stderr));
 }
@@ -27,12 +27,13 @@ void put_json(const Json& object) {
     put(compact_json(object) + "\n");
 }
 
-/// Whether a terminal takes it for something else than a character, or a part of one. Tabs are ours.
+/// Returns whether a terminal may interpret a byte as something else than a character, or a part of one. Tabs
+/// are allowed.
 bool may_be_unfit(char c) {
     return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f' || c < 0;
 }
 
-/// The text of a result, several lines, as a terminal can be shown it.
+/// Returns the text of a result, several lines, in a form that is safe for a terminal.
 std::string printable_lines(std::string_view text) {
     std::string result;
     while (!text.empty()) {
@@ -68,7 +69,7 @@ std::string one_line(std::string_view text) {
 std::string compact_json(const Json& value) {
     // Names of files need not be UTF-8.
     const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-    // JSON asks for the escape of control characters below the blank only; outside of strings there are none.
+    // JSON requires escapes only for control characters below the space; outside of strings there are none.
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto code = static_cast<unsigned char>(text[i]);
@@ -88,7 +89,7 @@ void Messages::progress(const Progress& progress) {
         return;
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
     if (style_ == ProgressStyle::json) {
-        // Who waits for others reports again and again that there is nothing new.
+        // A process that waits for others repeats the same report again and again.
         if (last_ && last_->stage == progress.stage && last_->done == progress.done &&
             last_->total == progress.total)
             return;
@@ -150,7 +151,7 @@ void Messages::sum_up(const std::string& text, const std::string& json) {
 }
 
 std::string Messages::last_words(const std::string& text, int exit_code) const {
-    // A bar may stand on the line.
+    // A bar may be on the line.
     return is_silent() ? std::string()
                        : (style_ == ProgressStyle::json ? "" : "\n") + error_line(text, exit_code);
 }
@@ -161,7 +162,7 @@ std::string Messages::error_line(const std::string& text, int exit_code) const {
 }
 
 void Messages::draw_bar(const Progress& progress, double seconds) {
-    // A run that is over in the blink of an eye needs no bar.
+    // Very short runs need no bar.
     constexpr double patience = 0.3;
     if (seconds < patience || progress.total == 0)
         return;

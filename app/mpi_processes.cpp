@@ -12,10 +12,11 @@ namespace {
 
 constexpr int tag = 0;
 
-// MPI is one for the process, and so is this; a type of mpi.h has no place in our header.
+// Global, because MPI and MpiProcesses exist once per process, and because a type of mpi.h must not be in the
+// header.
 MPI_Comm last_words = MPI_COMM_NULL;
 
-/// The piece of a message that goes in round `round`; empty after its end.
+/// Returns the part of a message that is sent in one step of `most` bytes; empty after its end.
 template <class Byte>
 std::span<Byte> piece(std::span<Byte> message, std::uint64_t round, std::uint64_t most) {
     const std::uint64_t begin = std::min<std::uint64_t>(round * most, message.size());
@@ -28,7 +29,7 @@ std::uint64_t rounds_of(std::uint64_t bytes, std::uint64_t most) {
 
 } // namespace
 
-// Errors of MPI calls end the job: that is the default of communicators.
+// Errors of MPI calls end the job, which is the default of communicators.
 
 MpiProcesses::MpiProcesses(std::uint64_t most_bytes_at_once) : most_at_once_(most_bytes_at_once) {
     int provided = 0;
@@ -47,7 +48,7 @@ MpiProcesses::~MpiProcesses() {
     MPI_Finalize();
 }
 
-// On a communicator of its own, since the others may be in the midst of something else.
+// Uses a separate communicator, since the others may be in use.
 bool MpiProcesses::meet(std::chrono::seconds patience) {
     MPI_Request everybody = MPI_REQUEST_NULL;
     MPI_Ibarrier(last_words, &everybody);
@@ -99,8 +100,9 @@ std::vector<std::uint64_t> MpiProcesses::exchange(std::span<const std::uint64_t>
     return incoming;
 }
 
-// Not MPI_Alltoallv: its counts and places end at 2^31. In step s every process sends to the one that is s
-// further on and receives from the one s before, so no two send to the same one at a time.
+// MPI_Alltoallv is not used because its counts and offsets are limited to 2^31. In step s every process sends
+// to the one with the number s higher and receives from the one s lower, so no two send to the same process
+// at a time.
 void MpiProcesses::exchange(std::span<const std::span<const std::byte>> outgoing,
                             std::span<const std::span<std::byte>> incoming) {
     std::copy(outgoing[process_].begin(), outgoing[process_].end(), incoming[process_].begin());

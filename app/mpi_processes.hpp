@@ -1,6 +1,6 @@
 #pragma once
 
-// Processes of an MPI job. The one source beside this is where MPI is visible.
+// Processes of an MPI job. MPI is visible only in this header's source.
 
 #include "lamella/pipeline/processes.hpp"
 
@@ -10,11 +10,11 @@
 
 namespace lamella::app {
 
-/// The processes that `mpirun` has started, from the making of the one object of this kind to its end. For
-/// one thread. Where a message fails or one of them is gone, MPI ends all of them.
+/// The processes started by `mpirun`. There must be only one object of this kind, used by one thread. If a
+/// message fails or a process ends early, MPI ends all of them.
 class MpiProcesses final : public Communicator {
   public:
-    /// Of one message; longer ones go in several.
+    /// Upper bound on the size of one message; longer ones are split.
     static constexpr std::uint64_t most_bytes = std::uint64_t{1} << 28;
 
     explicit MpiProcesses(std::uint64_t most_bytes_at_once = most_bytes);
@@ -32,9 +32,9 @@ class MpiProcesses final : public Communicator {
     void send(std::size_t to, std::string_view bytes) override;
     [[nodiscard]] std::string receive(std::size_t from) override;
 
-    /// Waits for the others to call this, too; false when they have not after that time.
+    /// Waits for the others to call this, too; returns false if they have not after that time.
     [[nodiscard]] bool meet(std::chrono::seconds patience);
-    /// Ends all processes, when this one cannot go on and the others may be waiting for it.
+    /// Ends all processes, if this one cannot go on and the others may be waiting for it.
     [[noreturn]] static void abort(int exit_code);
 
   private:

@@ -5,7 +5,7 @@
 namespace lamella::app {
 
 std::filesystem::path place_of(const std::string& name) {
-    constexpr int most_links = 40; // what Linux allows
+    constexpr int most_links = 40; // the limit of Linux
     std::error_code error;
     std::filesystem::path path = std::filesystem::absolute(name, error);
     if (error)

@@ -7,7 +7,7 @@
 
 namespace lamella::app {
 
-/// The names of commands, formats, engines, ...: of anything with a member `name`.
+/// Returns the names of commands, formats, engines, ...: of any objects with a member `name`.
 template <class Range>
 [[nodiscard]] std::vector<std::string> names_of(const Range& things) {
     std::vector<std::string> names;
@@ -17,7 +17,7 @@ template <class Range>
     return names;
 }
 
-/// Of a file's name, with its dot, in lower case: what tells the format.
+/// Returns the extension of a file name with its dot, in lower case; it determines the format.
 [[nodiscard]] inline std::string extension_of(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     for (char& c : extension)
@@ -25,8 +25,8 @@ template <class Range>
     return extension;
 }
 
-/// The only name of a file, which need not exist: where links to it lead. Where the system does not tell,
-/// such as in a folder that may not be searched, the name as it is, without "." and "..".
+/// Returns the canonical path of a file, which need not exist: the target of any links. If the system cannot
+/// determine it, for example in a folder without search permission, returns the path without "." and "..".
 [[nodiscard]] std::filesystem::path place_of(const std::string& name);
 
 } // namespace lamella::app

@@ -26,7 +26,8 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// The whole of `text` as a number, or nothing. What is too large for a double is infinite.
+/// Parses the whole of `text` as a number; returns whether it is one. Numbers too large for a double become
+/// infinite.
 template <class Number>
 bool read(std::string_view text, Number& value) {
     text = trimmed(text);
@@ -42,7 +43,7 @@ bool read(std::string_view text, Number& value) {
     }
 }
 
-/// The two ends of "a:b"; an end that is left out keeps the value that it has.
+/// Returns the two ends of "a:b"; an omitted end keeps its value.
 template <class Number>
 std::pair<Number, Number> read_range(std::string_view text, std::pair<Number, Number> range,
                                      std::string_view expected) {
@@ -62,7 +63,7 @@ bool read_finite(std::string_view text, double& value) {
     return read(text, value) && std::isfinite(value);
 }
 
-/// "1,2,3" or "1 2 3"; `refuse_word` throws for a word that is no number.
+/// Parses "1,2,3" or "1 2 3"; `refuse_word` throws for a word that is not a number.
 template <class RefuseWord>
 std::vector<double> read_numbers(std::string_view text, const RefuseWord& refuse_word) {
     std::vector<double> numbers;
@@ -199,7 +200,7 @@ std::string exact(double value) {
 }
 
 std::string brief(double value) {
-    // Six digits, and all of those before the point.
+    // Six digits, or all digits before the point.
     constexpr double long_number = 1e5;
     constexpr double longest_number = 1e15;
     if (std::abs(value) >= long_number && std::abs(value) < longest_number)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers as people type and read them, independent of any locale.
+// Conversion of numbers to and from text for people, independent of any locale.
 
 #include <array>
 #include <cstdint>
@@ -11,37 +11,37 @@
 
 namespace lamella::app {
 
-/// These throw Error{usage} that says what was found and shows an example of what was expected. Decimal
-/// notation and exponents; finite numbers only.
+/// These throw Error{usage} that quotes the text and shows an example of what was expected. They accept
+/// decimal notation and exponents, and finite numbers only.
 [[nodiscard]] double parse_number(std::string_view text);
 [[nodiscard]] double parse_positive(std::string_view text);
 [[nodiscard]] double parse_not_negative(std::string_view text);
 [[nodiscard]] std::uint64_t parse_count(std::string_view text);
-/// Both ends included.
+/// Includes both ends.
 [[nodiscard]] std::uint32_t parse_count_within(std::string_view text, std::uint32_t least,
                                                std::uint32_t most);
-/// "2G", "500M", "64k" (powers of 1000), "1GiB" (of 1024), or plain bytes.
+/// Parses "2G", "500M", "64k" (powers of 1000), "1GiB" (of 1024), or plain bytes.
 [[nodiscard]] std::uint64_t parse_byte_size(std::string_view text);
-/// "1,2,3" or "1 2 3".
+/// Parse "1,2,3" or "1 2 3".
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view text);
 [[nodiscard]] std::array<double, 3> parse_triple(std::string_view text);
-/// "a:b"; either end may be left out.
+/// Parse "a:b"; either end may be omitted.
 [[nodiscard]] std::pair<double, double> parse_range(std::string_view text);
 [[nodiscard]] std::pair<std::uint64_t, std::uint64_t> parse_index_range(std::string_view text);
-/// "2/8": the second of eight; both from 1 on.
+/// Parses "2/8": the second of eight; both count from 1.
 [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> parse_share(std::string_view text);
 
-/// The shortest text that reads back to the same number.
+/// Returns the shortest text that reads back to the same number.
 [[nodiscard]] std::string exact(double value);
-/// For people: "31.75", "115,343", "1.2e-07".
+/// Returns a text for people: "31.75", "115,343", "1.2e-07".
 [[nodiscard]] std::string brief(double value);
-/// The same of a height in mm, where what numbers in single precision leave of 0 is 0.
+/// Returns the same for a height in mm; rounding errors of 0 in single precision become 0.
 [[nodiscard]] std::string height(double mm);
-/// "102,812".
+/// Returns "102,812".
 [[nodiscard]] std::string grouped(std::uint64_t value);
-/// "1 layer", "2 layers".
+/// Returns "1 layer", "2 layers".
 [[nodiscard]] std::string counted(std::uint64_t n, std::string_view noun);
-/// "6.2 MB".
+/// Returns "6.2 MB".
 [[nodiscard]] std::string byte_size(std::uint64_t bytes);
 
 } // namespace lamella::app

@@ -43,7 +43,7 @@ Option scale_option(std::optional<std::vector<double>>& target) {
                });
 }
 
-/// Whether both are one file: names can be written in several ways.
+/// Returns whether both are one file: a file can have several names.
 bool are_same(const std::string& first, const std::string& second) {
     std::error_code ignored;
     return place_of(first) == place_of(second) || std::filesystem::equivalent(first, second, ignored);
@@ -267,7 +267,7 @@ Option max_triangles_option(ReadLimits& target) {
                "stop at a file of more triangles than this (exit code 5)",
                [&target](const std::string& text) {
                    target.max_triangles = parse_count(text);
-                   if (*target.max_triangles == 0) // which is no limit in the library
+                   if (*target.max_triangles == 0) // 0 means no limit in the library
                        throw Error(ErrorKind::usage, "there must be one at least");
                });
 }
@@ -295,7 +295,7 @@ void check_format(const LayerFormat& chosen, bool given, std::string_view option
 }
 
 std::vector<Option> layer_output_options(LayerOutputOptions& target) {
-    // Options of some formats have no preset: a configuration file that lists all presets must suit any
+    // Options of some formats have no default: a configuration file that lists all defaults must suit any
     // format.
     return {
         choice("format", "NAME", "of the slice file, where its name does not end in a known extension",

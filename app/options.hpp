@@ -1,6 +1,6 @@
 #pragma once
 
-// Rows for the tables of options, and the groups of them that several commands share.
+// Rows for the tables of options, and groups of options that several commands share.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/transform.hpp"
@@ -23,7 +23,7 @@
 
 namespace lamella::app {
 
-// Rows. Each refers to its target, which must outlive the command; the target's value is the preset.
+// Each row refers to its target, which must outlive the command; the target's value is the default.
 
 [[nodiscard]] Option row(std::string name, ValueKind kind, std::string placeholder, std::string help,
                          std::function<void(const std::string&)> set);
@@ -39,47 +39,47 @@ namespace lamella::app {
                             std::vector<std::string> choices, std::string& target);
 [[nodiscard]] Option text(std::string name, std::string placeholder, std::string help, std::string& target);
 [[nodiscard]] Option input_file(std::string name, std::string help, std::string& target);
-/// `extensions`, such as ".html": the name may have one of these or none, as another one would promise
-/// another format; of the first one the help may speak. Without any, all names will do.
+/// `extensions`, such as ".html", are those that the name may have, besides none at all: any other would
+/// suggest another format. Help texts mention the first one. If empty, any name is allowed.
 [[nodiscard]] Option output_file(std::string name, std::string help, std::string& target,
                                  std::vector<std::string_view> extensions = {});
 /// A limit in bytes, such as 500M.
 [[nodiscard]] Option byte_limit(std::string name, std::string help, std::optional<std::uint64_t>& target);
 
-/// Where the part stands: unit, scale, rotation, translation, then the slicing direction.
+/// Placement of the part: unit, scale, rotation, translation, then the slicing direction.
 struct PlacementOptions {
-    std::string unit = {}; ///< "" where none is given
+    std::string unit = {}; ///< "" if not given
     std::optional<std::vector<double>> scale;
     std::optional<std::array<double, 3>> rotate;
     std::array<std::optional<double>, 3> rotate_axis;
     std::optional<std::array<double, 3>> translate;
     std::optional<std::array<double, 3>> direction;
 
-    /// Millimetres per unit, where one is given.
+    /// Returns the millimetres per unit, if a unit is given.
     [[nodiscard]] std::optional<double> unit_mm() const;
-    /// Everything but the unit. Throws Error{usage}.
+    /// Returns everything but the unit. Throws Error{usage}.
     [[nodiscard]] Transform pose() const;
     [[nodiscard]] bool given() const;
 };
-/// "mm", "inch"; the millimetres of a unit without a name.
+/// Returns "mm", "inch"; the millimetres of a unit without a name.
 [[nodiscard]] std::string unit_name(double mm);
 [[nodiscard]] Option unit_option(std::string& target);
 [[nodiscard]] OptionGroup placement_options(PlacementOptions& target);
-/// The same without unit and direction: for bodies that are made.
+/// Returns the same without unit and direction, for generated bodies.
 [[nodiscard]] OptionGroup pose_options(PlacementOptions& target);
 
-/// How the computation runs and what it says meanwhile.
+/// Execution of the computation, and the style of its messages.
 struct RunOptions {
     std::optional<std::uint64_t> threads;
     std::string progress = "bar";
 
-    /// Sets the style of the messages, too.
+    /// Returns the execution, and sets the style of the messages.
     [[nodiscard]] Execution execution(const Context& context) const;
 };
-/// With `more` behind them.
+/// Returns the options, followed by `more`.
 [[nodiscard]] OptionGroup run_options(RunOptions& target, const std::vector<Option>& more = {});
 
-/// What is read of a file, and what it may not exceed.
+/// Content to read from a file, and its limits.
 struct ReadLimits {
     MeshRoles include; ///< besides parts
     std::optional<std::uint64_t> max_triangles;
@@ -91,10 +91,10 @@ struct ReadLimits {
 /// For commands that read meshes.
 [[nodiscard]] Option include_option(ReadLimits& target);
 [[nodiscard]] Option max_triangles_option(ReadLimits& target);
-/// For commands that hold in memory what they read: `what`, in the words of their help.
+/// For commands that hold their input in memory; `what` describes the input in their help.
 [[nodiscard]] Option max_memory_option(ReadLimits& target, std::string_view what);
 
-/// What is written and how.
+/// Format and options of the slice file.
 struct LayerOutputOptions {
     std::string format = {};
     std::optional<double> units_mm = {};
@@ -102,18 +102,18 @@ struct LayerOutputOptions {
     std::optional<std::uint64_t> max_output = {}; ///< bytes
     PictureArguments picture = {};
 
-    /// Throws Error{usage} where options do not go with the format.
+    /// Throws Error{usage} if options do not apply to the format.
     [[nodiscard]] LayerWriteOptions write_options(const LayerFormat& chosen) const;
 };
-/// To be appended to a group.
+/// Returns options to be appended to a group.
 [[nodiscard]] std::vector<Option> layer_output_options(LayerOutputOptions& target);
 
-/// The names of the formats that take an option, for its help.
+/// Returns the names of the formats that take an option, for its help.
 [[nodiscard]] std::string formats_with(bool LayerFormat::*takes);
-/// Throws Error{usage} that lists these, where the option is given and the format is none of them.
+/// Throws Error{usage} that lists these formats, if the option is given and the format is none of them.
 void check_format(const LayerFormat& chosen, bool given, std::string_view option, bool LayerFormat::*takes);
 
-/// What is made of the layers before they are written.
+/// Steps applied to the layers before they are written.
 struct LayerStepOptions {
     std::string fill = "none";
     std::optional<double> offset;
@@ -125,19 +125,19 @@ struct LayerStepOptions {
     [[nodiscard]] LayerSteps steps() const;
 };
 [[nodiscard]] OptionGroup layer_step_options(LayerStepOptions& target);
-/// "3 layers other than sliced: 2 rings united, ..."; `than` says what the layers were before.
+/// Returns "3 layers other than sliced: 2 rings united, ..."; `than` describes the layers before the steps.
 [[nodiscard]] std::string changes_text(const LayerSteps& steps, const LayerChanges& changes);
-/// A warning where steps left no contour of those that there were; else "".
+/// Returns a warning if steps left none of the contours; else "".
 [[nodiscard]] std::string nothing_left(std::uint64_t layers, std::uint64_t contours,
                                        const LayerChanges& changes);
 
 [[nodiscard]] const std::vector<std::string>& slice_at_names();
 
-/// Throws Error{usage} that names two options, where both are given and cannot go together.
+/// Throws Error{usage} that names two options, if both are given and cannot be combined.
 void check_conflict(bool first, bool second, std::string_view names, std::string_view reason);
 
-/// Throws Error{usage} when a result would overwrite a file that it is made from, or another result. `more`
-/// are results that no option names.
+/// Throws Error{usage} if a result would overwrite one of its inputs, or another result. `more` are results
+/// that no option names.
 void check_outputs(const Command& command, const std::vector<NamedFile>& more = {});
 
 } // namespace lamella::app

@@ -83,8 +83,8 @@ PageNotes mesh_notes(const MeshFile& file, const Diagnosis& found) {
         section.facts.push_back({"Remark", warning, Tone::warning});
     PageSection mesh = mesh_section(found.counts);
     if (const auto& met = found.self_intersections) {
-        // Counted apart from what a surface without defects is without, but listed among the defects below
-        // it.
+        // A surface without other defects can still have these: they are counted separately, but listed among
+        // the defects below.
         if (found.counts.sound() && met->crossing + met->overlapping > 0)
             mesh.facts.front() = {"Surface", "closed, but triangles cross or overlap", Tone::warning};
         add(mesh, as_facts(picked(meeting_figures(*met), {"crossing", "overlapping"})));

@@ -1,7 +1,6 @@
 #pragma once
 
-// What the program tells on pages beside the data: where the part came from, what is wrong with its mesh, and
-// how the run went.
+// Notes of the program on pages: the source of the part, defects of its mesh, and figures of the run.
 
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/inspect.hpp"
@@ -17,30 +16,31 @@
 
 namespace lamella::app {
 
-/// Places of each kind of defect that a page marks.
+/// Upper bound on the marked locations of each kind of defect.
 inline constexpr std::size_t page_places = 500;
 
-/// The title of the page of a file: its name without its folder.
+/// Returns the title of the page of a file: its name without its folder.
 [[nodiscard]] std::string title_of(const std::string& path);
-/// The title of the page of a plate: "rook.stl", "rook.stl and 2 more".
+/// Returns the title of the page of a plate: "rook.stl", "rook.stl and 2 more".
 [[nodiscard]] std::string title_of(const std::vector<PlateInput>& inputs);
 
-/// Of a page's name.
+/// Returns the extensions of pages.
 [[nodiscard]] std::vector<std::string_view> page_extensions();
 
-/// A page with this program's viewer and the title of the page of that file.
+/// Returns options with this program's viewer and the title for that file.
 [[nodiscard]] PageOptions page_options(const std::string& path);
 
-/// Size, volume and every kind of defect, found or not.
+/// Returns size, volume and every kind of defect, found or not.
 [[nodiscard]] PageSection mesh_section(const Inspection& found);
 
-/// Where the layers came from and how long each stage took; the defects of the mesh where it was inspected.
+/// Returns the source of the layers and the time of each stage, and the defects of the mesh if it was
+/// inspected.
 [[nodiscard]] PageNotes run_notes(const FileResult& result);
 
-/// Of a mesh that was looked at: its figures, the file, and the places of the defects.
+/// Returns notes about an inspected mesh: its figures, the file, and the locations of the defects.
 [[nodiscard]] PageNotes mesh_notes(const MeshFile& file, const Diagnosis& found);
 
-/// Of layers that were read from a file.
+/// Returns notes about layers that were read from a file.
 [[nodiscard]] PageNotes file_notes(const LayerFile& file);
 
 } // namespace lamella::app

@@ -16,7 +16,7 @@
 namespace lamella::app {
 namespace {
 
-/// "F" or "X,Y".
+/// Parses "F" or "X,Y".
 AlongXY<double> parse_lengths(const std::string& text) {
     const std::vector<double> numbers = parse_numbers(text);
     if (numbers.size() > 2 || std::any_of(numbers.begin(), numbers.end(), [](double n) { return !(n > 0); }))
@@ -25,7 +25,7 @@ AlongXY<double> parse_lengths(const std::string& text) {
     return {numbers.front(), numbers.back()};
 }
 
-/// "WxH".
+/// Parses "WxH".
 AlongXY<std::uint32_t> parse_pixels(const std::string& text) {
     const auto refuse = [&] {
         throw Error(ErrorKind::usage,

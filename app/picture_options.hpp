@@ -1,6 +1,6 @@
 #pragma once
 
-// Options of the formats that are pictures.
+// Options of image formats.
 
 #include "lamella/write/layer_writer.hpp"
 
@@ -25,8 +25,7 @@ struct PictureArguments {
     std::optional<double> first_exposure_s = {};
     std::optional<std::uint32_t> fade_layers = {};
 
-    /// Throws Error{usage} where options do not go with the format, and for a SOURCE_DATE_EPOCH that is no
-    /// time.
+    /// Throws Error{usage} if options do not apply to the format, and if SOURCE_DATE_EPOCH is not a time.
     void apply(const LayerFormat& format, LayerWriteOptions& options) const;
 };
 

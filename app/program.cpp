@@ -49,8 +49,8 @@ namespace {
                 fmt::format("there is no command \"{}\"; lamella --help lists them", excerpt(word)));
 }
 
-/// Errors about data say which: where neither the library nor the command has named a file of those given,
-/// the inputs are.
+/// Runs a command. If neither the library nor the command has named a file in an error about data, the inputs
+/// are prepended.
 int run_command(const Command& command, const Context& context) {
     const auto inputs = [&] {
         const std::vector<NamedFile> files = files_of(command, ValueKind::input);
@@ -81,7 +81,7 @@ int run_command(const Command& command, const Context& context) {
     }
 }
 
-/// Who asks for JSON gets it whatever is wrong, be it the command line itself.
+/// Sets the style before the command line is parsed, so that errors in the command line are JSON, too.
 void set_early_style(const std::vector<std::string>& words, Messages& messages) {
     constexpr std::string_view option = "--progress";
     std::string_view style;
@@ -131,8 +131,8 @@ int run_program(std::vector<Command> commands, const std::vector<std::string>& w
     Messages messages;
     if (!speaks)
         messages.set_style(ProgressStyle::silent);
-    // From the first file that is opened to the last word: a pipe may keep the program waiting at any of
-    // them.
+    // Covers the time from opening the first file to the last message: a pipe may block the program at any
+    // point.
     std::optional<Interrupt> interrupt;
     int code = 0;
     try {
@@ -143,7 +143,8 @@ int run_program(std::vector<Command> commands, const std::vector<std::string>& w
         const Failure failure = failure_of(std::current_exception());
         messages.error(failure.text, failure.exit_code);
         code = failure.exit_code;
-        static_cast<void>(std::fflush(stdout)); // later nobody would hear a signal; it has failed already
+        static_cast<void>(
+            std::fflush(stdout)); // flushed here while signals are still handled; the run has failed already
     }
     return code;
 }

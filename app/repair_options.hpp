@@ -1,6 +1,6 @@
 #pragma once
 
-// The options that say what to do about meshes and layers that are not sound, and what was done.
+// Options for repairs of unsound meshes and layers, and reports of the repairs.
 
 #include "lamella/pipeline/slice_file.hpp"
 
@@ -13,10 +13,10 @@ namespace lamella::app {
 
 [[nodiscard]] OptionGroup repair_options(RepairPolicies& target);
 
-/// Lines of the summary; "" where nothing was asked for.
+/// Returns lines of the summary; "" if no repair was requested.
 [[nodiscard]] std::string repairs_text(const MeshRepairs& repairs);
 [[nodiscard]] std::string gaps_text(const FileResult::Gaps& gaps);
-/// For the statistics; null for each policy that was not asked for.
+/// Returns values for the statistics; null for each policy that was not requested.
 [[nodiscard]] Json repairs_json(const MeshRepairs& repairs);
 
 [[nodiscard]] Json gaps_json(const FileResult::Gaps& gaps);

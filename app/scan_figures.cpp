@@ -29,7 +29,7 @@ Sums sums_of(std::span<const ExposureResult> exposures) {
     return sums;
 }
 
-/// Those that have exposures.
+/// Returns the regions with exposures.
 std::vector<std::pair<ScanRegion, std::vector<ExposureResult>>>
 by_region(std::span<const ExposureResult> exposures) {
     std::vector<std::pair<ScanRegion, std::vector<ExposureResult>>> regions;

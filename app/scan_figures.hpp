@@ -13,13 +13,14 @@
 
 namespace lamella::app {
 
-/// Of all of them together: contour_vectors, hatch_vectors, marked_mm, jumped_mm, build_seconds, energy_j,
+/// Returns the totals: contour_vectors, hatch_vectors, marked_mm, jumped_mm, build_seconds, energy_j,
 /// unreached_mm2.
 [[nodiscard]] Figures scan_figures(std::span<const ExposureResult> exposures);
 
-/// The same figures as an object; with `regions` by their names, where there are several.
+/// Returns the same figures as an object; with `regions` by their names, if there are several.
 [[nodiscard]] Json scan_json(std::span<const ExposureResult> exposures);
-/// What each region has, by their names in the order of the table: contour_vectors, hatch_vectors, marked_mm.
+/// Figures of each region, by their names in the order of the table: contour_vectors, hatch_vectors,
+/// marked_mm.
 struct RegionFigures {
     std::string name;
     Json json;
@@ -27,19 +28,19 @@ struct RegionFigures {
 };
 [[nodiscard]] std::vector<RegionFigures> region_figures(std::span<const ExposureResult> exposures);
 
-/// Of one layer, whose figures are in the order of the exposures.
+/// Returns the figures of one layer, which are in the order of the exposures.
 [[nodiscard]] Json scan_json(std::span<const ExposureResult> exposures, std::span<const ScanFigures> layer);
 
-/// With `energy_j_mm3`: how much of the energy each cubic millimetre gets; null without volume.
+/// Adds `energy_j_mm3`: the volumetric energy density; null without volume.
 [[nodiscard]] Json with_density(Json scan, double volume_mm3);
 
-/// With `unreached_layers`: those with more of it than is accepted.
+/// Adds `unreached_layers`: those with more unreached material than is accepted.
 [[nodiscard]] Json with_unreached(Json scan, const UnreachedMaterial& unreached);
 
-/// With `hash`: of the vectors of a layer.
+/// Adds `hash`: that of the vectors of a layer.
 [[nodiscard]] Json with_hash(Json scan, std::uint64_t hash);
 
-/// "1,234,567 vectors, 12.3 m marked, 1.2 m jumped, 1 h 02 min, 45.0 kJ"
+/// Returns "1,234,567 vectors, 12.3 m marked, 1.2 m jumped, 1 h 02 min, 45.0 kJ".
 [[nodiscard]] std::string scan_text(std::span<const ExposureResult> exposures);
 
 } // namespace lamella::app

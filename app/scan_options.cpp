@@ -35,7 +35,7 @@ std::string placeholder_of(std::string_view unit) {
     return unit == "mm" ? "MM" : unit == "degrees" ? "DEG" : "N";
 }
 
-// The value of an option, by the type of what it sets.
+// Parses the value of an option, by the type of its target.
 
 void parse(const std::string& text, double& into) {
     into = parse_number(text);
@@ -62,8 +62,8 @@ std::string preset_text(Choice value) {
     return std::string(named_values(value).name(value));
 }
 
-/// An option that sets a field, of one rule or of several. It has no preset: where there is a strategy, that
-/// says what holds without it.
+/// Returns an option that sets a field of one or several rules. It has no default: without it the strategy
+/// applies.
 template <class Rule, class Value>
 Option field_option(ScanArguments& target, const std::string& name,
                     std::span<const StrategyField<Rule>> fields, Value Rule::*member,

@@ -28,7 +28,7 @@ std::string hash_text(const std::string& path, const Execution& execution) {
     return fmt::format("{:016x}", file_hash(path, execution));
 }
 
-/// Options that leave the bytes of the slice file alone, or that the origin has in another form.
+/// Options that do not affect the bytes of the slice file, or that the origin contains in another form.
 constexpr std::array<std::string_view, 15> not_of_the_origin{
     "shard",   "resume",   "output", "format",     "report",        "stats",      "engine", "inspect",
     "threads", "progress", "config", "max-memory", "max-triangles", "max-output", "timeout"};
@@ -57,19 +57,19 @@ Json read_stamp(const std::string& output) {
 }
 
 Json output_json(const std::string& path, const Execution& execution) {
-    std::string hash = hash_text(path, execution); // which fails where the file cannot be read
+    std::string hash = hash_text(path, execution); // throws if the file cannot be read
     std::error_code ignored;
     return {{"bytes", std::filesystem::file_size(path, ignored)}, {"hash", std::move(hash)}};
 }
 
-/// The same of a file beside it; null where none was asked for, and for pipes and devices, which keep
-/// nothing.
+/// Does the same for a file beside it; null if it was not requested, and for pipes and devices, which keep no
+/// data.
 Json file_json(const std::string& path, const Execution& execution) {
     std::error_code ignored;
     return std::filesystem::is_regular_file(path, ignored) ? output_json(path, execution) : Json();
 }
 
-/// A stamp with the file it belongs to.
+/// A stamp with its file.
 struct Stamped {
     std::string path;
     Json stamp;
@@ -102,7 +102,7 @@ Stamped stamped(const std::string& path, const Execution& execution) {
     return file;
 }
 
-/// Of one job.
+/// Throws unless both belong to one job.
 void check_origins(const Stamped& a, const Stamped& b) {
     const Json& of_a = a.stamp["origin"];
     const Json& of_b = b.stamp["origin"];
@@ -118,7 +118,7 @@ std::string stamp_path(const std::string& output) {
 }
 
 std::string first_difference(const Json& one, const Json& other) {
-    const Json changes = Json::diff(one, other); // in whatever order keys are
+    const Json changes = Json::diff(one, other); // independent of the order of keys
     if (changes.empty())
         return {};
     const Json::json_pointer first(changes[0]["path"].get<std::string>());
@@ -137,7 +137,7 @@ Json job_parameters(const Command& command, const FileJob& job) {
         for (const Option& option : group.options)
             if (option.of_each_file)
                 options.erase(option.name);
-    options["units-mm"] = job.write.units_mm; // given or not
+    options["units-mm"] = job.write.units_mm; // whether given or not
     options["short"] = job.write.short_form;
     if (const auto* const listed = std::get_if<ListedPlanes>(&job.layering.cut))
         options["z-list"] = listed->z;
@@ -198,7 +198,7 @@ void stamp_shard(const FileJob& job, const std::string& stats, const FileResult&
 
 void check_stamps(const std::vector<std::string>& paths, const Execution& execution) {
     const auto has_stamp = [](const std::string& path) {
-        std::error_code ignored; // where nobody can look, or the name would be too long, there is none
+        std::error_code ignored; // if the path cannot be examined, or is too long, there is no stamp
         return std::filesystem::exists(stamp_path(path), ignored);
     };
     if (std::none_of(paths.begin(), paths.end(), has_stamp))

@@ -33,9 +33,9 @@ namespace {
 
 constexpr std::string_view parameters_key = "parameters";
 constexpr std::string_view contours_key = "contours"; ///< of supports, too
-constexpr std::string_view hatch_key = "hatch";       ///< of skins and of supports, too
+constexpr std::string_view hatch_key = "hatch";       ///< of skins and supports, too
 
-/// Each once, in the order of the tables.
+/// Returns each set once, in the order of the tables.
 std::vector<ParameterSet> sets_of(const ScanStrategy& strategy) {
     std::vector<ParameterSet> sets;
     for (const ParameterSet* one :
@@ -78,7 +78,7 @@ std::string meant(std::string_view word, const std::vector<std::string>& candida
 
 void take(const TomlValue& value, const std::string& name, double& into) {
     if (const auto* number = value.as<double>())
-        into = *number + 0.0; // which makes 0 of -0, as files have it
+        into = *number + 0.0; // turns -0 into 0, as files have it
     else if (const auto* whole = value.as<std::int64_t>())
         into = static_cast<double>(*whole);
     else
@@ -132,7 +132,7 @@ const TomlTable& table_of(const TomlValue& value, const std::string& name) {
     return *table;
 }
 
-/// Goes through a file.
+/// Reads a file.
 class StrategyReading {
   public:
     ScanStrategy strategy;
@@ -175,19 +175,19 @@ class StrategyReading {
   private:
     using Others = std::vector<std::pair<std::string, std::function<void(const TomlValue&)>>>;
 
-    /// Where a value stands, and what it is called there.
+    /// Location of a value in the file, and its name there.
     struct Origin {
         std::string place;
         std::string name;
     };
     struct Set {
         ParameterSet parameters;
-        Origin origin; ///< without a place where it is not in the file
+        Origin origin; ///< without a location if it is not in the file
         std::map<std::string, Origin> fields;
         bool used = false;
     };
 
-    /// The fields of a rule, and what else its table may have. `path`: "" or the name of the table and a dot.
+    /// Reads the fields of a rule, and other tables in it. `path` is "" or the name of the table and a dot.
     template <class Rule>
     void read_fields(const std::string& path, const TomlTable& table, Rule& rule,
                      std::span<const StrategyField<Rule>> fields, const Others& others) {
@@ -226,7 +226,7 @@ class StrategyReading {
                         excerpt(key), meant(key, known)));
     }
 
-    /// The parameter set that a rule names.
+    /// Returns a reader of the parameter set that a rule names.
     static std::pair<std::string, std::function<void(const TomlValue&)>> set_name(const std::string& path,
                                                                                   ParameterSet& of_rule) {
         return {std::string(parameters_key), [path, &of_rule](const TomlValue& value) {
@@ -259,7 +259,7 @@ class StrategyReading {
     void read_support(const TomlValue& value) {
         SupportRule& rule = strategy.support;
         read_fields("support.", table_of(value, "support"), rule,
-                    std::span<const StrategyField<SupportRule>>(), // it has tables only
+                    std::span<const StrategyField<SupportRule>>(), // has tables only
                     {{std::string(contours_key),
                       [&](const TomlValue& inner) {
                           read_contours("support.contours", inner, rule.contours);
@@ -312,7 +312,7 @@ class StrategyReading {
             origins_[fmt::format("{}.{}", rule, key)] = origin;
     }
 
-    /// Powers in a set whose name is mistyped would be those of nobody.
+    /// Throws for an unused parameter set, whose name may be mistyped: its powers would have no effect.
     void check_use() const {
         std::vector<std::string> used;
         for (const auto& [name, set] : sets_)
@@ -324,7 +324,7 @@ class StrategyReading {
                                                           meant(name, used)));
     }
 
-    /// The library names the field; here it gets its place, or that of its table.
+    /// Adds the location to the library's error, which names the field; else the location of its table.
     void check_ranges() const {
         try {
             check_strategy(strategy);
@@ -333,7 +333,7 @@ class StrategyReading {
             std::string field = text.substr(1, text.find('`', 1) - 1);
             auto found = origins_.find(field);
             for (std::string path = field; found == origins_.end(); found = origins_.find(path)) {
-                assert(path.find('.') != std::string::npos); // by default all is right
+                assert(path.find('.') != std::string::npos); // the defaults are valid
                 path.resize(path.rfind('.'));
             }
             if (found->first == field)
@@ -345,7 +345,7 @@ class StrategyReading {
     }
 
     std::map<std::string, Set> sets_ = preset_sets();
-    std::map<std::string, Origin> origins_; ///< by path, as the library has it
+    std::map<std::string, Origin> origins_; ///< by the library's path of the field
 };
 
 // ----------------------------------------------------------------------------------------------- write
@@ -372,7 +372,7 @@ std::string value_text(double value) {
 }
 template <class Value>
 std::string value_text(Value value) {
-    return value_json(value).dump(); // as TOML has it, too
+    return value_json(value).dump(); // TOML has the same form
 }
 
 template <class Choice>
@@ -412,7 +412,7 @@ std::string rule_text(const Rule& rule, std::span<const StrategyField<Rule>> fie
     return text;
 }
 
-/// A key of a table; quotes only where TOML asks for them.
+/// Returns a key of a table, with quotes only if TOML requires them.
 std::string key_text(const std::string& name) {
     const bool bare = std::all_of(name.begin(), name.end(), [](unsigned char c) {
         return std::isalnum(c) != 0 || c == '_' || c == '-';

@@ -1,6 +1,6 @@
 #pragma once
 
-// Scan strategies as files: TOML, by the tables of strategy_fields.
+// Scan strategies as TOML files, defined by the tables of strategy_fields.
 
 #include "lamella/scan/strategy.hpp"
 
@@ -10,15 +10,15 @@
 
 namespace lamella::app {
 
-/// What the file does not say is as by default. Throws Error{usage} that names file, line, what was found and
-/// what was expected: for what is no such file, for keys that there are not, for values out of range and for
-/// parameter sets that are missing or used nowhere; Error{input} when it cannot be read.
+/// Reads a strategy; fields absent from the file have their defaults. Throws Error{usage} with file, line,
+/// found and expected text: for invalid TOML, unknown keys, values out of range, and missing or unused
+/// parameter sets; Error{input} if the file cannot be read.
 [[nodiscard]] ScanStrategy read_strategy(const std::string& path);
 
-/// All of it as such a file, with comments that say units and meanings.
+/// Returns the whole strategy as such a file, with comments about units and meanings.
 [[nodiscard]] std::string strategy_text(const ScanStrategy& strategy);
 
-/// The same as JSON, under the same names.
+/// Returns the same as JSON, under the same names.
 [[nodiscard]] Json strategy_json(const ScanStrategy& strategy);
 
 } // namespace lamella::app

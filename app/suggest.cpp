@@ -7,7 +7,8 @@
 namespace lamella::app {
 namespace {
 
-/// Letters to insert, remove, replace or swap with their neighbour (restricted Damerau-Levenshtein distance).
+/// Returns the number of letters to insert, remove, replace or swap with their neighbour (restricted
+/// Damerau-Levenshtein distance).
 std::size_t distance(std::string_view a, std::string_view b) {
     const std::size_t width = b.size() + 1;
     std::vector<std::size_t> table((a.size() + 1) * width);
@@ -31,14 +32,14 @@ std::size_t distance(std::string_view a, std::string_view b) {
 } // namespace
 
 std::string nearest(std::string_view word, std::span<const std::string> candidates) {
-    // Nobody means a name by a word of this length, and the table grows with its square.
+    // Longer words are not mistyped names, and the table grows with the square of the length.
     constexpr std::size_t longest = 64;
     if (word.size() > longest)
         return {};
     std::string best;
     std::size_t least = std::max<std::size_t>(word.size() / 3, 1) + 1;
     for (const std::string& candidate : candidates) {
-        // The beginning of a name means that name.
+        // The beginning of a name suggests that name.
         const bool begun = word.size() >= 3 && candidate.starts_with(word);
         const std::size_t d = begun ? 1 : distance(word, candidate);
         if (d < least) {

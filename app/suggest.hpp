@@ -1,6 +1,6 @@
 #pragma once
 
-// What was probably meant.
+// Suggestions for mistyped names.
 
 #include <span>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace lamella::app {
 
-/// The candidate that a slip of the fingers turns into `word`, or "" when none is near.
+/// Returns the candidate that a typing error could turn into `word`, or "" if none is near.
 [[nodiscard]] std::string nearest(std::string_view word, std::span<const std::string> candidates);
 
 } // namespace lamella::app

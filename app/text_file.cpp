@@ -39,7 +39,7 @@ struct Descriptor {
     int number;
 };
 
-/// Some bytes, once there are any; 0 at the end.
+/// Reads some bytes, waiting for them if necessary; returns 0 at the end.
 template <class Refuse>
 std::size_t read_some(int descriptor, std::span<char> room, const Refuse& refuse) {
     for (;;) {
@@ -48,7 +48,7 @@ std::size_t read_some(int descriptor, std::span<char> room, const Refuse& refuse
             return static_cast<std::size_t>(got);
         if (errno != EINTR && errno != EAGAIN)
             refuse(errno);
-        pollfd waiting{descriptor, POLLIN, 0}; // whoever lent it may not want it to block
+        pollfd waiting{descriptor, POLLIN, 0}; // an inherited descriptor may be non-blocking
         poll(&waiting, 1, -1);
     }
 }
@@ -62,7 +62,7 @@ std::string read_text_file(const std::string& path) {
             throw Error(ErrorKind::input, fmt::format("{}: there is no such file", name));
         throw Error(ErrorKind::input, fmt::format("{}: cannot be read: {}", name, reason(error)));
     };
-    // By its descriptor: what is at the other end, such as a socket, need not be there to be opened again.
+    // Standard input is read by its descriptor: a socket, for example, cannot be opened again by its name.
     const Descriptor file(path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.number < 0)
         refuse(errno);
@@ -77,7 +77,7 @@ std::string read_text_file(const std::string& path) {
 
 void write_text_file(const std::string& path, std::string_view text) {
     if (path == "-")
-        print(text); // behind what was printed before
+        print(text); // after earlier output
     else
         write_whole_file(path, text);
 }

@@ -1,6 +1,6 @@
 // The TOML library is visible in this source only.
 #define TOML_HEADER_ONLY 1
-// Its assertions fail on some files that its parser refuses a few lines later, such as one of "[" and a
+// Its assertions fail on some files that its parser rejects a few lines later, such as one of "[" and a
 // control character.
 #define TOML_ASSERT(condition) static_cast<void>(0)
 
@@ -15,8 +15,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-// It runs into a branch that it calls unreachable where a letter beyond ASCII begins a key, and still answers
-// that this is none.
+// If a letter beyond ASCII begins a key, it reaches a branch marked as unreachable, but still returns the
+// correct answer.
 #ifdef __clang__
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wignored-attributes" // of templates that were included before
@@ -33,7 +33,7 @@
 namespace lamella::app {
 namespace {
 
-/// Makes values of the library's nodes.
+/// Makes values from the library's nodes.
 class Conversion {
   public:
     explicit Conversion(const std::string& name) : name_(name) {}
@@ -86,7 +86,7 @@ TomlTable read_toml(const std::string& path) {
     }
 }
 
-// TOML's basic strings escape as JSON's do, but for one character more.
+// TOML's basic strings need the same escapes as those of JSON, and one more.
 std::string toml_quoted(const std::string& text) {
     std::string escaped;
     try {

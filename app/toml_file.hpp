@@ -1,6 +1,6 @@
 #pragma once
 
-// TOML files, as values that know where they stand.
+// TOML files, as values that know their locations.
 
 #include <cstdint>
 #include <string>
@@ -17,8 +17,8 @@ using TomlTable = std::vector<TomlEntry>;
 using TomlList = std::vector<TomlValue>;
 
 struct TomlValue {
-    std::string place; ///< file and line of its key, or of the value itself in a list: "job.toml:3"
-    /// Nothing for dates and times.
+    std::string place; ///< file and line of its key, or in a list of the value itself: "job.toml:3"
+    /// Empty for dates and times.
     std::variant<std::monostate, std::string, bool, std::int64_t, double, TomlList, TomlTable> value;
 
     template <class Kind>
@@ -32,11 +32,11 @@ struct TomlEntry {
     TomlValue value;
 };
 
-/// Reads a file; "-" is standard input. Throws Error{usage} with the line for what is no TOML, and
-/// Error{input} when it cannot be read.
+/// Reads a file; "-" is standard input. Throws Error{usage} with the line for invalid TOML, and Error{input}
+/// if the file cannot be read.
 [[nodiscard]] TomlTable read_toml(const std::string& path);
 
-/// A text as TOML has it. Throws Error{usage} where it is not UTF-8.
+/// Returns a text as a TOML string. Throws Error{usage} if it is not UTF-8.
 [[nodiscard]] std::string toml_quoted(const std::string& text);
 
 /// Throws Error{usage}: "job.toml:3: ...".

@@ -1,14 +1,14 @@
 #pragma once
 
-// The viewer that the program carries in itself: viewer/ as one HTML page.
+// The viewer that is built into the program: viewer/ as one HTML page.
 
 #include <string_view>
 
 namespace lamella::app {
 
-/// "" where it was built without (viewer/CMakeLists.txt).
+/// Returns the page; "" if the program was built without it (viewer/CMakeLists.txt).
 [[nodiscard]] std::string_view viewer_page() noexcept;
-/// Why it was.
+/// Returns the reason for that.
 [[nodiscard]] std::string_view no_viewer() noexcept;
 
 } // namespace lamella::app

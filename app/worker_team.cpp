@@ -25,10 +25,10 @@
 namespace lamella::app {
 namespace {
 
-// A packet keeps its bounds, and the end of the other side shows as one of no bytes.
+// Packets preserve message boundaries, and the end of the other side appears as an empty one.
 constexpr int packets = SOCK_SEQPACKET | SOCK_CLOEXEC;
 constexpr int moment_ms = 20;
-// Tells a worker to stop: no signal that comes from outside.
+// Asks a worker to stop. No other program sends this signal.
 constexpr int stop_signal = SIGUSR1;
 
 sigset_t stop_signals() {
@@ -38,7 +38,7 @@ sigset_t stop_signals() {
     return set;
 }
 
-// How a process ends that cannot be a worker.
+// Exit code of a process that cannot become a worker.
 constexpr int cannot_work = 71;
 
 [[noreturn]] void fail(int system_error) {
@@ -46,7 +46,7 @@ constexpr int cannot_work = 71;
                                               std::generic_category().message(system_error)));
 }
 
-/// Whether all of it went; the other side may be gone.
+/// Returns whether all bytes were sent; the other side may be gone.
 bool send_packet(int socket, const void* data, std::size_t bytes) {
     ssize_t sent = 0;
     do
@@ -55,7 +55,7 @@ bool send_packet(int socket, const void* data, std::size_t bytes) {
     return sent == static_cast<ssize_t>(bytes);
 }
 
-/// The length of the packet; 0 or less when the other side is gone.
+/// Returns the length of the packet; 0 or less if the other side is gone.
 ssize_t receive_packet(int socket, void* data, std::size_t bytes) {
     ssize_t got = 0;
     do
@@ -98,7 +98,7 @@ void WorkerTeam::start(const WorkerTask& task) {
         worker = first_of([](const Worker& w) { return !w.task; });
     if (worker == workers_.end())
         throw Error(ErrorKind::internal, "all workers have a task");
-    // A worker may have died since its last answer: then another one takes its place.
+    // A worker may have died since its last answer: then a new one replaces it.
     while (worker->process < 0 || !send_packet(worker->socket, &task, sizeof task)) {
         if (worker->process > 0)
             static_cast<void>(answer_of(*worker));
@@ -111,7 +111,7 @@ void WorkerTeam::launch(Worker& worker) {
     std::array<int, 2> ends{};
     if (socketpair(AF_UNIX, packets, 0, ends.data()) != 0)
         fail(errno);
-    static_cast<void>(std::fflush(nullptr)); // what is buffered is this process's to write
+    static_cast<void>(std::fflush(nullptr)); // buffered output must be written by this process only
     const pid_t parent = getpid();
     const sigset_t until_it_listens = stop_signals();
     sigset_t before;
@@ -148,7 +148,7 @@ void WorkerTeam::serve(int socket) const {
     std::optional<Interrupt> interrupt;
     try {
         interrupt.emplace(messages, stop_signals());
-    } catch (const std::system_error&) { // it takes a thread
+    } catch (const std::system_error&) { // starting its thread failed
         _exit(cannot_work);
     }
     const CancelFlag& stopped = interrupt->flag();
@@ -158,11 +158,11 @@ void WorkerTeam::serve(int socket) const {
         if (!send_packet(socket, text.data(), std::min(text.size(), longest_answer)))
             break;
     }
-    _exit(0); // nothing of what belongs to the other process is to be undone here
+    _exit(0); // resources of the parent process must not be released here
 }
 
 std::vector<WorkerAnswer> WorkerTeam::wait() {
-    // Only those at work: poll takes no more than this process may have open.
+    // Only busy workers: poll accepts at most as many as this process may have open.
     std::vector<pollfd> awaited;
     std::vector<Worker*> at_work;
     for (Worker& worker : workers_)

@@ -97,8 +97,8 @@ struct Verification {
     /// bodies look like this. So does a hole with the wrong orientation.
     std::uint64_t overlapping = 0;
     double volume_mm3 = 0; ///< sum of area times thickness
-    /// Largest difference between the area of a layer and that of the mesh's section, except for layers with
-    /// open chains. Set with VerifyOptions::mesh if there are such layers.
+    /// Largest difference between the area of a layer without open chains and that of the mesh's section. Set
+    /// with VerifyOptions::mesh if there is such a layer.
     std::optional<double> max_area_error_mm2;
     /// True if each area lies within its tolerance: the rounding of the format and of sums, times the
     /// perimeter.
