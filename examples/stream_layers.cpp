@@ -9,8 +9,8 @@ int main() {
     };
     const lamella::Plan plan = lamella::plan_uniform(0, 10, {.layer_height = 0.5});
 
-    // Called from several threads and in any order: the place for work. What it returns is called in order,
-    // one at a time: the place for results.
+    // The sink does the work: several threads call it, in any order. The functions that it returns are called
+    // in the order of the layers, one at a time: they output the results.
     const auto sink = [](lamella::Layer&& layer) -> std::function<void()> {
         const double area = lamella::measure(layer).area_mm2;
         return [z = layer.z, area] {

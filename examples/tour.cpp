@@ -1,4 +1,4 @@
-// The whole library in a hundred lines, in the order of its door, lamella/lamella.hpp: a step of each group.
+// The whole library in a hundred lines, one step per group of lamella/lamella.hpp, in its order.
 #include <lamella/lamella.hpp>
 
 #include <iostream>
@@ -10,7 +10,7 @@ using namespace lamella;
 
 namespace {
 
-/// A box without one of its triangles, and with one that runs the wrong way round.
+/// Returns a box in which one triangle is missing and another one is flipped.
 IndexedMesh torn_box(double x, double y, double z) {
     return {{{0, 0, 0}, {x, 0, 0}, {x, y, 0}, {0, y, 0}, {0, 0, z}, {x, 0, z}, {x, y, z}, {0, y, z}},
             {{0, 2, 1},
@@ -27,17 +27,17 @@ IndexedMesh torn_box(double x, double y, double z) {
 }
 
 void tour() {
-    // All long computations take an Execution: how many threads, who hears of progress, who may end it. The
-    // result never depends on it.
+    // All long computations take an Execution: number of threads, progress and cancellation. The result never
+    // depends on it.
     Execution execution;
     execution.threads = 2;
 
-    // Meshes come from arrays or from any file, as single triangles or with vertices that they share.
+    // Meshes come from arrays or from files, as single triangles or with shared vertices.
     write_obj("box.obj", torn_box(20, 10, 5), "box");
     const MeshFile file = read_mesh("box.obj", {}, execution);
     std::cout << file.path << ": " << file.format << ", " << file.mesh().size() << " triangles\n";
 
-    // What is wrong with it? Nothing is repaired unasked, and what repairs did is told.
+    // Find the defects of the mesh. Nothing is repaired unless requested, and repairs report their changes.
     const IndexedMesh welded = weld(file.mesh(), execution);
     const Inspection found = inspect(welded, execution);
     for (const DefectKind& kind : defect_kinds)
@@ -47,26 +47,26 @@ void tour() {
     const OrientedMesh oriented = orient(welded, execution);
     std::cout << "  " << oriented.turned_triangles << " triangle turned round\n";
 
-    // To its place; then the planes, and the layers at all of them.
+    // Place the mesh, plan the layers and slice it.
     const Mesh mesh = Mesh(oriented.mesh).transformed(compose(translation(100, 50, 0), rotation('z', 30)));
     const Box3 box = bounding_box(mesh);
     const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = 0.5});
     LayerStack layers = slice(mesh, plan, execution);
 
-    // Where the mesh has its hole, contours stay open; they are closed where the gap is small enough.
+    // The hole in the mesh leaves contours open; gaps that are small enough are closed.
     for (Layer& layer : layers) {
         ClosedGaps closed = close_gaps(layer, 12);
         layer = std::move(closed.layer);
     }
 
-    // What can be asked of a layer. A contour is a span of points, the material on its left.
+    // Examine a layer. A contour is a span of points with material on its left.
     const Layer& layer = layers[4];
     const std::vector<Polygon> bodies = polygons(nesting(layer));
     std::cout << "at z = " << layer.z << " mm: " << layer.contours() << " contours, " << bodies.size()
               << " bodies, " << measure(layer).area_mm2 << " mm2, "
               << (has_crossings(layer) ? "crossing" : "not crossing") << " itself\n";
 
-    // What can be made of it.
+    // Process a layer.
     const Filled filled = fill(layer, FillRule::nonzero);
     const Layer smaller = offset(filled.layer, -1);
     std::cout << "  1 mm inwards: " << measure(smaller).area_mm2 << " mm2, corners "
@@ -75,15 +75,15 @@ void tour() {
     const GreyPicture picture = paint({&layer, 1}, grid);
     std::cout << "  a picture of " << picture.width << " x " << picture.height << " pixels\n";
 
-    // Files of layers are written by the name of their format and read by their content. Then: is all of it
-    // sound, and as large as the mesh says?
+    // The name of a format selects the writer, the content of a file the reader. Then check that the layers
+    // are sound and what volume they have.
     write_layers("box.cli", layers);
     const LayerFile again = read_layers("box.cli");
     const Verification checked = verify(again.merged(), {.rounding = again.rounding}, execution);
     std::cout << again.path << ": " << checked.layers << " layers, " << checked.volume_mm3 << " mm3, "
               << (checked.ok() ? "sound" : "with defects") << "\n";
 
-    // The whole way in one call, layer by layer in bounded memory: meshes of any size, several of them.
+    // All steps in one call, layer by layer in bounded memory: several meshes of any size.
     write_obj("oriented.obj", oriented.mesh, "oriented");
     FileJob job;
     job.inputs = {{.path = "oriented.obj", .copies = 2}};
@@ -101,10 +101,10 @@ void tour() {
 int main() {
     try {
         tour();
-    } catch (const Error& error) { // its kind says what a caller can do about it
+    } catch (const Error& error) { // its kind helps the caller to decide
         std::cerr << error.what() << "\n";
         return 1;
-    } catch (const std::bad_alloc& error) { // the only other one: memory ran out
+    } catch (const std::bad_alloc& error) { // the only other exception: memory ran out
         std::cerr << error.what() << "\n";
         return 1;
     }

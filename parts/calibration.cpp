@@ -1,6 +1,6 @@
 // A calibration plate: a square plate of nine cells with one feature each. A feature is a convex outline that
-// walks along a profile, up and down, wider and narrower, from the top of the plate to its own floor or lid,
-// or through the plate.
+// follows a profile of levels from the top of the plate, up or down, wider or narrower. It ends with its own
+// floor or lid, or passes through the plate.
 
 #include "lamella/core/unit_circle.hpp"
 
@@ -24,7 +24,7 @@ constexpr unsigned cells = 3; ///< along each edge
 
 using Outline = std::vector<Point2>; ///< convex, counter-clockwise
 
-/// A copy of the outline, stretched, at some height.
+/// The outline scaled in x and y, at a height.
 struct Level {
     double x;
     double y;
@@ -32,11 +32,12 @@ struct Level {
 };
 
 struct Feature {
-    unsigned corners; ///< of a regular polygon; its circumscribed circle is stretched to the levels'
-    std::vector<Level> profile; ///< the first level lies on the plate; one on the ground goes through
+    unsigned corners; ///< corners of a regular polygon, whose circumscribed circle is scaled by the levels
+    /// The first level lies on the plate; a last level on the ground makes a through hole.
+    std::vector<Level> profile;
 };
 
-/// Half the edge of a square, as the radius of the circle around it.
+/// Returns the radius of the circumscribed circle of a square with this half edge.
 constexpr double square(double half_edge) {
     return half_edge * std::numbers::sqrt2;
 }
@@ -129,7 +130,8 @@ class PlateMaker {
             add(points[t[0]], points[t[1]], points[t[2]], z, up);
     }
 
-    /// From one level to the next; a post's wall goes up and looks outwards, a hole's goes down and looks in.
+    /// Joins two levels. The wall of a post goes up and faces outwards, that of a hole goes down and faces
+    /// inwards.
     void band(const Outline& from, double from_z, const Outline& to, double to_z) {
         for (std::size_t i = 0; i < from.size(); ++i) {
             const std::size_t next = (i + 1) % from.size();

@@ -1,7 +1,7 @@
-// An assembly of dodecahedra. Two nests stand in opposite corners of the box: frames within frames, each a
+// An assembly of dodecahedra. Two nests are in opposite corners of the box: frames within frames, each a
 // dodecahedron with a window in every face, around a solid core. Solid dodecahedra of several sizes fill the
-// other corners. A body stays clear of its neighbours because the spheres around them do, and of the frame
-// around it because the sphere around it fits into that frame's hollow.
+// other corners. Bodies do not touch their neighbours because the spheres around them do not. A body does not
+// touch the frame around it because its sphere fits into the hollow of that frame.
 
 #include "lamella/core/unit_circle.hpp"
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr double phi = std::numbers::phi;
 
-/// Of a frame: its hollow, as a share of its size, and its windows, as a share of the faces.
+/// Size of a frame's hollow relative to the frame, and of its windows relative to the faces.
 constexpr double hollow = 0.9;
 constexpr double window = 0.62;
 
@@ -37,10 +37,10 @@ Point3 cross(const Point3& a, const Point3& b) {
 
 Face face_along(const Point3& normal, const std::array<Point3, 20>& corners) {
     const auto is_next = [&](const Point3& a, const Point3& b) {
-        // The product of neighbours is sqrt(5), that of other corners of a face 1.
+        // The product of neighbouring corners is sqrt(5), that of other corners of a face is 1.
         return a != b && dot(a, b) > 2 && dot(normal, cross(a, b)) > 0 && dot(normal, b) > 2;
     };
-    // Along the normal, the corners of the face have phi + 1, all others less than 1.
+    // Along the normal, corners of the face are at phi + 1, all others below 1.
     Face face{
         *std::find_if(corners.begin(), corners.end(), [&](const Point3& p) { return dot(normal, p) > 2; })};
     for (std::size_t k = 1; k < face.size(); ++k)
@@ -49,7 +49,7 @@ Face face_along(const Point3& normal, const std::array<Point3, 20>& corners) {
     return face;
 }
 
-/// The dodecahedron about the origin with corners in (1, 1, 1) and so on; it reaches from -phi to phi along
+/// Returns the dodecahedron about the origin with the corner (1, 1, 1). It extends from -phi to phi along
 /// each axis.
 Faces unit_dodecahedron() {
     std::array<Point3, 20> corners;
@@ -75,10 +75,10 @@ Faces unit_dodecahedron() {
 
 struct Dodecahedron {
     Point3 centre;
-    double size = 1;    ///< half the edge of the cube on its corners
-    double turned = 0;  ///< about the z axis, in degrees
-    double tilted = 0;  ///< then about the x axis
-    bool frame = false; ///< with windows and hollow, else solid
+    double size = 1;    ///< half the edge of the cube whose corners are among its corners
+    double turned = 0;  ///< rotation about the z axis, in degrees
+    double tilted = 0;  ///< then rotation about the x axis
+    bool frame = false; ///< has windows and a hollow, otherwise solid
 };
 
 Point3 placed(const Point3& p, const Dodecahedron& body, double share) {
@@ -97,7 +97,7 @@ Face placed(Face face, const Dodecahedron& body, double share) {
     return face;
 }
 
-/// The same face, drawn in towards its middle.
+/// Returns the face scaled about its centroid.
 Face narrowed(Face face, double share) {
     Point3 middle;
     for (const Point3& p : face)
@@ -108,7 +108,7 @@ Face narrowed(Face face, double share) {
     return face;
 }
 
-/// Joins the edges of two faces by quads that face outwards where `outer` is the wider one.
+/// Joins the edges of two faces by quads that face outwards if `outer` is the wider one.
 void add_band(std::vector<Triangle3f>& out, const Face& outer, const Face& inner) {
     for (std::size_t k = 0; k < outer.size(); ++k) {
         const std::size_t next = (k + 1) % outer.size();

@@ -1,12 +1,12 @@
-// A head, as a scanner would deliver it: a fine mesh of uneven triangles over a smooth body with relief.
+// A human head as from a 3D scanner: a fine mesh of uneven triangles over a smooth body with relief.
 //
-// The body is a rounded union of ellipsoids (skull, jaw, nose, ears, ...). Rays from its middle, through the
-// corners of a subdivided icosahedron that are pushed about a little, are followed to its skin. As these
-// directions form a triangulation of the sphere without folds, triangles of the skin cannot cross, whatever
-// the body is like: each has its own cone of rays.
+// The body is a rounded union of ellipsoids (skull, jaw, nose, ears, ...). The corners of a subdivided
+// icosahedron, randomly displaced, give directions of rays from the origin; the mesh has a vertex where each
+// ray leaves the body. These directions form a triangulation of the sphere without folds, so triangles of the
+// skin cannot cross, whatever the shape of the body: each has its own cone of rays.
 //
-// The axes are those of a head that lies on its ear: x up to the crown, y forwards, z sideways, from a point
-// between the ears. Millimetres.
+// The axes are those of a head that lies on its ear: x towards the crown, y forwards, z sideways. The origin
+// lies between the ears. Lengths are in millimetres.
 
 #include "parts/icosahedron.hpp"
 #include "parts/shapes.hpp"
@@ -25,10 +25,10 @@ namespace lamella {
 
 namespace {
 
-/// The icosahedron's edges are divided into so many; each of its faces becomes the square of it.
+/// The icosahedron's edges are divided into this many parts, each of its faces into the square of it.
 constexpr unsigned fineness = 153;
 
-/// How far a corner may be pushed along each axis, as a share of the distance to its neighbours.
+/// Largest displacement of a corner along each axis, relative to the distance to its neighbours.
 constexpr double unevenness = 0.22;
 
 double length(const Point3& p) {
@@ -42,7 +42,7 @@ struct Ellipsoid {
     Point3 radii;
 };
 
-/// Roughly the distance from its surface, negative inside.
+/// Returns the approximate distance from the surface, negative inside.
 double distance(const Point3& p, const Ellipsoid& e) {
     const Point3 q{(p.x - e.centre.x) / e.radii.x, (p.y - e.centre.y) / e.radii.y,
                    (p.z - e.centre.z) / e.radii.z};
@@ -51,7 +51,7 @@ double distance(const Point3& p, const Ellipsoid& e) {
     return slope > 0 ? reach * (reach - 1) / slope : -std::min({e.radii.x, e.radii.y, e.radii.z});
 }
 
-/// The smaller of two distances, its crease rounded where they differ by less than `round`.
+/// Returns the smaller of two distances, with the crease rounded where they differ by less than `round`.
 double united(double a, double b, double round) {
     const double overlap = std::max(round - std::fabs(a - b), 0.0) / round;
     return std::min(a, b) - overlap * overlap * round / 4;
@@ -63,7 +63,7 @@ double cut_out(double a, double b, double round) {
 
 constexpr Ellipsoid ear{{17, -8, 35}, {14, 9, 6}};
 
-/// Both sides are alike: only one ear, eye, ... is described.
+/// Both sides are equal: only one ear, eye, ... is described.
 double head_distance(const Point3& at) {
     const Point3 p{at.x, at.y, std::fabs(at.z)};
     double d = distance(p, {{28, -8, 0}, {47, 48, 36}});                // skull
@@ -75,20 +75,20 @@ double head_distance(const Point3& at) {
     d = cut_out(d, distance(p, {{19, 46, 14}, {7, 8, 9}}), 7);          // eye socket
     d = united(d, distance(p, {{19, 34, 14}, {5.5, 6, 7.5}}), 2.5);     // eye
     d = united(d, distance(p, {{10, 44, 0}, {16, 6.5, 4}}), 6);         // bridge of the nose
-    d = united(d, distance(p, {{0, 51, 0}, {6, 7, 6}}), 6);             // its tip
-    d = united(d, distance(p, {{-2, 45, 6}, {4.5, 6, 4.5}}), 3);        // its wing
+    d = united(d, distance(p, {{0, 51, 0}, {6, 7, 6}}), 6);             // tip of the nose
+    d = united(d, distance(p, {{-2, 45, 6}, {4.5, 6, 4.5}}), 3);        // wing of the nose
     d = united(d, distance(p, {{-14.5, 43.5, 0}, {3.5, 5, 11}}), 4);    // lips
     d = united(d, distance(p, {{-21, 42.5, 0}, {3.5, 5, 9}}), 4);       //
     d = cut_out(d, distance(p, {{-17.8, 49.5, 0}, {1.2, 5, 11}}), 1.5); // mouth
     d = united(d, distance(p, ear), 9);                                 // ear
-    d = cut_out(d, distance(p, {{18, -5, 44}, {8, 4.5, 5}}), 3);        // its hollow
+    d = cut_out(d, distance(p, {{18, -5, 44}, {8, 4.5, 5}}), 3);        // hollow of the ear
     d = united(d, distance(p, {{-98, -12, 0}, {90, 29, 27}}), 12);      // neck
     return -united(-d, p.x + 67, 2);                                    // cut off flat
 }
 
 // --- the relief
 
-/// From -1 to 1, smooth, without a pattern: values at the corners of unit cubes, blended.
+/// Smooth noise from -1 to 1 without a pattern: values at the corners of unit cubes, blended.
 double noise(const Point3& p) {
     const auto value = [](double x, double y, double z) {
         RandomNumbers random(static_cast<std::uint64_t>(static_cast<std::int64_t>(x) * 73856093) ^
@@ -113,13 +113,13 @@ double noise(const Point3& p) {
     return blend(layer(low.z), layer(low.z + 1), t.z);
 }
 
-/// 0 up to `from`, 1 beyond `to`.
+/// Rises smoothly from 0 at `from` to 1 at `to`.
 double rise(double x, double from, double to) {
     const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
     return t * t * (3 - 2 * t);
 }
 
-/// How far the skin stands out from the smooth body: pores everywhere, strands of hair on the scalp.
+/// Returns the height of the skin above the smooth body: pores everywhere, strands of hair on the scalp.
 double relief(const Point3& p) {
     const double pores =
         0.08 * noise({p.x * 0.9, p.y * 0.9, p.z * 0.9}) + 0.03 * noise({p.x * 2.3, p.y * 2.3, p.z * 2.3});
@@ -133,8 +133,8 @@ double relief(const Point3& p) {
 
 // --- the mesh
 
-/// Where the ray from the origin first leaves the body; `direction` has length 1. Regula falsi in the variant
-/// that halves the weight of an end that stays (Illinois; Dowell, Jarratt 1971).
+/// Returns the point where the ray from the origin first leaves the body; `direction` has length 1. Uses
+/// regula falsi in the variant that halves the weight of an end that stays (Illinois; Dowell, Jarratt 1971).
 Point3 on_skin(const Point3& direction) {
     const auto along = [&](double t) -> Point3 {
         return {t * direction.x, t * direction.y, t * direction.z};
@@ -169,12 +169,12 @@ Point3 on_skin(const Point3& direction) {
     return along(skin + relief(along(skin)));
 }
 
-/// The direction of a corner of the grid on a face: the icosahedron's corners with their weights, which add
-/// up to `fineness`. It is pushed about by what only depends on where it is, so that faces agree at their
-/// edges.
+/// Returns the direction of a corner of the grid on a face, given by corners of the icosahedron and their
+/// weights, which add up to `fineness`. The displacement depends on its location only, so that faces agree at
+/// their edges.
 Point3 direction(std::array<std::uint32_t, 3> corners, std::array<unsigned, 3> weights) {
     static const std::array<Point3, 12> icosahedron = icosahedron_corners();
-    // A sum's last digit depends on the order: let it be that of the corners.
+    // The last digit of a sum depends on the order of summands, so they are sorted by corner.
     for (const auto& [i, k] : {std::pair{0, 1}, {1, 2}, {0, 1}})
         if (corners[i] > corners[k]) {
             std::swap(corners[i], corners[k]);
@@ -201,7 +201,7 @@ Point3 direction(std::array<std::uint32_t, 3> corners, std::array<unsigned, 3> w
     return {x / norm, y / norm, z / norm};
 }
 
-/// Moves and stretches points along the axes so that their box goes from the origin to `size`.
+/// Translates and scales points along the axes so that their box extends from the origin to `size`.
 void fit_box(std::span<Point3> points, const Point3& size) {
     Box3 box;
     for (const Point3& p : points)
@@ -215,7 +215,7 @@ void fit_box(std::span<Point3> points, const Point3& size) {
 } // namespace
 
 TriangleSoup make_head() {
-    // On each face of the icosahedron a triangle of rows, row i with i + 1 corners.
+    // Each face of the icosahedron has a triangular grid; row i has i + 1 corners.
     constexpr std::size_t per_face = std::size_t{fineness + 1} * (fineness + 2) / 2;
     const auto in_face = [](unsigned row, unsigned column) {
         return std::size_t{row} * (row + 1) / 2 + column;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The regular icosahedron, on the unit sphere: where round bodies begin.
+// The regular icosahedron on the unit sphere, a basis for round bodies.
 
 #include "lamella/core/point.hpp"
 
@@ -27,7 +27,7 @@ namespace lamella {
              {-l, 0, s}}};
 }
 
-/// Its faces, counter-clockwise seen from outside.
+/// The faces, counter-clockwise seen from outside.
 inline constexpr std::array<std::array<unsigned, 3>, 20> icosahedron_faces{
     {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},

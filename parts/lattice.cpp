@@ -1,11 +1,11 @@
-// A lattice of struts along the three axes. Around each node six tubes of equal radius meet; two of them meet
-// in the plane between their axes (|x| = |y|, and so on), so each tube starts on a curve that it shares with
-// four neighbours:
+// A lattice of struts along the three axes. Six tubes of equal radius meet at each node. Two of them
+// intersect in the plane between their axes (|x| = |y|, and so on), so each tube starts at a curve that it
+// shares with four neighbours:
 //
 //     distance along the axis = radius * max(|cos|, |sin|) at each angle.
 //
-// With a number of angles divisible by 8 the corners of that curve are among them, and corners of
-// neighbouring tubes coincide bit for bit. So the surface is closed as it is made: nothing is intersected.
+// If the number of angles is divisible by 8, the corners of that curve are among them, and corners of
+// neighbouring tubes coincide bit for bit. So the surface is closed without computing any intersection.
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/unit_circle.hpp"
@@ -26,9 +26,9 @@ namespace lamella {
 
 namespace {
 
-/// Struts are thicker at the nodes by up to this factor: a fillet.
+/// Struts become thicker at the nodes by up to this factor: a fillet.
 constexpr double fillet = 1.3;
-/// How far the end of a missing strut bulges, in radii.
+/// Height of the bulge that closes a node without a strut, in radii.
 constexpr double bulge = 1.1;
 
 class LatticeMaker {
@@ -56,7 +56,7 @@ class LatticeMaker {
             }
     }
 
-    /// Closes a node where there is no strut; side is 1 or -1.
+    /// Closes a node on a side without a strut; side is 1 or -1.
     void end(const std::array<unsigned, 3>& node, int axis, int side) {
         std::array<double, 3> tip = centre(node);
         tip[axis] += side * node_ * bulge;
@@ -106,7 +106,7 @@ class LatticeMaker {
             return on_node(node, axis, -1, j);
         }
         const double t = static_cast<double>(ring) / rings_;
-        const double outwards = std::fabs(2 * t - 1); // 0 in the middle, 1 at the nodes
+        const double outwards = std::fabs(2 * t - 1); // 0 at the middle, 1 at the nodes
         std::array<double, 3> p = centre(node);
         p[axis] += reach(j) + (cell_ - 2 * reach(j)) * t;
         return around(p, axis, strut_ + (node_ - strut_) * outwards * outwards, j);
@@ -152,7 +152,7 @@ void check(const LatticeShape& shape) {
                         shape.strut_mm, extent));
 }
 
-/// Of the nodes in one plane across the z axis, and the struts that begin there.
+/// Makes the nodes in one plane perpendicular to the z axis, and the struts that begin there.
 void make_level(LatticeMaker& maker, const std::array<unsigned, 3>& cells, unsigned level) {
     std::array<unsigned, 3> node{0, 0, level};
     for (node[1] = 0; node[1] <= cells[1]; ++node[1])

@@ -6,7 +6,7 @@ namespace lamella {
 
 namespace {
 
-/// Positive when a, b, c turn left.
+/// Returns a positive number if a, b, c turn left.
 std::int64_t turn(const NamedPoint& a, const NamedPoint& b, const NamedPoint& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
@@ -16,7 +16,7 @@ struct Corner {
     bool upper;
 };
 
-/// Both chains as one sequence of ascending x; a corner that both list comes once.
+/// Merges both chains into one sequence of ascending x; a corner in both is listed once.
 std::vector<Corner> merge(std::span<const NamedPoint> lower, std::span<const NamedPoint> upper) {
     std::vector<Corner> out;
     out.reserve(lower.size() + upper.size());
@@ -44,13 +44,13 @@ std::vector<std::array<std::uint32_t, 3>> triangulate_monotone(std::span<const N
     if (corners.size() < 3)
         return out;
     out.reserve(corners.size() - 2);
-    // What is left of the polygon to the left of the sweep line hangs on this chain, which bends inwards.
+    // The boundary of the part to the left of the sweep line that is not triangulated yet. It bends inwards.
     std::vector<Corner> chain{corners[0], corners[1]};
     for (std::size_t i = 2; i < corners.size(); ++i) {
         const Corner& c = corners[i];
         const bool last = i + 1 == corners.size();
         if (last || c.upper != chain.back().upper) {
-            // The last corner closes both chains, so it sees the whole of this one.
+            // The last corner closes both chains, so the whole chain is visible from it.
             const bool chain_upper = chain.back().upper;
             for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
                 const std::uint32_t a = chain[k].at.id;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Triangulation of a polygon that every vertical line meets in at most one piece: exact, in linear time,
-// without added vertices (Garey, Johnson, Preparata, Tarjan 1978).
+// Triangulation of a polygon that every vertical line intersects in at most one segment: exact, in linear
+// time, without added vertices (Garey, Johnson, Preparata, Tarjan 1978).
 
 #include <array>
 #include <cstdint>
@@ -19,8 +19,8 @@ struct NamedPoint {
     friend bool operator==(const NamedPoint&, const NamedPoint&) = default;
 };
 
-/// Triangles by id, counter-clockwise, of the polygon between two chains of strictly ascending x. Where both
-/// chains start (or end) in the same corner, both list it; else the polygon has an edge there.
+/// Returns the triangles by id, counter-clockwise, of the polygon between two chains of strictly ascending x.
+/// If both chains start (or end) at the same corner, both list it; otherwise the polygon has an edge there.
 [[nodiscard]] std::vector<std::array<std::uint32_t, 3>>
 triangulate_monotone(std::span<const NamedPoint> lower, std::span<const NamedPoint> upper);
 

@@ -1,6 +1,6 @@
-// Each edge of the inner polygon takes as its apex the outer corner that lies farthest out from it. Going
-// around, these apexes advance in the same sense; where one edge's apex is not the next one's, the outer
-// edges between them are joined to the inner corner between the two.
+// The apex of each edge of the inner polygon is the outer corner farthest from it. Around the ring, these
+// apexes advance in the same direction; where the apexes of two consecutive edges differ, the outer edges
+// between them are joined to the inner corner between the two edges.
 
 #include "parts/ring.hpp"
 
@@ -10,7 +10,7 @@ namespace lamella {
 
 namespace {
 
-/// The corner farthest to the right of the edge from a to b.
+/// Returns the corner farthest to the right of the edge from a to b.
 std::size_t farthest(std::span<const Point2> corners, const Point2& a, const Point2& b) {
     const auto distance = [&](const Point2& p) {
         return p.x * (b.y - a.y) - p.y * (b.x - a.x);

@@ -1,5 +1,5 @@
-// A chess rook, turned on a lathe: a profile of lines and arcs, swept around the axis, with slots cut into
-// the rim of its hollow crown.
+// A chess rook as if made on a lathe: a profile of lines and arcs, swept around the axis, with slots in the
+// rim of its hollow crown.
 
 #include "lamella/core/unit_circle.hpp"
 
@@ -13,7 +13,7 @@ namespace {
 
 constexpr unsigned columns_around = 240;
 constexpr unsigned merlons = 6;
-constexpr unsigned merlon_columns = 24; // of the 40 from one merlon to the next
+constexpr unsigned merlon_columns = 24; // of the 40 columns from one merlon to the next
 constexpr unsigned rim_rings = 6;
 constexpr unsigned merlon_rings = 12;
 
@@ -32,7 +32,7 @@ struct ProfilePoint {
 
 using Profile = std::vector<ProfilePoint>;
 
-/// Continues a profile by a parabolic arc (a line, when the control point lies half-way).
+/// Continues a profile by a parabolic arc (a line if the control point lies half-way).
 void arc(Profile& profile, ProfilePoint control, ProfilePoint end, unsigned steps) {
     const ProfilePoint start = profile.back();
     for (unsigned i = 1; i < steps; ++i) {
@@ -50,11 +50,11 @@ void line(Profile& profile, ProfilePoint end, unsigned steps) {
     arc(profile, {(start.r + end.r) / 2, (start.z + end.z) / 2}, end, steps);
 }
 
-/// From the edge of the base up to the floor of the slots.
+/// Returns the profile from the edge of the base up to the floor of the slots.
 Profile body_profile() {
     Profile p{{base_radius, 0}};
     line(p, {base_radius, 4}, 10);               // foot
-    arc(p, {base_radius, 6}, {14.2, 6.8}, 12);   // its shoulder
+    arc(p, {base_radius, 6}, {14.2, 6.8}, 12);   // shoulder of the foot
     line(p, {13.2, 7.6}, 3);                     //
     arc(p, {14.8, 9.2}, {12.6, 10.6}, 16);       // bead
     arc(p, {8.4, 15}, {8.2, 36}, 55);            // stem
@@ -65,7 +65,7 @@ Profile body_profile() {
     return p;
 }
 
-/// From the floor of the slots down into the bore, and almost to the axis.
+/// Returns the profile from the floor of the slots down into the bore and almost to the axis.
 Profile bore_profile() {
     Profile p{{bore_radius, slot_floor}};
     line(p, {bore_radius, 46.9}, 4);
@@ -84,7 +84,8 @@ class Lathe {
   public:
     std::vector<Triangle3f> out;
 
-    /// Sweeps a profile over the columns [first, last). Going up the outside, material lies inside.
+    /// Sweeps a profile over the columns [first, last). If the profile goes up, the surface faces away from
+    /// the axis.
     void sweep(const Profile& profile, unsigned first, unsigned last) {
         for (std::size_t i = 0; i + 1 < profile.size(); ++i)
             for (unsigned j = first; j < last; ++j)
@@ -102,8 +103,8 @@ class Lathe {
         }
     }
 
-    /// A radial wall in column line j, spanned by a profile upwards and one inwards. `ahead`: it faces the
-    /// columns before j.
+    /// Adds a radial wall at column line j, spanned by a profile upwards and one inwards. If `ahead`, it
+    /// faces the columns before j.
     void radial_wall(unsigned j, const Profile& upwards, const Profile& inwards, bool ahead) {
         for (std::size_t i = 0; i + 1 < upwards.size(); ++i)
             for (std::size_t k = 0; k + 1 < inwards.size(); ++k) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Test bodies made from a few numbers: closed, oriented, the same bytes on every machine.
+// Parametric test bodies: closed, oriented, with the same bytes on every machine.
 
 #include "lamella/mesh/triangle_soup.hpp"
 
@@ -9,12 +9,12 @@
 
 namespace lamella {
 
-/// The order in which a sheet's triangles stand in the file. It decides how long the lists of the paper's
-/// algorithms get; see SheetShape.
+/// The order of a sheet's triangles in the file. It determines the length of the lists in the paper's
+/// algorithms; see SheetShape.
 enum class TriangleOrder {
     wall,  ///< around each hole, the two triangles of each wall quad together
     hole,  ///< the lower triangles of a hole's wall, then its upper ones, hole after hole: the paper's sheets
-    split, ///< all lower triangles of all walls, then all upper ones: harder still
+    split, ///< all lower triangles of all walls, then all upper ones: even harder
     shuffle, ///< random, from a seed
 };
 
@@ -22,46 +22,46 @@ enum class TriangleOrder {
 /// 5, 12 to 15). h holes of k segments have exactly 4 h (k + 1) + 12 triangles: a constrained triangulation
 /// of top and bottom without added vertices, and two triangles per wall quad.
 struct SheetShape {
-    unsigned holes = 100;  ///< a square number
-    unsigned segments = 0; ///< per hole; 0 takes the paper's: 256 for 100 holes, else 512
-    double size_mm = 0;    ///< edge length; 0 takes the paper's: 256 for 100 holes, else 250
+    unsigned holes = 100;  ///< must be a square number
+    unsigned segments = 0; ///< per hole; 0 selects the paper's number: 256 for 100 holes, otherwise 512
+    double size_mm = 0;    ///< edge length; 0 selects the paper's length: 256 for 100 holes, otherwise 250
     double thickness_mm = 3;
     TriangleOrder order = TriangleOrder::wall;
     std::uint64_t seed = 1; ///< for TriangleOrder::shuffle
 };
 
-/// Throws Error{usage} when the shape is impossible (holes not square, fewer than 3 segments, sizes not
-/// positive).
+/// Makes the sheet. Throws Error{usage} if the shape is impossible (holes not square, fewer than 3 segments,
+/// sizes not positive).
 [[nodiscard]] TriangleSoup make_sheet(const SheetShape& shape);
 
-/// A chess rook as in the paper's Fig. 6: 31.75 x 31.75 x 53.15 mm, hollow crown with battlements, 94,080
-/// triangles (the paper's has 93,930). It stands on z = 0 around the z axis.
+/// Makes a chess rook as in the paper's Fig. 6: 31.75 x 31.75 x 53.15 mm, hollow crown with battlements,
+/// 94,080 triangles (the paper's has 93,930). It stands on z = 0 around the z axis.
 [[nodiscard]] TriangleSoup make_rook();
 
-/// An assembly of dodecahedra as in the paper's Fig. 10: 157.81 x 133.62 x 165.15 mm in the corner of the
-/// positive octant, 2,088 triangles (the paper's has 2,074). 13 bodies that do not touch: two nests of frames
-/// within frames around a solid core, and six solid ones.
+/// Makes an assembly of dodecahedra as in the paper's Fig. 10: 157.81 x 133.62 x 165.15 mm in the corner of
+/// the positive octant, 2,088 triangles (the paper's has 2,074). Its 13 bodies do not touch: two nests of
+/// frames within frames around a solid core, and six solid ones.
 [[nodiscard]] TriangleSoup make_dodecahedra();
 
-/// A calibration plate as in the paper's Fig. 11: 165.1 x 165.1 x 25.4 mm in the corner of the positive
-/// octant, 316 triangles as the paper's: round, square and blind holes, posts, fins and steps.
+/// Makes a calibration plate as in the paper's Fig. 11: 165.1 x 165.1 x 25.4 mm in the corner of the positive
+/// octant, 316 triangles as in the paper: round, square and blind holes, posts, fins and steps.
 [[nodiscard]] TriangleSoup make_calibration();
 
-/// A head like the scan of the paper's Fig. 16: 141.61 (neck to crown) x 111.27 (front to back) x 81.29 mm
-/// (side to side) in the corner of the positive octant, 468,180 triangles of uneven size (the paper's has
-/// 467,882). No two of them cross: every ray from within leaves the head once.
+/// Makes a head like the scan of the paper's Fig. 16: 141.61 (neck to crown) x 111.27 (front to back) x 81.29
+/// mm (side to side) in the corner of the positive octant, 468,180 triangles of uneven size (the paper's has
+/// 467,882). No two of them cross: every ray from inside leaves the head once.
 [[nodiscard]] TriangleSoup make_head();
 
-/// A shoe sole as in the paper's Figs. 17 and 18: 324 (heel to toe) x 125 x 54 mm in the corner of the
-/// positive octant, 859,996 triangles (the paper's has 862,014), one closed surface. Two plates, the upper
-/// one shaped like a footbed, joined by slanted struts that run from bottom to top, so that a plane crosses
-/// 24% of all triangles on average, as in the paper.
+/// Makes a shoe sole as in the paper's Figs. 17 and 18: 324 (heel to toe) x 125 x 54 mm in the corner of the
+/// positive octant, 859,996 triangles (the paper's has 862,014), one closed surface. Slanted struts that run
+/// from bottom to top join two plates, the upper one shaped like a footbed. A plane crosses 24% of all
+/// triangles on average, as in the paper.
 [[nodiscard]] TriangleSoup make_sole();
 
-/// A lattice of struts: a cubic grid of cells, each corner of a cell joined to its neighbours by struts of
-/// round section that thicken towards the nodes, all of it one closed surface without inner walls, in the
-/// corner of the positive octant. Throws Error{usage} for impossible sizes. The default has 900,432
-/// triangles.
+/// A lattice of struts: a cubic grid of cells. Struts of round section that become thicker towards the nodes
+/// join each corner of a cell to its neighbours. It is one closed surface without inner walls, in the corner
+/// of the positive octant. The default has 900,432 triangles. Functions throw Error{usage} for impossible
+/// sizes.
 struct LatticeShape {
     unsigned cells_x = 12;
     unsigned cells_y = 12;
@@ -72,28 +72,28 @@ struct LatticeShape {
 };
 [[nodiscard]] TriangleSoup make_lattice(const LatticeShape& shape);
 
-/// How many triangles that has. Throws as make_lattice.
+/// Returns the number of triangles of the lattice. Throws as make_lattice does.
 [[nodiscard]] std::uint64_t lattice_triangles(const LatticeShape& shape);
 
-/// The same triangles in the same order, one layer of nodes at a time, in the memory of one: for lattices
-/// that are larger than memory.
+/// Passes the same triangles to the sink in the same order, one layer of nodes at a time, in the memory of
+/// one layer: for lattices larger than memory.
 void make_lattice(const LatticeShape& shape, const std::function<void(const TriangleSoup&)>& sink);
 
-// Small solids. They throw Error{usage} for sizes that are not positive and for segments that single
-// precision cannot tell apart.
+// Small solids. They throw Error{usage} for sizes that are not positive and for segments too small for single
+// precision.
 
-/// From the origin to (x, y, z). 12 triangles.
+/// Makes a box from the origin to (x, y, z). 12 triangles.
 [[nodiscard]] TriangleSoup make_box(double x_mm, double y_mm, double z_mm);
-/// About the origin; a subdivided icosahedron: 20 * 4^level triangles, level 0 to 11.
+/// Makes a sphere about the origin, a subdivided icosahedron: 20 * 4^level triangles, level 0 to 11.
 [[nodiscard]] TriangleSoup make_sphere(double radius_mm, unsigned level);
-/// About the origin, its axis upright. 2 * ring_segments * tube_segments triangles.
+/// Makes a torus about the origin with a vertical axis. 2 * ring_segments * tube_segments triangles.
 [[nodiscard]] TriangleSoup make_torus(double ring_radius_mm, double tube_radius_mm, unsigned ring_segments,
                                       unsigned tube_segments);
-/// Upright on z = 0 around the z axis. 4 * segments triangles.
+/// Makes a vertical cylinder on z = 0 around the z axis. 4 * segments triangles.
 [[nodiscard]] TriangleSoup make_cylinder(double radius_mm, double height_mm, unsigned segments);
 
-/// The same triangles in random order (the corners of each keep their order). The same seed gives the same
-/// order on every machine.
+/// Returns the same triangles in random order (the corners of each keep their order). The same seed gives the
+/// same order on every machine.
 [[nodiscard]] TriangleSoup shuffled(const TriangleSoup& soup, std::uint64_t seed);
 
 } // namespace lamella

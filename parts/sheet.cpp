@@ -1,12 +1,12 @@
 // The sheet with holes. Hole outlines are exact copies of one polygon on an integer grid that single
-// precision represents exactly, so that the caps can be triangulated with exact arithmetic, once per kind of
+// precision represents exactly. So the caps can be triangulated with exact arithmetic, once per kind of
 // region:
 //
-//     a left strip, a right strip, a bottom strip, a top strip: between an edge of the sheet and the
-//     outermost holes; and between any four neighbouring holes a cell, all cells alike.
+//     a left, a right, a bottom and a top strip, each between an edge of the sheet and the outermost
+//     holes; and a cell between each four neighbouring holes, all cells equal.
 //
-// Their borders are the arcs of the holes and straight bridges between extreme points of neighbouring holes.
-// All of them are monotone polygons.
+// Their boundaries are the arcs of the holes and straight bridges between extreme points of neighbouring
+// holes. All of them are monotone polygons.
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/unit_circle.hpp"
@@ -26,13 +26,13 @@ namespace lamella {
 
 namespace {
 
-/// The share of a grid cell that a hole's diameter takes.
+/// Diameter of a hole relative to its grid cell.
 constexpr double hole_width = 0.7;
 
-/// One hole about its centre, counter-clockwise, strictly convex, no two corners with the same x or y.
+/// A hole about its centre: counter-clockwise, strictly convex, no two corners with the same x or y.
 struct Hole {
-    std::vector<NamedPoint> corners; ///< id: the corner's number
-    std::uint32_t right = 0;         ///< the corner with the largest x, and so on
+    std::vector<NamedPoint> corners; ///< id is the index of the corner
+    std::uint32_t right = 0;         ///< index of the corner with the largest x, and so on
     std::uint32_t top = 0;
     std::uint32_t left = 0;
     std::uint32_t bottom = 0;
@@ -42,8 +42,8 @@ Hole make_hole(double radius_in_units, unsigned segments) {
     Hole hole;
     hole.corners.resize(segments);
     for (unsigned i = 0; i < segments; ++i) {
-        // An eighth of a segment off the axes: so no two corners share an x or a y, whatever the number of
-        // segments, and each side has exactly one extreme corner.
+        // Corners are an eighth of a segment off the axes, so no two corners share an x or a y for any number
+        // of segments, and each side has exactly one extreme corner.
         const CosSin at = cos_sin_turn(8 * std::uint64_t{i} + 1, 8 * std::uint64_t{segments});
         hole.corners[i] = {std::llround(radius_in_units * at.cos), std::llround(radius_in_units * at.sin), i};
     }
@@ -86,10 +86,10 @@ class SheetMaker {
         : side_(side), segments_(segments), thickness_(static_cast<float>(thickness_mm)) {
         int exponent = 0;
         std::frexp(size_mm, &exponent);
-        // Coordinates are whole units below 2^24: exact in single precision.
+        // Coordinates are integers below 2^24: exact in single precision.
         unit_exponent_ = exponent - 24;
         edge_ = std::llround(std::ldexp(size_mm, -unit_exponent_));
-        const std::int64_t pitch = edge_ / side; // whole, so that all cells are exact copies
+        const std::int64_t pitch = edge_ / side; // an integer, so that all cells are exact copies
         const std::int64_t margin = (edge_ - pitch * (side - 1)) / 2;
         hole_ = make_hole(static_cast<double>(pitch) * (hole_width / 2), segments);
         corners_.reserve(holes() * segments + 4);
@@ -106,7 +106,7 @@ class SheetMaker {
         add(0, edge_);
     }
 
-    /// The lower (or upper) triangle of each wall quad, hole by hole; the outer walls last.
+    /// Returns the lower (or upper) triangle of each wall quad, hole by hole; the outer walls last.
     [[nodiscard]] std::vector<Triangle3f> walls(bool upper) const {
         std::vector<Triangle3f> out;
         out.reserve(holes() * segments_ + 4);
@@ -121,7 +121,7 @@ class SheetMaker {
         return out;
     }
 
-    /// The triangles of the top, as ids of corners.
+    /// Returns the triangles of the top, as ids of corners.
     [[nodiscard]] std::vector<std::array<std::uint32_t, 3>> cap() const;
 
     [[nodiscard]] Triangle3f triangle(const std::array<std::uint32_t, 3>& ids, bool top) const {
@@ -148,7 +148,7 @@ class SheetMaker {
                 std::ldexp(static_cast<float>(p.y), unit_exponent_), z};
     }
 
-    /// Material lies to the right of a -> b, seen from above.
+    /// Makes a triangle of a wall; material lies to the right of a -> b, seen from above.
     [[nodiscard]] Triangle3f wall(std::uint32_t a, std::uint32_t b, bool upper) const {
         if (upper)
             return {point(a, thickness_), point(b, thickness_), point(b, 0)};
@@ -178,7 +178,7 @@ class SheetMaker {
 
 using Ids = std::vector<std::array<std::uint32_t, 3>>;
 
-/// A quarter turn clockwise: what was monotone upwards is monotone to the right.
+/// Rotates by 90 degrees clockwise: a chain that was monotone upwards becomes monotone to the right.
 std::vector<NamedPoint> lying(std::vector<NamedPoint> chain) {
     for (NamedPoint& p : chain)
         p = {p.y, -p.x, p.id};
@@ -273,7 +273,8 @@ TriangleSoup make_sheet(const SheetShape& shape) {
         out.insert(out.end(), lower.begin(), lower.end());
         out.insert(out.end(), upper.begin(), upper.end());
     } else {
-        // So many lower ones, then the upper ones of the same quads; the outer walls make the last stretch.
+        // Alternates this many lower triangles and the upper ones of the same quads; the outer walls come
+        // last.
         const std::size_t stretch = shape.order == TriangleOrder::hole ? segments : 1;
         for (std::size_t i = 0; i < lower.size(); i += stretch) {
             const auto begin = static_cast<std::ptrdiff_t>(i);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Random order that is the same on every machine: std::shuffle and the standard distributions are not.
+// Random order that is the same on every machine, unlike std::shuffle and the standard distributions.
 
 #include <cstddef>
 #include <cstdint>
@@ -22,7 +22,8 @@ class RandomNumbers {
         return z ^ (z >> 31);
     }
 
-    /// From [0, n), n below 2^40 or so: what multiplying instead of rejecting distorts cannot be noticed.
+    /// Returns a number in [0, n), n below about 2^40: the bias of multiplying instead of rejecting is
+    /// negligible.
     [[nodiscard]] std::uint64_t below(std::uint64_t n) noexcept {
         __extension__ using Wide = unsigned __int128;
         return static_cast<std::uint64_t>((static_cast<Wide>(next()) * n) >> 64);
@@ -32,7 +33,7 @@ class RandomNumbers {
     std::uint64_t state_;
 };
 
-/// Fisher and Yates.
+/// The shuffle of Fisher and Yates.
 template <class T>
 void shuffle(std::span<T> values, std::uint64_t seed) {
     RandomNumbers random(seed);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The single precision of STL files: rounding to it, and what it can tell apart.
+// Rounding to the single precision of STL files, and its resolution.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
@@ -11,8 +11,8 @@ namespace lamella {
     return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// Corners `step` apart stay apart when rounded to single precision on a body that reaches as far as
-/// `extent` from the origin, with room for slanted steps.
+/// Returns true if corners `step` apart remain distinct in single precision on a body that extends up to
+/// `extent` from the origin, with a margin for slanted steps.
 [[nodiscard]] inline bool resolvable(double step, double extent) noexcept {
     return step > extent * 0x1p-20 && extent < 1e30 && step > 1e-30;
 }

@@ -1,13 +1,13 @@
 // A shoe sole of two plates with slanted struts between them.
 //
-// A square grid is bent into the outline of a foot, the same for both plates. Within each of its cells lies
-// the end of at most one strut, a circle that fits into the cell; what is left of the cell around it is
-// triangulated, so plates and struts are one surface as they are made. A strut stands in a cell of the lower
-// plate and ends in another cell of the same row of the upper one. Struts of a row are parallel, those of the
-// next row lean the other way: they cross when seen from the side, but each row keeps to itself.
+// A square grid is bent into the outline of a foot, the same for both plates. Each of its cells contains the
+// end of at most one strut, a circle that fits into the cell. The rest of the cell around it is triangulated,
+// so plates and struts form one surface. A strut starts in a cell of the lower plate and ends in another cell
+// of the same row of the upper one. Struts of a row are parallel, those of the next row lean in the opposite
+// direction: they cross when seen from the side, but each stays within its row.
 //
-// A strut has no corners between its ends: its triangles run from bottom to top, which is what makes such
-// parts hard to slice.
+// A strut has no corners between its ends: its triangles run from bottom to top, which makes such parts hard
+// to slice.
 
 #include "lamella/core/unit_circle.hpp"
 
@@ -30,11 +30,12 @@ constexpr double plate_thickness = 2;  ///< thickness
 constexpr unsigned columns = 133;      ///< heel to toe
 constexpr unsigned rows = 50;          ///< side to side
 constexpr unsigned lean = 5;           ///< columns from the lower end of a strut to its upper end
-constexpr unsigned strut_corners = 32; ///< of a strut's section
-constexpr double strut_share = 0.62;   ///< of the way from a strut's middle to the borders of its cells
-constexpr double thinnest = 0.25;      ///< radius below which a strut is left out
+constexpr unsigned strut_corners = 32; ///< number of corners of a strut's section
+/// Radius of a strut relative to the distance from its axis to the borders of its cells.
+constexpr double strut_share = 0.62;
+constexpr double thinnest = 0.25; ///< radius below which a strut is omitted
 
-/// A Bernstein polynomial over t from 0 to 1.
+/// Evaluates a Bernstein polynomial for t from 0 to 1.
 double curve(std::array<double, 5> control, double t) {
     for (std::size_t n = control.size() - 1; n > 0; --n)
         for (std::size_t i = 0; i < n; ++i)
@@ -42,7 +43,7 @@ double curve(std::array<double, 5> control, double t) {
     return control[0];
 }
 
-/// The outline from heel (0) to toe (1): where its middle runs, and how far it reaches to either side.
+/// The outline from heel (0) to toe (1): y of its middle, and its half width.
 double middle(double t) {
     return curve({0, -0.10, -0.06, 0.32, 0.12}, t);
 }
@@ -50,31 +51,31 @@ double reach(double t) {
     return curve({0.74, 0.80, 0.24, 1.26, 0.80}, t);
 }
 
-/// A point of the square from (-1, -1) to (1, 1), bent into the outline.
+/// Maps a point of the square from (-1, -1) to (1, 1) into the outline.
 Point2 bent(double u, double v) {
-    // With a half, the square would become a disc and its corners flat; with less, they stay corners.
+    // With 0.5 the square would become a disc and its corners flat; with less, they remain corners.
     constexpr double roundness = 0.48;
     const double t = (1 + u * std::sqrt(1 - roundness * v * v)) / 2;
     return {t, middle(t) + reach(t) * v * std::sqrt(1 - roundness * u * u)};
 }
 
-/// The underside: flat, but rising a little at the heel and more at the toe.
+/// Height of the underside: flat, but rising slightly at the heel and more at the toe.
 double underside(const Point2& p) {
     const double heel = std::max(0.15 - p.x, 0.0) / 0.15;
     const double toe = std::max(p.x - 0.65, 0.0) / 0.35;
     return 3 * heel * heel + 9 * toe * toe;
 }
 
-/// The footbed: high at the heel, with a rim all around and a support for the arch.
+/// Height of the footbed: high at the heel, with a rim all around and a support for the arch.
 double footbed(const Point2& p) {
     const double side = (p.y - middle(p.x)) / reach(p.x);
     const double along = 2 * p.x - 1;
-    const double edge = side * side + along * along * along * along; // 1 at the outline, or nearly
+    const double edge = side * side + along * along * along * along; // about 1 at the outline
     const double arch = side > 0 ? side * side * curve({0, 2, 14, 0, 0}, p.x) : 0;
     return curve({38, 37, 29, 22, 24}, p.x) + edge * edge * curve({14, 12, 6, 2, 3}, p.x) + arch;
 }
 
-/// How far inside the convex quad p lies.
+/// Returns the distance of p from the border of the convex quad, positive inside.
 double inset(const std::array<Point2, 4>& quad, const Point2& p) {
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t k = 0; k < 4; ++k) {
@@ -154,7 +155,7 @@ class SoleMaker {
         return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(z)};
     }
 
-    /// Three points of a face, counter-clockwise seen from above.
+    /// Adds three points of a face, counter-clockwise seen from above.
     void add(Face face, const Point2& a, const Point2& b, const Point2& c) {
         out_.push_back({on(face, a), on(face, looks_up(face) ? b : c), on(face, looks_up(face) ? c : b)});
     }
@@ -176,7 +177,7 @@ class SoleMaker {
         }
     }
 
-    /// The radius of a strut that keeps to its cells, from one end to the other.
+    /// Returns the radius of a strut that stays within its cells from one end to the other.
     [[nodiscard]] double radius(unsigned lower, unsigned upper, unsigned row) const {
         const Point2 from = centre(lower, row);
         const Point2 to = centre(upper, row);
@@ -197,7 +198,7 @@ class SoleMaker {
         return sum;
     }
 
-    /// False where there is no room for one.
+    /// Adds a strut; returns false if its cells are too narrow.
     bool strut(unsigned lower, unsigned upper, unsigned row) {
         const double r = radius(lower, upper, row);
         if (r < thinnest)
@@ -212,7 +213,7 @@ class SoleMaker {
         return true;
     }
 
-    /// The circle in which a strut meets a face, and the face around it.
+    /// Returns the circle in which a strut meets a face, and adds the face around it.
     std::vector<Point2> end(Face face, unsigned column, unsigned row, double r) {
         const std::array<Point2, 4> border = cell(column, row);
         const Point2 middle = centre(column, row);
@@ -247,8 +248,8 @@ class SoleMaker {
              on(Face::footbed, a));
     }
 
-    Point3 low_;     ///< of the bent grid's box
-    Point3 stretch_; ///< to millimetres
+    Point3 low_;     ///< lowest corner of the bent grid's box
+    Point3 stretch_; ///< factors to millimetres
     std::vector<Point2> grid_;
     std::vector<Triangle3f> out_;
 };

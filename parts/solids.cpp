@@ -34,7 +34,7 @@ void add_quad(std::vector<Triangle3f>& out, const Point3& a, const Point3& b, co
     out.push_back({single(a), single(c), single(d)});
 }
 
-/// Corners of the regular polygon on the unit circle, the first one again at the end.
+/// Returns the corners of the regular polygon on the unit circle, with the first one repeated at the end.
 std::vector<CosSin> circle(unsigned segments) {
     std::vector<CosSin> out(segments + 1);
     for (unsigned i = 0; i <= segments; ++i)
@@ -42,7 +42,8 @@ std::vector<CosSin> circle(unsigned segments) {
     return out;
 }
 
-/// The middle of two directions. Adding is commutative, so both triangles at an edge get the same bits.
+/// Returns the bisector of two directions. Addition is commutative, so both triangles at an edge get the same
+/// bits.
 Point3 between(const Point3& a, const Point3& b) {
     const Point3 sum{a.x + b.x, a.y + b.y, a.z + b.z};
     const double length = std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);

@@ -6,7 +6,7 @@ namespace lamella {
 
 namespace {
 
-/// The sums of a band are to stay in the cache of a processor.
+/// Chosen so that the sums of a band stay in a processor's cache.
 constexpr std::uint32_t pixels_of_band = 1U << 17;
 constexpr std::uint32_t fewest_rows = 4;
 constexpr std::uint32_t most_rows = 64;
@@ -41,7 +41,7 @@ void Bands::cut(std::span<const Point2> ring, std::vector<std::int32_t>& band_of
     find_bands(ring, grid_, 1.0 / rows_, count_, band_of.data());
     const Point2* before = &ring[n - 1];
     std::int32_t band_before = band_of[n - 1];
-    bool open = false; // whether the last stretch ends at the point before
+    bool open = false; // whether the last sequence of edges ends at the previous point
     for (std::size_t k = 0; k < n; ++k) {
         const std::int32_t here = band_of[k];
         if (here == band_before && open) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The edges of contours by the rows of a picture that they reach.
+// The edges of contours, sorted by the rows of an image that they reach.
 
 #include "lamella/contour/layer.hpp"
 
@@ -15,19 +15,19 @@
 
 namespace lamella {
 
-/// A picture from the top down in bands of a few rows, and the edges that reach into each. Contours are not
-/// copied but for the places where they enter and leave a band.
+/// An image divided into bands of a few rows from the top down, and the edges that reach into each. Contours
+/// are not copied; only the points where they enter and leave a band are stored.
 class Bands {
   public:
-    /// The parts are to outlive the bands. O(points).
+    /// The parts must outlive the bands. O(points).
     Bands(std::span<const Layer> parts, const PixelGrid& grid);
 
-    /// Of a band, all of them but the last, which may have fewer.
+    /// Rows of a band, except the last one, which may have fewer.
     [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
 
-    /// Calls line(points) for stretches of rings as they lie in the picture: all edges that reach into the
-    /// band are in one of them. Others may be, too, but these reach from one band into the next as well, or
-    /// are level.
+    /// Calls line(points) for parts of rings in image coordinates. Each edge that reaches into the band is in
+    /// one of them. They may contain other edges, but only horizontal ones, or ones that reach from one band
+    /// into the next.
     template <class Line>
     void for_each_line(std::uint32_t band, const Line& line) const {
         std::array<Point2, 256> places;
@@ -45,10 +45,10 @@ class Bands {
     }
 
   private:
-    /// Edges that follow one another in a ring.
+    /// Consecutive edges of a ring.
     struct Stretch {
-        const Point2* before; ///< where the first of them begins
-        const Point2* first;  ///< where it ends; the others end at the points after it
+        const Point2* before; ///< start of the first edge
+        const Point2* first;  ///< end of the first edge; the others end at the points after it
         std::size_t edges;
         std::size_t band;
     };
@@ -58,7 +58,7 @@ class Bands {
     PixelGrid grid_;
     std::uint32_t rows_;
     std::int32_t count_;
-    std::vector<Stretch> stretches_;  ///< by bands
+    std::vector<Stretch> stretches_;  ///< ordered by band
     std::vector<std::size_t> starts_; ///< of each band, and the end
 };
 

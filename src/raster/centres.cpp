@@ -14,7 +14,7 @@ void CentreRows::cover(std::uint32_t from, std::uint32_t to) {
     }
     if (from > 0)
         runs_.push_back({from, 0});
-    runs_.push_back({to, 255}); // full, whatever gamma is
+    runs_.push_back({to, 255}); // 255 for any gamma
 }
 
 DrawnRow CentreRows::draw(std::uint32_t row) {
@@ -31,7 +31,7 @@ DrawnRow CentreRows::draw(std::uint32_t row) {
         for (const auto& crossing : crossings_.entries()) {
             const PictureEdge& edge = crossings_.edge(crossing);
             const int left = std::exchange(winding, winding + edge.winding);
-            // The first column whose centre does not lie to the left.
+            // The first column whose centre is not to the left of the crossing.
             if (left == 0)
                 from = least_whole(crossing.column - 0.5, width_);
             else if (winding == 0)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Pixels that are covered, or not, as their centres are.
+// Pixels of which the centre decides whether they are covered.
 
 #include "lamella/raster/picture.hpp"
 
@@ -14,7 +14,7 @@
 
 namespace lamella {
 
-/// Where an edge crosses the centres of a row.
+/// The point where an edge crosses the line through the centres of a row.
 struct CentreCrossing {
     static constexpr double line = 0.5;
     static constexpr bool only_on_lines = true;
@@ -26,7 +26,7 @@ struct CentreCrossing {
     double column = 0;
 };
 
-/// Draws the rows of a picture from the top down.
+/// Draws the rows of an image from the top down.
 class CentreRows {
   public:
     CentreRows(std::span<const Layer> parts, const PixelGrid& grid)
@@ -35,7 +35,7 @@ class CentreRows {
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
 
   private:
-    /// Material from one column to another; none begins to the left of where the one before ended.
+    /// Adds material from one column to another, which must not begin to the left of the previous end.
     void cover(std::uint32_t from, std::uint32_t to);
 
     RowSweep<CentreCrossing> crossings_;

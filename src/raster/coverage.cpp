@@ -6,16 +6,15 @@
 
 namespace lamella {
 
-// A row falls into places where one edge passes from its upper to its lower border, alone, and knots: pieces
-// of edges that lie side by side, where corners, crossings, the upper and lower ends of contours are. Between
-// these nothing begins or ends at any height of the row, so the winding number there is one, and each can be
-// drawn by itself. A knot is cut into strips at its corners and crossings. Within a strip edges follow one
-// another in one order, and coverage rises (or falls) along each that is a border of the material: so it is
-// exact.
+// A row consists of places where a single edge passes from its upper to its lower border, and of knots:
+// groups of edges side by side, with corners, crossings, or the upper and lower ends of contours. Between
+// these nothing begins or ends at any height of the row, so the winding number there is constant and each can
+// be drawn by itself. A knot is divided into strips at its corners and crossings. Within a strip the order of
+// edges is constant, and coverage rises (or falls) along each edge that bounds material, so it is exact.
 
 namespace {
 
-/// A gap no wider than this (in pixels) between two bodies is the rounding of a border that they share.
+/// A gap between two bodies up to this width, in pixels, is attributed to rounding of their common border.
 constexpr double most_rounding = 1e-6;
 
 } // namespace
@@ -79,7 +78,7 @@ std::uint32_t CoverageRows::cover(std::uint32_t row) {
         winding = right;
         begin = end;
     }
-    upright = upright && begin == pieces.size(); // or else what is to the right may come nearer
+    upright = upright && begin == pieces.size(); // otherwise edges to the right may come closer
     return upright ? pieces_.same_edges_until() - row : 1;
 }
 
@@ -102,13 +101,13 @@ bool CoverageRows::draw_line(Pieces knot, int left, std::uint32_t row) {
     for (const auto& piece : knot) {
         const PictureEdge& edge = pieces_.edge(piece);
         if (edge.level())
-            continue; // a step of the line, of no height
+            continue; // a horizontal step of the line
         if (winding != 0 && winding != edge.winding)
-            return false; // the line turns, or there are two
+            return false; // the line changes direction, or there are two
         winding = edge.winding;
         line_.push_back({piece.top, piece.bottom, &edge});
     }
-    // A line that runs to the left all the way lies the wrong way round.
+    // A line that runs to the left throughout is stored in reverse order.
     if (line_.size() > 1 && line_.front().top > line_.back().top)
         std::reverse(line_.begin(), line_.end());
     const auto higher = [](const LinePiece& a, const LinePiece& b) {
@@ -120,7 +119,8 @@ bool CoverageRows::draw_line(Pieces knot, int left, std::uint32_t row) {
     for (const LinePiece& piece : line_) {
         const double middle = 0.5 * (piece.top + piece.bottom);
         if (piece.top != reached || !(piece.top < middle && middle < piece.bottom))
-            return false; // there are gaps, or others beside it, or a piece is so low that numbers end
+            // There are gaps or other edges, or the height of an edge is below the resolution of numbers.
+            return false;
         reached = piece.bottom;
     }
     if (reached != row + 1.0)
@@ -186,7 +186,7 @@ void CoverageRows::draw_strip(Pieces knot, int left, double from, double to) {
     });
     const double height = to - from;
     int winding = left;
-    const Border* end = nullptr; // of material, if no more begins there
+    const Border* end = nullptr; // end of material, unless more begins there
     for (const Border& border : borders_) {
         const int before = std::exchange(winding, winding + border.edge->winding);
         if (before == 0) {

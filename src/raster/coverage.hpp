@@ -1,6 +1,6 @@
 #pragma once
 
-// Pixels by the part of their area that is covered.
+// Pixels valued by the fraction of their area that is covered.
 
 #include "raster/coverage_band.hpp"
 #include "raster/drawn_row.hpp"
@@ -14,7 +14,7 @@
 
 namespace lamella {
 
-/// The piece of an edge that lies in a row, from `top` to `bottom`.
+/// The part of an edge within a row, from `top` to `bottom`.
 struct RowPiece {
     static constexpr double line = 0;
     static constexpr bool only_on_lines = false;
@@ -25,18 +25,19 @@ struct RowPiece {
     void move_to(const PictureEdge& edge, std::uint32_t row) noexcept;
     bool operator<(const RowPiece& other) const noexcept { return low < other.low; }
 
-    double low = 0; ///< what its columns lie between; all that reaches beyond the left border begins there
+    /// Range of its columns; it is extended to left_of_picture if it reaches beyond the left border.
+    double low = 0;
     double high = 0;
     double top = 0;
     double bottom = 0;
     double bottom_column = 0;
-    bool through = false; ///< from the row's upper to its lower border
+    bool through = false; ///< it runs from the row's upper to its lower border
 
   private:
     void reach(const PictureEdge& edge, std::uint32_t row, double top_column) noexcept;
 };
 
-/// Draws the rows of a picture from the top down.
+/// Draws the rows of an image from the top down.
 class CoverageRows {
   public:
     CoverageRows(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options)
@@ -50,24 +51,24 @@ class CoverageRows {
 
     /// An edge in a strip of a row.
     struct Border {
-        double column; ///< half-way down the strip
+        double column; ///< at half the height of the strip
         const PictureEdge* edge;
     };
 
-    /// A piece of a line with bends.
+    /// A part of a line with bends.
     struct LinePiece {
         double top;
         double bottom;
         const PictureEdge* edge;
     };
 
-    /// The same for the coverage; says how many rows from there on look the same.
+    /// Adds the coverage of a row; returns the number of rows from there on that are equal.
     std::uint32_t cover(std::uint32_t row);
     void draw_knot(Pieces knot, int left, std::uint32_t row);
-    /// A knot of which all is one line with bends from the row's upper to its lower border, as most knots
-    /// are; false where it is another.
+    /// Draws a knot that is a single line with bends from the row's upper to its lower border, as most knots
+    /// are; returns false if it is not.
     bool draw_line(Pieces knot, int left, std::uint32_t row);
-    /// The heights between which nothing happens in a knot; false where that would be too many.
+    /// Finds the heights at which a knot has corners and crossings; returns false if there are too many.
     bool find_strips(Pieces knot, std::uint32_t row);
     void add_crossing(const RowPiece& a, const PictureEdge& edge_a, const RowPiece& b,
                       const PictureEdge& edge_b);
@@ -77,7 +78,7 @@ class CoverageRows {
     RowSweep<RowPiece> pieces_;
     std::uint32_t width_;
     unsigned strips_;       ///< see RasterOptions::antialias
-    CoverageBand coverage_; ///< of one row
+    CoverageBand coverage_; ///< of a single row
     std::vector<LinePiece> line_;
     std::vector<double> heights_;
     std::vector<Border> borders_;

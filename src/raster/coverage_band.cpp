@@ -7,9 +7,9 @@ namespace lamella {
 
 namespace {
 
-// The coverage of a column is the integral of the slope over it. With the slope s per column, that is
+// The coverage of a column is the integral of the slope over it. With the slope s per column, it is
 //     s (i + 1 - from)^2 / 2            in the first column i,
-//     s (k + 1/2 - from)                in a column k that it passes through,
+//     s (k + 1/2 - from)                in a column k between the first and the last,
 //     weight - s (to - j)^2 / 2         in the last column j, and the weight from there on.
 [[gnu::always_inline]] inline void slope(RowChanges::Row row, double width, double from, double to,
                                          double weight) {
@@ -95,7 +95,7 @@ void CoverageBand::begin_along(const PictureEdge& edge, std::uint32_t top, std::
 }
 
 std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
-    // What the loop uses is kept out of the object: stores of bytes would have it fetched again each time.
+    // Copies of members, because stores of bytes would force them to be reloaded in each step.
     const std::uint32_t width = width_;
     PixelRun* next = runs_.data();
     double covered = 0;
@@ -114,13 +114,13 @@ std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
             return;
         covered += clamped * (here - since);
         since = here;
-        clamped = coverage < 0 ? 0 : coverage; // not std::clamp, which is taken for two branches
+        clamped = coverage < 0 ? 0 : coverage; // not std::clamp, which is compiled to two branches
         clamped = 1 < clamped ? 1 : clamped;
-        // To 32 bits and signed: that is one instruction.
+        // The conversion to 32 bits, signed, is a single instruction.
         const double rounded_up = clamped * 255 + 0.5;
         const std::uint8_t value_here =
             value_of_[static_cast<std::size_t>(static_cast<std::int32_t>(rounded_up))];
-        // A run that ends here is written in any case, and stays where it has pixels and another value.
+        // A run that ends here is always written, but kept only if it has pixels and another value.
         *next = {here, value};
         next += value_here != value && here > 0 ? 1 : 0;
         value = value_here;

@@ -1,6 +1,6 @@
 #pragma once
 
-// What becomes of a row of a picture.
+// The result of drawing a row of an image.
 
 #include "lamella/raster/picture.hpp"
 
@@ -10,9 +10,9 @@
 namespace lamella {
 
 struct DrawnRow {
-    std::span<const PixelRun> runs; ///< they live until the next row is drawn
-    double covered;                 ///< pixels
-    std::uint32_t times;            ///< so many rows from there on look the same
+    std::span<const PixelRun> runs; ///< valid until the next row is drawn
+    double covered;                 ///< in pixels
+    std::uint32_t times;            ///< number of equal rows from this one on
 };
 
 } // namespace lamella

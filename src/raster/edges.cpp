@@ -28,7 +28,7 @@ LAMELLA_VECTOR_CLONES void find_bands(std::span<const Point2> points, const Pixe
                                       double bands_per_row, std::int32_t count, std::int32_t* to) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Point2 p = points[i];
-        // One more than the band, so that to cut off the fraction is to go down.
+        // One more than the band, so that truncating the fraction rounds down.
         const double band = (grid.vx * p.x + grid.vy * p.y + grid.v0) * bands_per_row + 1;
         to[i] = static_cast<std::int32_t>(band > 0 ? (band < count + 1 ? band : count + 1) : 0) - 1;
     }

@@ -39,7 +39,7 @@ void check(const PixelGrid& grid, const RasterOptions& options) {
 template <class Rows>
 double draw(Rows rows, std::uint32_t height, const RowSink& sink) {
     double covered = 0;
-    std::vector<PixelRun> same; // of the last rows, which look the same
+    std::vector<PixelRun> same; // the last rows, which are equal
     std::uint32_t times = 0;
     for (std::uint32_t row = 0; row < height;) {
         const DrawnRow drawn = rows.draw(row);

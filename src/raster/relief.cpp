@@ -11,28 +11,28 @@ namespace lamella {
 
 namespace {
 
-// Turned about z by 30 degrees, then seen from 35 degrees above the horizon.
+// Rotated about z by 30 degrees, then seen from 35 degrees above the horizon.
 constexpr double turn_cos = 0.8660254037844386;
 constexpr double turn_sin = 0.5;
 constexpr double view_cos = 0.8191520442889918;
 constexpr double view_sin = 0.573576436351046;
 
-constexpr double margin = 0.05; ///< of each side
+constexpr double margin = 0.05; ///< on each side, as a fraction of the size
 
-/// Of length 1, as Relief::Vector.
+/// Unit vectors in the axes of Relief::Vector.
 constexpr std::array<double, 3> to_light{-0.35, 0.45, 0.8216};
 constexpr std::array<double, 3> to_viewer{0, view_cos, view_sin};
 constexpr double ambient = 0.25;
 constexpr std::array<double, 3> colour{120, 166, 204};
 
-/// How far apart neighbours are that tell a slope: a single layer is a step.
+/// Distance of the neighbours from which a slope is computed: a single layer is a step.
 constexpr std::size_t reach = 4;
-/// How far around a pixel its light is smoothed.
+/// Radius around a pixel in which its light is smoothed.
 constexpr std::size_t blur = 2;
-/// Neighbours that are further away than this lie on something else.
+/// Neighbours at a greater distance lie on another surface.
 constexpr double most_apart = 8 * reach;
 
-/// A height is drawn for so many rows of pixels.
+/// Number of rows of pixels for which one height is drawn.
 constexpr std::uint32_t rows_drawn_at_once = 2;
 
 struct Extent {
@@ -58,7 +58,7 @@ std::array<double, 3> cross(const std::array<double, 3>& a, const std::array<dou
 struct PixelBox {
     std::size_t left;
     std::size_t top;
-    std::size_t right = 0; ///< after the last
+    std::size_t right = 0; ///< one past the last
     std::size_t bottom = 0;
 };
 
@@ -72,7 +72,7 @@ PixelBox visible(const ColourPicture& picture) {
     return box;
 }
 
-/// The mean of the pixels between these columns and rows, as they are seen.
+/// Returns the mean visible colour of the pixels between these columns and rows.
 std::array<std::uint8_t, 4> mean(const ColourPicture& picture, double left, double top, double right,
                                  double bottom) {
     std::array<double, 4> sum{};
@@ -101,12 +101,12 @@ std::array<std::uint8_t, 4> mean(const ColourPicture& picture, double left, doub
     return {byte(sum[0] / sum[3]), byte(sum[1] / sum[3]), byte(sum[2] / sum[3]), byte(alpha)};
 }
 
-/// Adds to each of `count` sums the light there, where that is about as high as here.
+/// Adds to each of `count` sums the light of a neighbour that is at about the same height.
 LAMELLA_VECTOR_CLONES
 void add_near(const float* heights, const float* heights_there, const float* lights_there, float most_higher,
               std::size_t count, float* sums, float* counts) {
     for (std::size_t i = 0; i < count; ++i) {
-        const bool near = std::abs(heights_there[i] - heights[i]) <= most_higher; // both are numbers
+        const bool near = std::abs(heights_there[i] - heights[i]) <= most_higher; // false if either is NaN
         sums[i] += near ? lights_there[i] : 0.0F;
         counts[i] += near ? 1.0F : 0.0F;
     }
@@ -198,7 +198,7 @@ std::vector<ReliefSpan> Relief::spans(std::span<const Layer> parts) const {
         return std::floor((z - lowest_) * drawn_per_z);
     };
     std::vector<ReliefSpan> spans;
-    // So that something is seen of a part that is lower than a pixel, the ground counts, too.
+    // The ground is drawn, too, so that a part lower than a pixel is visible.
     const double first = layer.bottom <= lowest_ ? 0 : drawn_below(layer.bottom) + 1;
     const double last = std::min(drawn_below(layer.top), first + height_);
     for (double i = first; i <= last; ++i)
@@ -222,7 +222,7 @@ Relief::Vector Relief::tangent(std::size_t row, std::size_t column, bool down) c
     const Vector here = place(row, column);
     Vector sum{};
     bool found = false;
-    // Beyond the first row or column numbers turn round, and nothing is covered there.
+    // Beyond the first row or column the index wraps around, and nothing is covered there.
     for (const bool ahead : {false, true}) {
         const std::size_t r = !down ? row : ahead ? row + reach : row - reach;
         const std::size_t c = down ? column : ahead ? column + reach : column - reach;
@@ -264,7 +264,7 @@ std::vector<float> Relief::smooth_light() const {
         const std::size_t here = row * width_;
         std::fill(counts.begin(), counts.end(), 0.0F);
         for (std::size_t r = row - std::min(row, blur); r <= row + blur && r < height_; ++r)
-            for (std::size_t shift = 0; shift <= 2 * blur; ++shift) { // to the left at first
+            for (std::size_t shift = 0; shift <= 2 * blur; ++shift) { // shifts to the left come first
                 const std::size_t left = blur - std::min(shift, blur);
                 const std::size_t right = shift - std::min(shift, blur);
                 if (left + right < width_)

@@ -1,6 +1,6 @@
 #pragma once
 
-// What changes along rows of pixels.
+// Changes of coverage along rows of pixels.
 
 #include <algorithm>
 #include <bit>
@@ -13,10 +13,9 @@
 
 namespace lamella {
 
-/// For each of a few rows, what the coverage changes by from one column to the next. Only columns where it
-/// does cost time, not those between them, nor rows where it does nowhere: a bit for each column tells where
-/// they are, and what other columns hold is never looked at. A row is two columns longer than the picture is
-/// wide.
+/// For each of a few rows, the changes of coverage from one column to the next. Only columns with changes
+/// cost time, not those between them, nor rows without changes: one bit per column marks a change, and the
+/// values of other columns are never read. A row has two columns more than the image.
 class RowChanges {
   public:
     RowChanges(std::uint32_t width, std::uint32_t rows)
@@ -33,11 +32,11 @@ class RowChanges {
             bits |= bit;
         }
 
-        /// To a column and those after it.
+        /// Adds to a column and those after it.
         template <std::same_as<double>... Changes>
         void add_from(std::size_t column, Changes... by) noexcept {
             const std::size_t first = column % 64;
-            if (first + sizeof...(by) <= 64) { // all of their bits are side by side, and fetched once
+            if (first + sizeof...(by) <= 64) { // their bits are in one word, which is read once
                 std::uint64_t& bits = changed_[column / 64];
                 const std::uint64_t before = bits >> first;
                 std::size_t i = 0;
@@ -59,7 +58,7 @@ class RowChanges {
         touched_[row] = 1;
         return {changes_.get() + columns_ * row, changed_.data() + words_ * row};
     }
-    /// Whether anything was added since the row was cleared.
+    /// Returns whether anything was added since the row was cleared.
     [[nodiscard]] bool touched(std::uint32_t row) const noexcept { return touched_[row] != 0; }
 
     /// Calls found(column, change) from left to right.

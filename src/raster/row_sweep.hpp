@@ -1,6 +1,6 @@
 #pragma once
 
-// Down a picture, row by row, with the edges that each row meets.
+// Sweeps down an image row by row, with the edges that intersect each row.
 
 #include "lamella/contour/layer.hpp"
 
@@ -21,16 +21,16 @@ struct RowRange {
     std::uint32_t end = 0;
 };
 
-/// Keeps what the edges of one row are to an algorithm, its `Item`s, in order from row to row. An Item has
-///     static constexpr double line;        how far below its upper border a row's line is: edges that end
-///                                          above it do not meet the row
-///     static constexpr bool only_on_lines; an edge meets a row only if it crosses its line
+/// Keeps one `Item` of an algorithm for each edge of a row, sorted, from row to row. An Item has
+///     static constexpr double line;        distance of a row's line from its upper border: edges that end
+///                                          above it do not intersect the row
+///     static constexpr bool only_on_lines; an edge intersects a row only if it crosses its line
 ///     static std::uint32_t first(double y, std::uint32_t below);   the first row that an edge with its upper
-///                                          end at y meets, if `below` is the first line not above y
+///                                          end at y intersects, if `below` is the first line not above y
 ///     Item(const PictureEdge&, std::uint32_t row);                       in the first of them
-///     void move_to(const PictureEdge&, std::uint32_t row);               from one to the next, or further
+///     void move_to(const PictureEdge&, std::uint32_t row);               to the next or a later one
 ///     bool operator<(const Item&) const;                          a strict weak order along the row
-/// The result depends on the order of the edges only where items are neither less nor greater.
+/// The result depends on the order of the edges only if items are neither less nor greater.
 template <class Item>
 class RowSweep {
   public:
@@ -46,11 +46,11 @@ class RowSweep {
 
     [[nodiscard]] std::span<const Entry> entries() const noexcept { return entries_; }
     [[nodiscard]] const PictureEdge& edge(const Entry& entry) const noexcept { return edges_[entry.edge]; }
-    /// The row where the next edge begins, or the height of the picture.
+    /// Returns the row in which the next edge begins, or the height of the image.
     [[nodiscard]] std::uint32_t next_begin() const noexcept {
         return begun_ < edges_.size() ? rows_[begun_].first : height_;
     }
-    /// The row up to which all of the present edges go on and no other begins.
+    /// Returns the row up to which all present edges continue and no other begins.
     [[nodiscard]] std::uint32_t same_edges_until() const noexcept {
         std::uint32_t until = next_begin();
         for (const Entry& entry : entries_)
@@ -58,13 +58,14 @@ class RowSweep {
         return until;
     }
 
-    /// To be called with ascending rows; those left out must not be one where an edge begins.
+    /// Must be called with ascending rows; no edge may begin in a skipped row.
     void advance(std::uint32_t row) {
         std::size_t kept = 0;
         for (const Entry& entry : entries_) {
             if (rows_[entry.edge].end <= row)
                 continue;
-            // Only where one has gone: an entry that is copied just after it was moved waits for its stores.
+            // Copied only if an entry was removed: copying an entry just after it was moved waits for its
+            // stores.
             Entry& here = entries_[kept++];
             if (&here != &entry)
                 here = entry;
@@ -82,19 +83,19 @@ class RowSweep {
         return a < b || (!(b < a) && a.edge < b.edge);
     }
 
-    /// An edge of a ring, as it lies in the picture.
+    /// An edge of a ring in image coordinates.
     struct RingEdge {
         Point2 from;
         Point2 to;
         RowRange rows;
     };
 
-    /// Keeps the edges that some row meets, in the order of their first rows.
+    /// Keeps the edges that intersect a row, in the order of their first rows.
     void collect(std::span<const Layer> parts, const PixelGrid& grid) {
         std::size_t points = 0;
         for (const Layer& layer : parts)
             points += layer.points.size();
-        // Only as much of this memory as is touched is ever there.
+        // Only the touched pages of this memory are allocated.
         const PageArray<RingEdge> met(points);
         std::size_t used = 0;
         std::vector<std::size_t> next(std::size_t{height_} + 1);
@@ -117,8 +118,8 @@ class RowSweep {
         }
     }
 
-    /// Calls found(edge) for those of a ring that some row meets and that are not to the right of the
-    /// picture, nor level and to the left of it. `below`: memory to work in, of any content.
+    /// Calls found(edge) for the edges of a ring that intersect a row and are not to the right of the image,
+    /// nor horizontal and to the left of it. `below` is scratch memory with any content.
     template <class Found>
     void find_met(std::span<const Point2> ring, const PixelGrid& grid, std::vector<std::int32_t>& below,
                   const Found& found) const {
@@ -129,7 +130,7 @@ class RowSweep {
         find_rows_below(ring, grid, Item::line, below.data());
         std::size_t before = n - 1;
         std::int32_t row_before = below[before];
-        bool placed = false; // whether `to` is the point before
+        bool placed = false; // whether `to` is the previous point
         Point2 to;
         for (std::size_t k = 0; k < n; before = k++) {
             const std::int32_t row = below[k];
@@ -152,7 +153,7 @@ class RowSweep {
         }
     }
 
-    /// From one row to the next few edges change places, unless very many cross.
+    /// Insertion sort: from one row to the next few edges change their order, unless very many cross.
     void sort_again() {
         std::size_t moves = 8 * entries_.size();
         for (std::size_t i = 1; i < entries_.size(); ++i) {
@@ -171,7 +172,7 @@ class RowSweep {
         }
     }
 
-    /// Puts those from `kept` on, which are new, among the others.
+    /// Merges the new entries, from `kept` on, into the others.
     void merge_from(std::size_t kept) {
         if (kept == entries_.size())
             return;

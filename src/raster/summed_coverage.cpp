@@ -5,9 +5,10 @@
 
 namespace lamella {
 
-// The area between an edge and the right end of a row, with the sign of its direction, is linear in it: the
-// coverage of a pixel is the sum over all edges, in any order. So edges are taken as the contours have them.
-// Many of them may lie in one pixel: these are summed up before the sum is added to the row's.
+// The area between an edge and the right end of a row, with the sign of its direction, is linear in the edge,
+// so the coverage of a pixel is the sum over all edges, in any order. So edges are visited in the order of
+// the contours. Many of them may lie in one pixel: they are summed up before the sum is added to that of the
+// row.
 
 SummedRows::SummedRows(std::span<const Layer> parts, const PixelGrid& grid, double gamma)
     : bands_(parts, grid), width_(grid.width), height_(grid.height),
@@ -31,7 +32,7 @@ DrawnRow SummedRows::draw(std::uint32_t row) {
 }
 
 void SummedRows::add_line(std::span<const Point2> points) {
-    // The pixel that the point before lies in; none where it is outside.
+    // The pixel that contains the previous point; empty if that is outside.
     double left = 0, right = 0, upper = 0, lower = 0;
     double weight = 0;
     double moment = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Pixels by the part of their area that is covered, where nothing is covered twice.
+// Pixels valued by the fraction of their area that is covered, if no area is covered twice.
 
 #include "raster/bands.hpp"
 #include "raster/coverage_band.hpp"
@@ -12,8 +12,8 @@
 
 namespace lamella {
 
-/// Draws the rows of a picture from the top down: of each pixel the winding number's integral over its area,
-/// which is the coverage where that is 0 or 1 everywhere.
+/// Draws the rows of an image from the top down: for each pixel the integral of the winding number over its
+/// area, which is the coverage if the winding number is 0 or 1 everywhere.
 class SummedRows {
   public:
     SummedRows(std::span<const Layer> parts, const PixelGrid& grid, double gamma);
@@ -21,14 +21,14 @@ class SummedRows {
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
 
   private:
-    /// Sums up the edges between points that follow one another.
+    /// Adds the edges between consecutive points.
     void add_line(std::span<const Point2> points);
 
     Bands bands_;
     std::uint32_t width_;
     std::uint32_t height_;
-    double downwards_;      ///< the weight of what begins along an edge that runs down the picture
-    std::uint32_t top_ = 0; ///< of the band
+    double downwards_;      ///< the weight of material that begins along an edge running down the image
+    std::uint32_t top_ = 0; ///< first row of the band
     std::uint32_t end_ = 0;
     CoverageBand coverage_;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// Layers as pixels: for projectors and displays, as resin printers have them.
+// Layers as pixels, for projectors and displays such as those of resin printers.
 
 #include "lamella/contour/layer.hpp"
 
@@ -12,8 +12,8 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// The pixels of a picture and where a layer lies among them. Pixel (c, r) is the square [c, c + 1] x [r, r +
-/// 1] of picture coordinates (u, v): columns to the right, rows downwards. The point (x, y) lies at
+/// The pixels of an image and the position of a layer among them. Pixel (c, r) is the square [c, c + 1] x [r,
+/// r + 1] of image coordinates (u, v): columns to the right, rows downwards. The point (x, y) lies at
 ///     u = ux x + uy y + u0,    v = vx x + vy y + v0.
 struct PixelGrid {
     std::uint32_t width = 0;
@@ -22,31 +22,31 @@ struct PixelGrid {
     double vx = 0, vy = 1, v0 = 0;
 };
 
-/// Pixels along each side of a picture, and levels of anti-aliasing.
+/// Largest width and height of an image in pixels, and largest number of anti-aliasing levels.
 inline constexpr std::uint32_t most_pixels = 65535;
 inline constexpr unsigned most_antialias = 64;
 
 struct RasterOptions {
-    /// A pixel's coverage is the part of its area where the winding number is not zero. It is exact, except
-    /// in a stretch of a row where more corners and crossings of contours than this number, or twice as many
-    /// edges, lie side by side without a gap and are not just one line with its bends. There the row is cut
-    /// into this number of strips; each is decided in its middle, and wrong by less than its share where
-    /// contours begin, end, bend or cross within it.
+    /// A pixel's coverage is the fraction of its area in which the winding number is not zero. It is exact
+    /// with one exception: a contiguous part of a row that contains more corners and crossings of contours
+    /// than this number, or more than twice as many edges, and is not a single line with bends. There the row
+    /// is divided into this number of strips. Each strip is evaluated along its middle; its error is less
+    /// than its own area, and only occurs where contours begin, end, bend or cross within it.
     ///
-    /// 1 is no anti-aliasing: a pixel is covered, or not, as its centre is. A centre on a contour counts when
-    /// the material lies to its right or, on a level line, below it: bodies side by side share no pixel.
+    /// 1 disables anti-aliasing: the centre of a pixel decides whether it is covered. A centre on a contour
+    /// counts if the material lies to its right or, on a horizontal line, below it: adjacent bodies share no
+    /// pixel.
     unsigned antialias = 8;
-    /// The caller knows that the winding number is 0 or 1 everywhere, as polygon's `winds_once` tells: then
-    /// coverage is a sum over the edges in any order, exact, and several times as fast where contours are
-    /// finer than pixels. Where it is not so, what is covered several times in one pixel counts as often, up
-    /// to the whole pixel. Makes no difference without anti-aliasing. Writers of pictures find it out by
-    /// themselves.
+    /// States that the winding number is 0 or 1 everywhere, as `winds_once` of polygon determines. Then
+    /// coverage is a sum over the edges in any order: exact, and several times as fast if contours are finer
+    /// than pixels. If the statement is false, overlaps within a pixel count several times, up to the whole
+    /// pixel. Makes no difference without anti-aliasing. Image writers determine it by themselves.
     bool winds_once = false;
-    /// A pixel's value is 255 (v / 255)^gamma, rounded, where v is 255 times its coverage, rounded.
+    /// The value of a pixel is 255 (v / 255)^gamma, rounded, where v is 255 times its coverage, rounded.
     double gamma = 1;
 };
 
-/// Pixels of a row up to `end`, from where the run before ended, all of one value.
+/// Consecutive pixels of a row with the same value, from the end of the previous run up to `end`.
 struct PixelRun {
     std::uint32_t end = 0;
     std::uint8_t value = 0;
@@ -54,22 +54,21 @@ struct PixelRun {
     friend bool operator==(const PixelRun&, const PixelRun&) = default;
 };
 
-/// Takes the next rows of a picture, from the top down: `times` rows that are all the same. Runs that follow
-/// one another differ in value; the last one ends at the width of the picture.
+/// Receives the next rows of an image, from the top down: `times` equal rows. Consecutive runs differ in
+/// value; the last one ends at the width of the image.
 using RowSink = std::function<void(std::span<const PixelRun> row, std::uint32_t times)>;
 
-/// The picture of the closed rings of all parts at one height, row by row: what any of them covers is
-/// covered once. Open chains have no area and leave no trace; what lies beyond the picture is cut off.
-/// Returns the covered area in pixels, before it was rounded to values.
+/// Rasterises the closed rings of all parts at one height, row by row. Area covered by several parts counts
+/// once. Open chains have no area and are ignored; everything outside the image is clipped. Returns the
+/// covered area in pixels before rounding to values. Throws Error{usage} for a grid or options that define no
+/// image.
 ///
-/// O(p + c log c + r) for p points, r rows and c crossings of contours with rows (with strips, where rows are
-/// cut into them), in memory for the points and one row; with `winds_once` O(p + c + r), in memory for a few
-/// rows. Throws Error{usage} for a grid or options that make
-/// no picture.
+/// O(p + c log c + r) for p points, r rows and c crossings of contours with rows (or with strips of rows),
+/// with memory for the points and one row. With `winds_once` O(p + c + r), with memory for a few rows.
 double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
                  const RowSink& sink);
 
-/// A picture in memory, row after row.
+/// An image in memory, row after row.
 struct GreyPicture {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
@@ -80,7 +79,7 @@ struct GreyPicture {
     }
 };
 
-/// The same, collected.
+/// Does the same and returns the whole image.
 [[nodiscard]] GreyPicture paint(std::span<const Layer> parts, const PixelGrid& grid,
                                 const RasterOptions& options = {});
 
