@@ -34,7 +34,6 @@ Plan selected(const Layering& layering, Plan plan, const Box3& box) {
     return plan;
 }
 
-/// Makes the plan for each method of cutting.
 struct Planner {
     const Layering& layering;
     const Box3& box;

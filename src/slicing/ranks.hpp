@@ -23,13 +23,12 @@ class Ranks {
     /// Throws the errors of `check` for a plan.
     explicit Ranks(const Plan& plan);
 
-    /// Returns the number of planes with z_i + snap < z under section_above, with z_i - snap <= z under
-    /// section_below.
+    /// Returns the number of planes with z_i + snap < z (section_above) or with z_i - snap <= z
+    /// (section_below).
     [[nodiscard]] std::uint32_t operator()(double z) const noexcept {
         const double place = (z - first_) * cells_per_mm_;
         const Cell& cell = cells_[cell_at(place)];
-        // Most cells of evenly spaced planes hold one plane or none at random, so a branch would be
-        // mispredicted.
+        // Most cells of evenly spaced planes hold no plane or one, at random: a branch would be mispredicted.
         if (cell.planes <= 1)
             return cell.below + static_cast<std::uint32_t>(cell.bound < z);
         const double* const bounds = bounds_.data() + cell.below;
@@ -37,7 +36,6 @@ class Ranks {
                static_cast<std::uint32_t>(std::lower_bound(bounds, bounds + cell.planes, z) - bounds);
     }
 
-    /// Returns the number of planes.
     [[nodiscard]] std::uint32_t count() const noexcept { return static_cast<std::uint32_t>(z_.size()); }
     [[nodiscard]] double z(std::uint32_t plane) const noexcept {
         assert(plane < count());
@@ -47,15 +45,14 @@ class Ranks {
     [[nodiscard]] double snap_mm() const noexcept { return snap_mm_; }
 
   private:
-    /// The data that a lookup needs of a cell.
     struct Cell {
         double bound;         ///< bound of its first plane; infinite if it has none
         std::uint32_t below;  ///< number of planes in the cells before it
         std::uint32_t planes; ///< number of planes in it
     };
 
-    /// Returns the cell of a scaled height: the first one below all cells and for NaN, the last one above all
-    /// cells.
+    /// Returns the cell of a scaled height: the first one for NaN and below all cells, the last one above
+    /// all.
     [[nodiscard]] std::size_t cell_at(double place) const noexcept {
         // The conversion through a signed number is one instruction.
         return static_cast<std::size_t>(

@@ -12,8 +12,7 @@ namespace lamella {
 
 namespace {
 
-/// Adds the moments of the areas that the directed cut segments of the triangles [begin, end) sweep around
-/// `origin`.
+/// Adds the moments of the areas that the cut segments of the triangles [begin, end) sweep around `origin`.
 void add_sections(const Mesh& mesh, const Ranks& ranks, const Point2& origin, std::uint64_t begin,
                   std::uint64_t end, std::vector<AreaMoments>& sections) {
     const bool above = ranks.rule() == PlaneRule::section_above;
@@ -25,8 +24,8 @@ void add_sections(const Mesh& mesh, const Ranks& ranks, const Point2& origin, st
         const std::uint32_t first = std::min({rank[0], rank[1], rank[2]});
         const std::uint32_t last = std::max({rank[0], rank[1], rank[2]});
         for (std::uint32_t plane = first; plane < last; ++plane) {
-            // The segment leads from the edge that runs downwards to the edge that runs upwards, so that
-            // material is on its left.
+            // Material is on the left of a segment from the edge that runs downwards to the one that runs
+            // upwards.
             Point2 from;
             Point2 to;
             for (std::size_t k = 0; k < 3; ++k) {
@@ -53,8 +52,7 @@ std::vector<AreaMoments> section_moments(const Mesh& mesh, const Plan& plan, con
     const Ranks ranks(plan);
     Executor executor(execution);
     std::vector<AreaMoments> sections(ranks.count());
-    // The number of chunks and the order of their sums do not depend on the number of threads, and so neither
-    // do the bits of the result.
+    // Number and order of the chunks do not depend on the threads, and so neither do the bits of the sums.
     constexpr std::uint64_t most = (std::uint64_t{32} << 20) / sizeof(AreaMoments); // 32 MB in all
     const std::uint64_t pieces = std::clamp<std::uint64_t>(most / (sections.size() + 1), 1, 64);
     const std::uint64_t n = mesh.size();

@@ -24,8 +24,7 @@ inline void drop_repeated_points(std::vector<Point2>& contour, bool closed) {
     contour.resize(kept);
 }
 
-/// Returns whether a ring without repeated points runs back and forth along a line, so that it bounds
-/// nothing. O(n).
+/// Returns whether a ring without repeated points runs back and forth on a line and bounds nothing. O(n).
 inline bool folds_flat(const std::vector<Point2>& ring) {
     // A point between two equal points is the tip of a fold. Removing it leaves two equal neighbours, one of
     // which is removed too. If this removes the whole ring, the ring was a line.
@@ -51,8 +50,7 @@ inline bool folds_flat(const std::vector<Point2>& ring) {
     return true;
 }
 
-/// Returns whether all points of a ring lie exactly on one line. O(n), and O(1) if the ring begins at a
-/// corner.
+/// Returns whether all points of a ring lie exactly on one line. O(n), or O(1) if it begins at a corner.
 inline bool lies_on_line(const std::vector<Point2>& ring) noexcept {
     for (std::size_t i = 2; i < ring.size(); ++i)
         if (orientation(ring[0], ring[1], ring[i]) != 0)

@@ -24,7 +24,6 @@
 
 namespace lamella {
 
-/// Returns the plan of a range.
 [[nodiscard]] Plan part_of(const Plan& plan, PlaneRange slab);
 
 /// Number of triangles that begin, end, or have their middle corner at each plane. Counts of chunks of a mesh
@@ -33,8 +32,7 @@ class PlaneCounts {
   public:
     explicit PlaneCounts(std::size_t planes) : planes_(planes), counts_(3 * (planes + 1)) {}
 
-    /// Counts a triangle whose corners have these ranks (numbers of planes below a corner), in ascending
-    /// order.
+    /// Counts a triangle with corners of these ranks, in ascending order.
     void add(std::uint32_t low, std::uint32_t middle, std::uint32_t high) noexcept {
         if (low == high)
             return;
@@ -52,8 +50,7 @@ class PlaneCounts {
     /// numbers for each plane and three more.
     [[nodiscard]] std::span<std::uint64_t> numbers() noexcept { return counts_; }
 
-    /// Number of triangles that begin on plane p: their lowest corner lies below it and above the plane
-    /// before.
+    /// Number of triangles whose lowest plane is p.
     [[nodiscard]] std::uint64_t begins(std::size_t p) const noexcept { return counts_[p]; }
     /// Number of triangles whose uppermost plane is p - 1.
     [[nodiscard]] std::uint64_t ends(std::size_t p) const noexcept { return counts_[planes_ + 1 + p]; }
@@ -78,7 +75,6 @@ class PlaneCounter {
     /// Counts a mesh on the calling thread; the placement of a soup applies. Returns the planes from the
     /// first to the last one that cut any triangle. O(triangles).
     PlaneRange add(const Mesh& mesh) { return add(mesh, 0, mesh.size()); }
-    /// Counts the triangles [begin, end) of a mesh.
     PlaneRange add(const Mesh& mesh, std::uint64_t begin, std::uint64_t end);
     /// Returns the sum over all meshes that were added. Must not be called while a thread adds one.
     [[nodiscard]] PlaneCounts total() const;
@@ -108,8 +104,7 @@ class SlabSurvey {
     [[nodiscard]] std::uint32_t planes() const noexcept {
         return static_cast<std::uint32_t>(before_.size() - 1);
     }
-    /// Returns the number of triangles that plane p cuts, which is its number of points if the mesh is
-    /// closed.
+    /// Returns the number of triangles that plane p cuts: its number of points if the mesh is closed.
     [[nodiscard]] std::uint64_t points(std::uint32_t p) const noexcept {
         return before_[p + std::size_t{1}].points - before_[p].points;
     }

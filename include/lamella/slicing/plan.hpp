@@ -65,14 +65,13 @@ struct PlaneSelection {
 };
 
 /// Returns layers stacked from z_min: layer i fills [z_min + i h, z_min + (i + 1) h] and exists if its cut
-/// meets the part. Hence a last layer that is only partly full is kept if it is cut at the bottom, kept if it
-/// is cut in the middle and more than half full, and dropped if it is cut at the top. A remainder below a
-/// thousandth of the layer height is ignored. Heights are computed as z_first + i * h, never as a running
-/// sum. With cuts at the top, a last cut that lies above z_max, or below it by no more than rounding, is
-/// moved to z_max.
+/// meets the part. Hence a partly full last layer is kept if it is cut at the bottom, or in the middle and
+/// more than half full, and dropped if it is cut at the top. A remainder below a thousandth of the layer
+/// height is ignored. Heights are z_first + i * h, never a running sum. With cuts at the top, a last cut that
+/// lies above z_max, or below it by no more than rounding, is moved to z_max.
 ///
-/// Throws Error{usage} if a height is not a positive finite number, if a range is empty, if no layer remains,
-/// if the layers are too low for double precision, or if there were more than 2^31 - 2 layers.
+/// Throws Error{usage} if a height is not a positive finite number, a range is empty, no layer remains, the
+/// layers are too low for double precision, or there were more than 2^31 - 2 layers.
 [[nodiscard]] Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers,
                                 SliceAt slice_at = SliceAt::middle, const PlaneSelection& only = {});
 
@@ -81,14 +80,14 @@ struct PlaneSelection {
 /// its own. The outermost layers have the thickness of their neighbours; the layer of a single cut is
 /// `single_height` thick.
 ///
-/// Throws Error{usage} if the list is empty, too long, not strictly ascending or not finite, naming the first
-/// offender; if it exceeds the range of double; if a layer is so low that its bottom and top coincide; and if
-/// `single_height` is not a positive finite number.
+/// Throws Error{usage} if the list is empty, too long, too wide for double, not strictly ascending or not
+/// finite, naming the first offender; if the bottom and top of a layer coincide; and if `single_height` is
+/// not a positive finite number.
 [[nodiscard]] Plan plan_listed(const std::vector<double>& z, SliceAt slice_at = SliceAt::middle,
                                double single_height = UniformLayers{}.layer_height);
 
-/// Throws Error{usage} if plan_listed would refuse the list itself: it is empty, too long, not finite, not
-/// strictly ascending or too wide for double. Serves to check a list before the part is read.
+/// Throws Error{usage} if plan_listed would refuse the list itself. Serves to check a list before the part is
+/// read.
 void check_list(const std::vector<double>& z);
 
 } // namespace lamella

@@ -26,8 +26,7 @@ struct HeightRange {
 /// `plan_uniform`.
 ///
 /// Throws Error{usage} if ranges are empty, begin below 0, overlap or do not ascend, naming the first
-/// offender; if a height is not a positive finite number; if no layer remains; if the layers are too low for
-/// double precision; or if there were more than 2^31 - 2 layers.
+/// offender; and in the cases of `plan_uniform`.
 [[nodiscard]] Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& ranges,
                                   double layer_height, SliceAt slice_at = SliceAt::middle);
 

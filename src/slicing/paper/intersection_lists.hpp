@@ -73,8 +73,7 @@ class IntersectionLists {
     /// Returns the lists of a plane that are searched.
     [[nodiscard]] ContourList<Node>& active(std::uint32_t plane) { return active_[plane]; }
 
-    /// Searches the lists of the plane for those whose last or first IN matches, and inserts `node`.
-    /// O(lists).
+    /// Inserts `node` where the last or the first IN of a list of the plane matches. O(lists).
     Placed insert_by_search(std::uint32_t plane, Node* node) {
         engine_.check_cancelled();
         ++counts_.searches;

@@ -74,8 +74,7 @@ class SerialEngine {
                                                          : EdgeCut(*edge.high, *edge.low, ranks_.snap_mm());
     }
 
-    /// Throws Error{cancelled} when a stop was requested. It is cheap and must be called within every list
-    /// search.
+    /// Throws Error{cancelled} when a stop was requested. Must be called in every list search; costs little.
     void check_cancelled() const { executor_.check_cancelled(); }
 
     /// Returns the sections of a triangle. They have no planes if the triangle repeats a vertex: it has no

@@ -22,7 +22,6 @@ class Crew {
 
     [[nodiscard]] const Executor& executor() const noexcept { return executor_; }
     [[nodiscard]] bool shared() const noexcept { return shared_; }
-    /// Returns the memory of the worker that sweeps.
     [[nodiscard]] Scratch& scratch() noexcept { return scratch_.front(); }
 
     /// Calls body(i, scratch) for each i in [0, n).

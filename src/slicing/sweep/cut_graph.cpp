@@ -176,7 +176,6 @@ class alignas(128) Collector {
         : corners_(corners), nodes_(graph.nodes.data()), spans_(graph.spans.data()), partitions_(partitions),
           pool_(pool), hashes_(block_size), table_(table_size, Fill::zero) {}
 
-    /// Adds the triangles [begin, end).
     void add(std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t i = begin; i < end; ++i)
             add(i);

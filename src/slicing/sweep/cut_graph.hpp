@@ -66,7 +66,7 @@ struct EdgeEnds {
 using FloatEnds = EdgeEnds<Point3f>;
 /// Ends in a soup with a placement.
 using DoubleEnds = EdgeEnds<Point3>;
-/// Ends in an indexed mesh. Vertices are the same only if their indices are equal.
+/// Ends in an indexed mesh. Vertices are the same if and only if their indices are equal.
 using IndexEnds = EdgeEnds<std::uint32_t>;
 
 static_assert(sizeof(CutNode<FloatEnds>) == 44 && sizeof(CutNode<IndexEnds>) == 28);

@@ -26,10 +26,9 @@ namespace {
 /// between them, and likewise for the margin of the leftmost point. Returns 0 if no tolerance can be given.
 ///
 /// A computed point is less than 7 * 2^-52 times the extent below away from its exact location (EdgeCut; no
-/// edge of the run is lower than the distance of the two planes, so no inverse overflows). If two exact
-/// distances are at least a and b, and the distance moves along a line, every distance between them is at
-/// least the smaller of a and b. Four points are involved, two on each side of the comparison: 28, times
-/// sqrt(2) in the plane.
+/// edge of the run is lower than the distance of the two planes, so no inverse overflows). A distance that
+/// changes linearly is, between two planes, at least as large as the smaller of its two exact values there.
+/// Four points are involved, two on each side of the comparison: 28, times sqrt(2) in the plane.
 double tolerance_of(const EdgeColumns& edges, double height, const PointKernels& kernels) {
     assert(height > 0);
     const std::size_t stride = edges.stride();
@@ -44,7 +43,6 @@ double tolerance_of(const EdgeColumns& edges, double height, const PointKernels&
     return known ? tolerance : 0;
 }
 
-/// Measures one run.
 class Measurement {
   public:
     Measurement(const Outline& outline, PlaneRange planes, const Ranks& ranks, const Executor& executor,

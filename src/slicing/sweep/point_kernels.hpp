@@ -61,8 +61,7 @@ struct PointKernelSet {
     const PointKernels* kernels; ///< never null; they live as long as the program
 };
 
-/// Returns all sets that this processor can run, the narrowest first: "plain" always, then "avx2" and
-/// "avx512".
+/// Returns all sets that this processor can run, narrowest first: "plain" always, then "avx2", "avx512".
 [[nodiscard]] std::span<const PointKernelSet> point_kernel_sets() noexcept;
 
 /// Returns the widest of these sets.

@@ -28,10 +28,10 @@ struct SweepTask {
 /// there. So there are few tasks if planes are few and large, and more if that cost is small, to compensate
 /// for errors in the estimated work.
 ///
-/// There is a single shared task in two cases. First, if the bound on points in flight leaves no space for a
-/// task of each worker. Second, if tasks together would walk over as much as one worker that walks for all,
-/// as on upright parts; the work after the walk is then shared evenly. If the bound still permits tasks of
-/// many planes, these are preferred, because some workers slice while others deliver.
+/// There is a single shared task in two cases: if the bound on points in flight leaves no space for a task of
+/// each worker; and if tasks together would walk over as much as one worker that walks for all, as on upright
+/// parts. In the second case the work after the walk is then shared evenly. If the bound still permits tasks
+/// of many planes, these are preferred, because some workers slice while others deliver.
 [[nodiscard]] std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers,
                                               std::uint64_t points_in_flight);
 

@@ -21,8 +21,7 @@ namespace lamella {
 /// The nodes sorted by the plane on which they begin, and the nodes that reach into a task from below.
 class StartIndex {
   public:
-    /// Requires that the nodes of the graph were counted in `shares`, added up in `loads` and divided into
-    /// `tasks`.
+    /// Requires that the nodes were counted in `shares`, added up in `loads` and divided into `tasks`.
     template <class Ends>
     StartIndex(const CutGraph<Ends>& graph, const std::vector<NodeShare>& shares, const PlaneLoads& loads,
                const std::vector<SweepTask>& tasks, Executor& executor)
@@ -47,8 +46,7 @@ class StartIndex {
                     carried_[places.carried[s][t]++] = id;
             }
         });
-        // The last element has filled the starts of each plane, and the nodes carried into each task, to the
-        // end.
+        // The last chunk has completed the starts of each plane and the nodes carried into each task.
         assert(std::equal(places.starts.back().begin(), places.starts.back().end(), loads.begun.begin() + 1));
         assert(std::equal(places.carried.back().begin(), places.carried.back().end(),
                           carried_before_.begin() + 1));

@@ -85,7 +85,8 @@ class alignas(128) Sweep {
     }
 
   private:
-    /// Stored columns must stay in the cache of one core, which they do not if all workers share the work.
+    /// Stored columns must stay in the cache of one core. They would not if all workers share the work; then
+    /// none are stored.
     static std::uint64_t room_for_columns(const PlaneLoads& loads, bool shared) {
         constexpr std::uint64_t most = 1U << 16; // edges: 3 MB
         return shared ? 0 : std::min(most, EdgeColumns::padded(8 * loads.all_points));

@@ -75,7 +75,6 @@ class Walk {
         std::uint32_t valid_until;
     };
 
-    /// A walk in progress.
     struct Walker {
         std::uint32_t node;
         std::uint32_t start;
