@@ -2,7 +2,6 @@
 
 #include "command_line.hpp"
 #include "commands.hpp"
-#include "failure.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
@@ -36,7 +35,7 @@ int run_merge(const MergeArguments& arguments, const Context& context) {
     const MergeResult result = merge_layer_files(arguments.shards, arguments.output, format.name, options,
                                                  arguments.limits.of_layers(), execution);
     for (const std::string& warning : result.file_warnings)
-        context.messages.warn(with_options(warning));
+        context.messages.warn(warning);
     context.messages.warn_of(output_name(arguments.output), result.warnings);
     const std::string text =
         fmt::format("{}: {} from z = {} to {} mm, from {}, {}\n", one_line(output_name(arguments.output)),

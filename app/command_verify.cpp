@@ -204,6 +204,8 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
 
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
+    for (std::string& warning : file.warnings)
+        warning = with_options(std::move(warning));
     std::optional<ScanStrategy> strategy;
     if (arguments.scan || arguments.scanning.given())
         strategy = arguments.scanning.strategy();

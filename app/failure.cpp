@@ -31,6 +31,7 @@ constexpr std::array field_options{
     FieldOption{"`drop_duplicates`", "--drop-duplicates"},
     FieldOption{"`fill`", "--fill"},
     FieldOption{"`format`", "--format"},
+    FieldOption{"`include`", "--include"},
     FieldOption{"`inspect`", "--inspect"},
     FieldOption{"`max_memory`", "--max-memory"},
     FieldOption{"`max_triangles`", "--max-triangles"},

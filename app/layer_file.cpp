@@ -4,7 +4,6 @@
 #include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 
-#include "failure.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "standard_streams.hpp"
@@ -65,7 +64,7 @@ void tell(const LayerFile& file, const std::vector<std::string>& warnings, bool 
     if (strict && !warnings.empty())
         throw Error(ErrorKind::defect, fmt::format("{}: {}", file.path, warnings.front()));
     for (const std::string& warning : warnings)
-        messages.warn(with_options(fmt::format("{}: {}", input_name(file.path), warning)));
+        messages.warn(fmt::format("{}: {}", input_name(file.path), warning));
 }
 
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,

@@ -2,6 +2,7 @@
 
 #include "lamella/core/printable.hpp"
 
+#include "failure.hpp"
 #include "standard_streams.hpp"
 #include "text_file.hpp"
 
@@ -119,10 +120,11 @@ void Messages::warn(const std::string& text) {
     if (is_silent())
         return;
     clear_bar();
+    const std::string warning = with_options(text);
     if (style_ == ProgressStyle::json)
-        put_json({{"warning", text}});
+        put_json({{"warning", warning}});
     else
-        put("lamella: warning: " + one_line(text) + "\n");
+        put("lamella: warning: " + one_line(warning) + "\n");
 }
 
 void Messages::error(const std::string& text, int exit_code) {

@@ -51,7 +51,7 @@ class Messages {
 
     /// Prints a result on standard output. Throws Error{output}.
     void result(std::string_view text);
-    /// Prints "lamella: warning: ...", on one line.
+    /// Prints "lamella: warning: ..." on one line, with options in place of fields (`with_options`).
     void warn(const std::string& text);
     /// Prints the warnings of a file, each with its name as input_name or output_name give it.
     void warn_of(const std::string& name, const std::vector<std::string>& warnings);

@@ -38,8 +38,9 @@ std::vector<std::string> run_warnings(const FileJob& job, const FileResult& resu
                 nothing_left(result.report.layers, result.report.contours, *result.changes);
             !nothing.empty())
             add(inputs_name(job.inputs), nothing);
-    if (result.unreached.layers > 0)
-        add(inputs_name(job.inputs), result.unreached.text());
+    for (std::size_t file = 0; file < result.files.size(); ++file)
+        if (result.unreached_by_file[file].layers > 0)
+            add(input_name(result.files[file].path), result.unreached_by_file[file].text());
     for (const std::string& warning : result.warnings)
         add(output_name(job.output), warning);
     for (const std::string& warning : result.report_warnings)

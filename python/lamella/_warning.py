@@ -13,6 +13,7 @@ from ._errors import DefectWarning
 ARGUMENTS = {
     "`snap_mm` ": "snap=",
     "`close_gaps_mm` ": "lamella slice --close-gaps ",
+    "`include` ": "include=",
     "`orient`": "lamella slice --orient",
     "converting them with `fill` nonzero": 'filled("nonzero")',
 }

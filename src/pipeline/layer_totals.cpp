@@ -84,21 +84,21 @@ void LayerTotals::add(std::uint64_t index, const PlaneVectors& vectors) {
     assert(vectors.figures.size() == exposures_.size());
     const auto place = static_cast<std::size_t>(index - rows_.front().index);
     assert(rows_.at(place).index == index);
-    rows_[place].unreached_mm2 = vectors.unreached_mm2;
     rows_[place].scan_hash = vectors.hash;
     std::copy(vectors.figures.begin(), vectors.figures.end(),
               vectors_.begin() + static_cast<std::ptrdiff_t>(place * exposures_.size()));
-    add_doubts(place, {}, vectors.inverted);
+    add_doubts(place, {}, vectors.inverted, vectors.unreached_mm2);
 }
 
 /// Of the bodies on a plane, the parts first; where there are none of a kind, no body has any.
 void LayerTotals::add_doubts(std::size_t plane, std::span<const OpenGaps> gaps,
-                             std::span<const InvertedRings> inverted) {
+                             std::span<const InvertedRings> inverted, std::span<const double> unreached_mm2) {
     std::vector<Doubt> found; // of one file each
-    for (std::size_t i = 0; i < std::max(gaps.size(), inverted.size()); ++i) {
+    for (std::size_t i = 0; i < files_.size(); ++i) {
         const bool open = i < gaps.size() && gaps[i].count > 0;
         const bool turned = i < inverted.size() && inverted[i].rings > 0;
-        if (!open && !turned)
+        const double unreached = i < unreached_mm2.size() ? unreached_mm2[i] : 0;
+        if (!open && !turned && unreached == 0)
             continue;
         auto doubt = std::find_if(found.begin(), found.end(),
                                   [&](const Doubt& of_file) { return of_file.file == files_[i]; });
@@ -107,6 +107,7 @@ void LayerTotals::add_doubts(std::size_t plane, std::span<const OpenGaps> gaps,
                 doubt, {.file = files_[i], .plane = rows_[plane].index, .open_gaps = {}, .inverted = {}});
         if (open)
             doubt->open_gaps += gaps[i];
+        doubt->unreached_mm2 += unreached;
         if (!turned)
             continue;
         doubt->inverted += inverted[i];
@@ -194,13 +195,20 @@ void LayerTotals::gather(Communicator& processes) {
 void LayerTotals::tell_doubts(FileResult& result) const {
     result.doubts.assign(*std::max_element(files_.begin(), files_.end()) + std::size_t{1},
                          MeshDoubts{.layers = rows_.size()});
+    result.unreached_by_file.resize(result.doubts.size());
     std::vector<Doubt> doubts = doubts_;
     std::sort(doubts.begin(), doubts.end(), [](const Doubt& a, const Doubt& b) {
         return a.plane != b.plane ? a.plane < b.plane : a.file < b.file;
     });
-    for (const Doubt& doubt : doubts) {
+    double unreached_mm2 = 0; // of all files on the plane
+    for (std::size_t i = 0; i < doubts.size(); ++i) {
+        const Doubt& doubt = doubts[i];
         const Row& row = rows_[static_cast<std::size_t>(doubt.plane - rows_.front().index)];
         result.doubts[doubt.file].add(row.z, row.thickness, doubt.open_gaps, doubt.inverted);
+        result.unreached_by_file[doubt.file].add(doubt.unreached_mm2, row.z);
+        unreached_mm2 += doubt.unreached_mm2;
+        if (i + 1 == doubts.size() || doubts[i + 1].plane != doubt.plane)
+            result.unreached.add(std::exchange(unreached_mm2, 0), row.z);
     }
     for (std::size_t begin = 0, end = 0; begin < parts_.size(); begin = end) {
         while (end < parts_.size() && files_[end] == files_[begin])
@@ -220,8 +228,6 @@ void LayerTotals::tell_doubts(FileResult& result) const {
 }
 
 void LayerTotals::tell(FileResult& result) const {
-    for (const Row& row : rows_)
-        result.unreached.add(row.unreached_mm2, row.z);
     tell_doubts(result);
     for (std::size_t i = 0; i < closed_.size(); ++i) {
         if (closed_[i].closed > 0)

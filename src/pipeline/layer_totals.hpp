@@ -50,7 +50,6 @@ class LayerTotals {
         std::uint64_t index = 0;
         double z = 0;
         double thickness = 0;
-        double unreached_mm2 = 0; ///< see PlaneVectors
         std::uint64_t scan_hash = 0;
     };
     /// What a plane tells about the mesh of a file.
@@ -60,6 +59,7 @@ class LayerTotals {
         std::uint64_t plane = 0;  ///< its index
         OpenGaps open_gaps;
         InvertedRings inverted;
+        double unreached_mm2 = 0; ///< see PlaneVectors
     };
     struct Counts {
         std::atomic<std::uint64_t> contours{0};
@@ -69,7 +69,7 @@ class LayerTotals {
     };
 
     void add_doubts(std::size_t plane, std::span<const OpenGaps> gaps,
-                    std::span<const InvertedRings> inverted);
+                    std::span<const InvertedRings> inverted, std::span<const double> unreached_mm2 = {});
     void tell_doubts(FileResult& result) const;
 
     // Of each plane. There may be millions, and memory is touched for what the job asks of them only.

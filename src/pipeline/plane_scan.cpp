@@ -61,8 +61,7 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
                                          layers_of(part, plane.above), strategy, memory, &unreached);
         });
         const double sum = std::accumulate(unreached.begin(), unreached.end(), 0.0);
-        if (sum > strategy.accepted_mm2)
-            vectors.unreached_mm2 += sum;
+        vectors.unreached_mm2.push_back(sum > strategy.accepted_mm2 ? sum : 0);
         vectors.inverted.push_back(plane.parts[part].inverted());
         const std::size_t first = supports[part] ? of_supports : 0;
         assert(scanned.size() == (supports[part] ? each.size() : of_supports) - first);

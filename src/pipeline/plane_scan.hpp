@@ -24,7 +24,8 @@ struct PlaneLayers {
 struct PlaneVectors {
     std::vector<Layer> layers;        ///< of each part each exposure
     std::vector<ScanFigures> figures; ///< of each of `plane_exposures`
-    double unreached_mm2 = 0; ///< that no vector reaches, of parts where that is more than is accepted
+    /// Area of each part that no vector reaches; 0 where the strategy accepts it.
+    std::vector<double> unreached_mm2;
     std::vector<InvertedRings> inverted; ///< of each part, which have no vectors either
     std::uint64_t hash = 0;              ///< of `layers`, in their order: see content_hash
 };

@@ -15,6 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 namespace lamella {
@@ -102,7 +103,7 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
         nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * scanning.seconds()),
                               std::memory_order_relaxed);
         result.layers[i] = std::move(vectors.figures);
-        unreached[i] = vectors.unreached_mm2;
+        unreached[i] = std::accumulate(vectors.unreached_mm2.begin(), vectors.unreached_mm2.end(), 0.0);
         result.hashes[i] = vectors.hash;
         return std::move(vectors.layers);
     };

@@ -616,6 +616,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     gather(processes, result.seconds, result.report);
     totals.gather(processes);
     totals.tell(result);
+    result.unreached_by_file.resize(result.files.size());
     result.near_faces.resize(result.files.size());
     for (const Feed::NearPlane& near : feed.near_faces())
         if (all.begin <= near.plane && near.plane < all.end)
@@ -633,8 +634,10 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
         result.report.contours == 0)
         throw Error(ErrorKind::defect, fmt::format("{}: nothing is left of any of {} layers after the steps",
                                                    name_of(job.inputs), result.report.layers));
-    if (job.strict && result.unreached.layers > 0)
-        throw Error(ErrorKind::defect, fmt::format("{}: {}", name_of(job.inputs), result.unreached.text()));
+    for (std::size_t file = 0; file < result.files.size() && job.strict; ++file)
+        if (result.unreached_by_file[file].layers > 0)
+            throw Error(ErrorKind::defect, fmt::format("{}: {}", result.files[file].path,
+                                                       result.unreached_by_file[file].text()));
 
     const Stopwatch writing;
     JobOutput::Written file = output.finish_file();

@@ -44,7 +44,7 @@ void BodySelection::report(Remarks& remarks) const {
     }
     if (all == 0)
         return;
-    remarks.note(fmt::format("{} left out as no material: {}; include {} to read {} as {}",
+    remarks.note(fmt::format("{} left out as no material: {}; `include` {} to read {} as {}",
                              counted(all, "body was", "bodies were"), fmt::join(kinds, ", "),
                              fmt::join(words, ","), all == 1 ? "it" : "them",
                              all == 1 ? "a solid" : "solids"));

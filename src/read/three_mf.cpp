@@ -278,7 +278,7 @@ class ThreeMfReader {
                 throw Error(
                     ErrorKind::input,
                     fmt::format("{}, line {}: the build holds object {}, whose type 'other' says that it "
-                                "is not to be made; include other to read it as a solid",
+                                "is not to be made; `include` other to read it as a solid",
                                 parts_[0].model.source, item.line, object.id));
             if (item.printable)
                 roots_.push_back(std::move(use));

@@ -38,7 +38,7 @@ class Info(ProgramTest):
                                f"<volume type='support'>{support}</volume></mesh></object></amf>")
         include = ["--include", "support"]
         self.assertEqual(self.info("part.amf")["triangles"], 4)
-        self.assertIn("1 body was left out as no material: 1 support; include support", self.succeed("info", "part.amf").err)
+        self.assertIn("1 body was left out as no material: 1 support; --include support", self.succeed("info", "part.amf").err)
         self.assertEqual(self.info("part.amf", *include)["triangles"], 8)
         self.assertEqual(self.succeed("info", "part.amf", *include).err, "")
         for words, triangles in ([], 4), (include, 8):

@@ -75,7 +75,7 @@ class Roles(ProgramTest):
             self.file("part.3mf", kind, BODY, ABOVE)
             areas, warnings = self.areas("part.3mf")
             self.assertEqual(areas, 30 * [900])
-            self.assertIn(f"part.3mf: 1 body was left out as no material: 1 {word.replace('-', ' ')} (\"block\"); include "
+            self.assertIn(f"part.3mf: 1 body was left out as no material: 1 {word.replace('-', ' ')} (\"block\"); --include "
                           f"{word} to read it as a solid", warnings)
             areas, warnings = self.areas("part.3mf", "--include", f"support,{word}", strict=False)
             self.assertEqual(len(areas), 55)
@@ -139,7 +139,7 @@ class Roles(ProgramTest):
         for line in ["block: part, 12 triangles, read", "block: negative volume, 12 triangles, subtracted",
                      "foot: support, 12 triangles, left out"]:
             self.assertIn(line, result.text)
-        self.assertIn("2 bodies were left out as no material: 1 support (\"foot\"), 1 support blocker (\"block\"); include "
+        self.assertIn("2 bodies were left out as no material: 1 support (\"foot\"), 1 support blocker (\"block\"); --include "
                       "support,support-blocker to read them as solids", result.err)
 
     def test_instances_that_double_stay_within_the_memory_that_is_allowed(self):

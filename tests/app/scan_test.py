@@ -344,14 +344,14 @@ class Scan(ProgramTest):
         leaving = ["--strategy", "none.toml"]
         thin = r"1\.92 mm2 of material on 4 layers, the lowest at z = 0\.5 mm, are reached by no vector: it is too narrow .*; accepted_mm2 of the strategy says"
         result = self.succeed(*slicing, *leaving, "-o", "job.json", "--stats", "stats.json")
-        self.assertRegex(result.err, f"lamella: warning: part.stl and 1 more file: {thin}")
+        self.assertRegex(result.err, f"lamella: warning: wall.stl: {thin}")
         self.assertRegex(result.text, r"(?m)^scan .*, 1\.92 mm2 not reached$")
         stats = json.loads(self.bytes_of("stats.json"))
         self.assertAlmostEqual(stats["scan"]["unreached_mm2"], 1.92, places=4)
         self.assertEqual(stats["scan"]["unreached_layers"], 4)
         for layer in stats["layers"]:
             self.assertAlmostEqual(layer["scan"]["unreached_mm2"], 0.48, places=4)
-        self.fail_with(4, thin, *slicing, *leaving, "-o", "x.ilt", "--strict")
+        self.fail_with(4, "wall.stl: " + thin, *slicing, *leaving, "-o", "x.ilt", "--strict")
         self.succeed(*slicing, "-o", "layers.npz")
         result = self.succeed("scan", "layers.npz", "-o", "again.json", "--stats", "stats.json", *leaving)
         self.assertRegex(result.err, f"layers.npz: {thin}")

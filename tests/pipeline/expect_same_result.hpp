@@ -97,6 +97,9 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
     EXPECT_EQ(one.unreached.area_mm2, other.unreached.area_mm2);
     EXPECT_EQ(one.unreached.layers, other.unreached.layers);
     EXPECT_EQ(one.unreached.first_z, other.unreached.first_z);
+    ASSERT_EQ(one.unreached_by_file.size(), other.unreached_by_file.size());
+    for (std::size_t i = 0; i < one.unreached_by_file.size(); ++i)
+        EXPECT_EQ(one.unreached_by_file[i].text(), other.unreached_by_file[i].text());
     EXPECT_EQ(one.gaps.closed, other.gaps.closed);
     EXPECT_EQ(one.gaps.longest_mm, other.gaps.longest_mm);
     EXPECT_EQ(one.gaps.total_mm, other.gaps.total_mm);

@@ -200,6 +200,9 @@ TEST_F(ScanJob, MeasuresMaterialThatNoVectorReaches) {
     const FileResult one = slice_file(scanned, {.threads = 1});
     EXPECT_NEAR(one.unreached.area_mm2, 4 * 0.8, 1e-5);
     EXPECT_EQ(one.unreached.layers, 4U);
+    ASSERT_EQ(one.unreached_by_file.size(), 2U);
+    EXPECT_EQ(one.unreached_by_file[0].layers, 0U);
+    EXPECT_EQ(one.unreached_by_file[1].area_mm2, one.unreached.area_mm2) << "the wall's";
     EXPECT_GT(one.unreached.first_z, -2);
     EXPECT_LT(one.unreached.first_z, -1.5); // the lowest plane of the wall
     EXPECT_TRUE(one.unreached.text().starts_with("3.2 mm2 of material on 4 layers, the lowest at z = -1.7"))

@@ -150,8 +150,9 @@ TEST(Amf, VolumesOfAnObjectAreOneMeshAndSupportsAreLeftOut) {
     const std::string support = replaced(two, "materialid=\"2\"", "type=\"support\"");
     const MeshFile without = read(amf(support), {.strict = true});
     EXPECT_EQ(without.stored_triangles, 4U);
-    EXPECT_EQ(without.warnings.at(0),
-              "1 body was left out as no material: 1 support (\"x\"); include support to read it as a solid");
+    EXPECT_EQ(
+        without.warnings.at(0),
+        "1 body was left out as no material: 1 support (\"x\"); `include` support to read it as a solid");
     const MeshFile with = read(amf(support), {.include = {MeshRole::support}});
     EXPECT_EQ(with.stored_triangles, 5U);
     EXPECT_TRUE(with.warnings.empty());

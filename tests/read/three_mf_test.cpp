@@ -182,7 +182,7 @@ TEST(ThreeMf, TypesOfObjectsDecideWhatIsRead) {
         EXPECT_EQ(file.instances.size(), 1U);
         ASSERT_EQ(file.warnings.size(), 1U);
         EXPECT_EQ(file.warnings[0],
-                  fmt::format("1 body was left out as no material: 1 {0}; include {0} to read "
+                  fmt::format("1 body was left out as no material: 1 {0}; `include` {0} to read "
                               "it as a solid",
                               type));
         ASSERT_EQ(file.bodies.size(), 2U);
@@ -272,7 +272,7 @@ TEST(ThreeMf, VolumesThatSlic3rMarksAsNoMaterialAreNone) {
             ASSERT_EQ(file.warnings.size(), 1U);
             EXPECT_EQ(
                 file.warnings[0],
-                fmt::format("1 body was left out as no material: 1 {} (\"hole\"); include {} to read it as "
+                fmt::format("1 body was left out as no material: 1 {} (\"hole\"); `include` {} to read it as "
                             "a solid",
                             row_of(role).name, row_of(role).word));
             ASSERT_EQ(file.bodies.size(), 2U);
@@ -332,7 +332,7 @@ TEST(ThreeMf, ComponentsHaveTheRolesThatOrcaSlicerGivesThem) {
         const MeshFile file = read(with(subtype));
         EXPECT_EQ(file.instances.size(), 1U);
         EXPECT_EQ(file.warnings.at(0),
-                  fmt::format("1 body was left out as no material: 1 {} (\"cut\"); include {} "
+                  fmt::format("1 body was left out as no material: 1 {} (\"cut\"); `include` {} "
                               "to read it as a solid",
                               row_of(role).name, row_of(role).word));
         EXPECT_EQ(read(with(subtype), {.include = {role}}).instances.size(), 2U);

@@ -159,7 +159,8 @@ struct FileResult {
     std::optional<LayerChanges> changes; ///< by FileJob::steps, where there are any
     /// With FileJob::scan; the other figures are those of the layers that vectors are made of.
     std::vector<ExposureResult> exposures;
-    UnreachedMaterial unreached; ///< with FileJob::scan
+    UnreachedMaterial unreached;                      ///< with FileJob::scan
+    std::vector<UnreachedMaterial> unreached_by_file; ///< the same for each of `files`
     /// What the layers tell, of each of the files. Inverted rings are those of the layers that `steps` are
     /// taken with, found where rings that cross are searched for anyway: for `scan` and offsets. With a
     /// FillRule, which says what of them is material, none are counted.
