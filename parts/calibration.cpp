@@ -130,8 +130,7 @@ class PlateMaker {
             add(points[t[0]], points[t[1]], points[t[2]], z, up);
     }
 
-    /// Joins two levels. The wall of a post goes up and faces outwards, that of a hole goes down and faces
-    /// inwards.
+    /// Joins two levels. The wall of a post goes up and faces outwards, that of a hole goes down and inwards.
     void band(const Outline& from, double from_z, const Outline& to, double to_z) {
         for (std::size_t i = 0; i < from.size(); ++i) {
             const std::size_t next = (i + 1) % from.size();

@@ -49,8 +49,7 @@ Face face_along(const Point3& normal, const std::array<Point3, 20>& corners) {
     return face;
 }
 
-/// Returns the dodecahedron about the origin with the corner (1, 1, 1). It extends from -phi to phi along
-/// each axis.
+/// Returns the dodecahedron about the origin with corner (1, 1, 1); it spans -phi to phi along each axis.
 Faces unit_dodecahedron() {
     std::array<Point3, 20> corners;
     std::array<Point3, 12> normals;

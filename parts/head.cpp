@@ -169,9 +169,9 @@ Point3 on_skin(const Point3& direction) {
     return along(skin + relief(along(skin)));
 }
 
-/// Returns the direction of a corner of the grid on a face, given by corners of the icosahedron and their
-/// weights, which add up to `fineness`. The displacement depends on its location only, so that faces agree at
-/// their edges.
+/// Returns the direction of a corner of the grid on a face, given by corners of the icosahedron and weights
+/// that add up to `fineness`. The displacement depends on the location only, so that faces agree at their
+/// edges.
 Point3 direction(std::array<std::uint32_t, 3> corners, std::array<unsigned, 3> weights) {
     static const std::array<Point3, 12> icosahedron = icosahedron_corners();
     // The last digit of a sum depends on the order of summands, so they are sorted by corner.

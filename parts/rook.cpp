@@ -84,8 +84,7 @@ class Lathe {
   public:
     std::vector<Triangle3f> out;
 
-    /// Sweeps a profile over the columns [first, last). If the profile goes up, the surface faces away from
-    /// the axis.
+    /// Sweeps a profile over the columns [first, last). A profile that goes up faces away from the axis.
     void sweep(const Profile& profile, unsigned first, unsigned last) {
         for (std::size_t i = 0; i + 1 < profile.size(); ++i)
             for (unsigned j = first; j < last; ++j)

@@ -9,8 +9,7 @@
 
 namespace lamella {
 
-/// The order of a sheet's triangles in the file. It determines the length of the lists in the paper's
-/// algorithms; see SheetShape.
+/// The order of a sheet's triangles, which determines the length of the lists in the paper's algorithms.
 enum class TriangleOrder {
     wall,  ///< around each hole, the two triangles of each wall quad together
     hole,  ///< the lower triangles of a hole's wall, then its upper ones, hole after hole: the paper's sheets
@@ -30,8 +29,8 @@ struct SheetShape {
     std::uint64_t seed = 1; ///< for TriangleOrder::shuffle
 };
 
-/// Makes the sheet. Throws Error{usage} if the shape is impossible (holes not square, fewer than 3 segments,
-/// sizes not positive).
+/// Throws Error{usage} if the shape is impossible (holes not square, fewer than 3 segments, sizes not above
+/// 0).
 [[nodiscard]] TriangleSoup make_sheet(const SheetShape& shape);
 
 /// Makes a chess rook as in the paper's Fig. 6: 31.75 x 31.75 x 53.15 mm, hollow crown with battlements,
@@ -58,10 +57,9 @@ struct SheetShape {
 /// triangles on average, as in the paper.
 [[nodiscard]] TriangleSoup make_sole();
 
-/// A lattice of struts: a cubic grid of cells. Struts of round section that become thicker towards the nodes
-/// join each corner of a cell to its neighbours. It is one closed surface without inner walls, in the corner
-/// of the positive octant. The default has 900,432 triangles. Functions throw Error{usage} for impossible
-/// sizes.
+/// A lattice of struts: a cubic grid of cells, each corner joined to its neighbours by struts of round
+/// section that become thicker towards the nodes. It is one closed surface without inner walls, in the corner
+/// of the positive octant. The default has 900,432 triangles. Impossible sizes throw Error{usage}.
 struct LatticeShape {
     unsigned cells_x = 12;
     unsigned cells_y = 12;

@@ -1,6 +1,5 @@
 // The sheet with holes. Hole outlines are exact copies of one polygon on an integer grid that single
-// precision represents exactly. So the caps can be triangulated with exact arithmetic, once per kind of
-// region:
+// precision represents exactly. So caps are triangulated with exact arithmetic, once per kind of region:
 //
 //     a left, a right, a bottom and a top strip, each between an edge of the sheet and the outermost
 //     holes; and a cell between each four neighbouring holes, all cells equal.
@@ -273,7 +272,7 @@ TriangleSoup make_sheet(const SheetShape& shape) {
         out.insert(out.end(), lower.begin(), lower.end());
         out.insert(out.end(), upper.begin(), upper.end());
     } else {
-        // Alternates this many lower triangles and the upper ones of the same quads; the outer walls come
+        // Alternates this many lower triangles with the upper ones of the same quads; the outer walls are
         // last.
         const std::size_t stretch = shape.order == TriangleOrder::hole ? segments : 1;
         for (std::size_t i = 0; i < lower.size(); i += stretch) {

@@ -22,8 +22,7 @@ class RandomNumbers {
         return z ^ (z >> 31);
     }
 
-    /// Returns a number in [0, n), n below about 2^40: the bias of multiplying instead of rejecting is
-    /// negligible.
+    /// Returns a number in [0, n), n below about 2^40: the bias from not rejecting is negligible.
     [[nodiscard]] std::uint64_t below(std::uint64_t n) noexcept {
         __extension__ using Wide = unsigned __int128;
         return static_cast<std::uint64_t>((static_cast<Wide>(next()) * n) >> 64);

@@ -42,8 +42,7 @@ std::vector<CosSin> circle(unsigned segments) {
     return out;
 }
 
-/// Returns the bisector of two directions. Addition is commutative, so both triangles at an edge get the same
-/// bits.
+/// Returns the bisector of two directions. It is commutative, so both triangles at an edge get the same bits.
 Point3 between(const Point3& a, const Point3& b) {
     const Point3 sum{a.x + b.x, a.y + b.y, a.z + b.z};
     const double length = std::sqrt(sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);

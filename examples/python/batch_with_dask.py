@@ -1,4 +1,4 @@
-"""Slices every mesh of a folder on a local cluster of processes, and tells their volumes.
+"""Slices every mesh of a folder on a local cluster of processes, and prints their volumes.
 
 usage: batch_with_dask.py FOLDER LAYER_HEIGHT_MM [PROCESSES]
 """

@@ -17,7 +17,7 @@ from matplotlib.pyplot import subplots  # noqa: E402
 
 
 def filled(layer):
-    """All rings as one path: matplotlib leaves holes out, since they run the other way round."""
+    """All rings as one path: matplotlib leaves holes out, since they run in the opposite direction."""
     rings = [Path(np.vstack([ring, ring[:1]]), closed=True) for ring, closed in zip(layer, layer.closed) if closed]
     return Path.make_compound_path(*rings)
 

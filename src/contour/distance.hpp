@@ -22,8 +22,7 @@ namespace lamella {
     return hypotenuse(a.x - b.x, a.y - b.y);
 }
 
-/// Is many times as fast and rounds differently. Requires squares to be far from overflow, as they are for
-/// millimetres.
+/// Many times as fast, with different rounding. Squares must be far from overflow, as for millimetres.
 [[nodiscard]] inline double quick_distance(const Point2& a, const Point2& b) noexcept {
     const double dx = b.x - a.x;
     const double dy = b.y - a.y;

@@ -23,8 +23,7 @@ class FanArea {
     [[gnu::always_inline]] explicit FanArea(const Point2& origin)
         : origin_{origin.x, origin.y, origin.x, origin.y} {}
 
-    /// Adds the triangles of points i to i + 3, each with the point before it; i is `first`, then 4 more each
-    /// time.
+    /// Adds the triangles of points i to i + 3, each with the point before it; i is `first` + 4 k.
     [[gnu::always_inline]] void add_four(std::span<const Point2> ring, std::size_t i) {
         assert(i >= first && i + 4 <= ring.size());
         const Four a01 = at<4>(&ring[i - 1].x).v - origin_;

@@ -32,8 +32,8 @@ bool same(const Point2& a, const Point2& b) {
 }
 
 // Returns the smallest rotation of a ring whose smallest point occurs more than once. Two candidate starts i
-// < j race. After k equal points the loser and the k starts after it are eliminated, because each of them
-// loses to the start at the same distance after the winner. So the candidates advance by at most 2 n in
+// and j > i race. After k equal points the loser and the k starts after it are eliminated, because each of
+// them loses to the start at the same distance after the winner. So candidates advance by at most 2 n in
 // total.
 std::size_t smallest_rotation_with_repeats(std::span<const Point2> ring, std::size_t first,
                                            std::size_t second) {

@@ -28,8 +28,7 @@ void remove_folder(const fs::path& folder) {
     fs::remove_all(folder, ignored);
 }
 
-/// Returns whether the folder is a mount point, which cannot be replaced; bind mounts of the same file system
-/// count.
+/// Returns whether the folder is a mount point, which cannot be replaced; bind mounts count.
 bool is_mount_point(const fs::path& folder) {
     struct statx status {};
     return ::statx(AT_FDCWD, folder.c_str(), 0, STATX_TYPE, &status) == 0 &&
@@ -155,8 +154,7 @@ void AtomicDirectory::check_replaceable() const {
                                 "folder in it, such as '{}'",
                                 path_, (target_ / "layers").string()));
     // Another process may have exchanged the folder for its own and be removing this one. So entries that no
-    // longer exist are not foreign, and each name is tested twice, since one test may combine answers from
-    // both folders.
+    // longer exist are not foreign, and each name is tested twice: one test may combine answers from both.
     const auto is_foreign = [this](const fs::path& entry) {
         std::error_code ignored;
         // An entry that cannot be examined exists.

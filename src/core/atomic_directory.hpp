@@ -51,8 +51,7 @@ class AtomicDirectory {
     std::atomic<std::uint64_t> bytes_{0};
 };
 
-/// Returns whether a path is a regular file that begins with `mark`, by which files of Lamella are
-/// recognised.
+/// Returns whether a path is a regular file that begins with `mark`, which identifies files of Lamella.
 [[nodiscard]] bool begins_with_mark(const std::filesystem::path& path, std::string_view mark);
 
 } // namespace lamella

@@ -40,8 +40,8 @@ enum class Overwriting : std::uint8_t { no, yes };
 /// and nothing more can be appended.
 class AtomicFile {
   public:
-    /// An output that is written in place but has to be overwritten is stored in a nameless temporary file
-    /// until `commit`.
+    /// Output written in place that has to be overwritten is kept in a nameless temporary file until
+    /// `commit`.
     explicit AtomicFile(std::string path, Overwriting overwriting = Overwriting::no);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;

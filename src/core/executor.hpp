@@ -16,8 +16,7 @@
 
 namespace lamella {
 
-/// Returns the number of threads requested by Execution::threads: itself, or the processors available to this
-/// process.
+/// Returns Execution::threads, or the number of processors available to this process if that is 0.
 [[nodiscard]] unsigned thread_count(const Execution& execution) noexcept;
 
 /// A team of workers. Worker 0 is the calling thread; the others are started at the first parallel region and
@@ -40,8 +39,7 @@ class Executor {
     void run(const std::function<void(unsigned worker)>& body);
 
     /// Calls body(begin, end, worker) over [0, n) in chunks of at most `chunk`, which free workers take in
-    /// ascending order. Fewer than two chunks run on the calling thread. Checks for cancellation at each
-    /// chunk.
+    /// ascending order. Fewer than two chunks run on the calling thread. Each chunk checks for cancellation.
     void for_chunks(std::uint64_t n, std::uint64_t chunk,
                     const std::function<void(std::uint64_t begin, std::uint64_t end, unsigned worker)>& body);
 

@@ -8,8 +8,7 @@
 
 namespace lamella {
 
-/// Writes consecutive bytes into an existing file, starting at an offset. Throws Error{output}. For one
-/// thread.
+/// Writes consecutive bytes into an existing file from an offset on. Throws Error{output}. For one thread.
 class FilePiece {
   public:
     /// `name` is the name of the file in errors: the user does not know its temporary path.

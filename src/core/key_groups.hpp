@@ -132,8 +132,7 @@ class KeyPartitions {
     }
 
     /// Stores chunk number `block`, each at most once, from any thread; a chunk that is never stored is
-    /// empty. hash(i) returns 64 bits, record(i) key and id. Ids must ascend within a chunk and from chunk to
-    /// chunk.
+    /// empty. hash(i) returns 64 bits, record(i) key and id. Ids must ascend within and between chunks.
     template <class Hash, class MakeRecord>
     void put(std::uint64_t block, std::uint32_t count, const Hash& hash, const MakeRecord& record) const {
         std::array<std::uint16_t, std::size_t{1} << key_groups::most_partition_bits> next;
@@ -192,8 +191,7 @@ class KeyPartitions {
 };
 
 /// Does the same for keys in memory: calls found(first, other, worker) as KeyPartitions::join does. The id of
-/// a key is its position in the concatenation of all parts and must be below 2^32. hash(key) returns 64 bits,
-/// equal for equal keys.
+/// a key is its position in the concatenation of all parts, below 2^32. hash(key) returns 64 bits.
 template <class Key, class Hash, class Found>
 void join_equal_keys(Executor& executor, std::span<const std::span<const Key>> parts, const Hash& hash,
                      const Found& found) {

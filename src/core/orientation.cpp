@@ -13,8 +13,7 @@ namespace {
 __extension__ using SignedWide = __int128;
 
 /// Computes the determinant of three differences in integers. Returns false unless all are exact multiples of
-/// one power of two and have at most 40 bits, as differences of single-precision coordinates of one part
-/// mostly do.
+/// one power of two with at most 40 bits, as differences of single-precision coordinates mostly are.
 bool integer_orientation(const Point3& a, const std::array<const Point3*, 3>& others, int& sign) noexcept {
     std::array<double, 9> gaps; // NOLINT: filled below
     double largest = 0;

@@ -1,7 +1,6 @@
 #include "core/parse_number.hpp"
 
-// Not std::from_chars: libc++ has it for integers only, and it reports overflow and underflow with the same
-// code.
+// Not std::from_chars: libc++ has it for integers only, and overflow and underflow give the same code.
 #include <fast_float/fast_float.h>
 
 namespace lamella {

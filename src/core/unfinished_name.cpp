@@ -120,8 +120,7 @@ bool UnfinishedName::withdraw() noexcept {
 
 void remove_unfinished() noexcept {
     ending = true;
-    // The wait is limited: a file system may be stuck, and a thread that crashed during a creation never ends
-    // it.
+    // Limited, since a file system may be stuck, and a thread that crashed in a creation never ends it.
     constexpr timespec a_moment{.tv_sec = 0, .tv_nsec = 1'000'000};
     for (int moments = 0; creations != 0 && moments < 200; ++moments)
         ::nanosleep(&a_moment, nullptr);

@@ -4,8 +4,7 @@
 
 /// Before the definition of a function: compiles it for wider vectors, too; the widest version that the
 /// processor supports is selected when the program starts. Operations are neither fused nor reordered, so all
-/// give the same bits. Disabled under sanitizers, whose run time is not initialised when the selection is
-/// made.
+/// give the same bits. Disabled under sanitizers, which are not initialised when the selection is made.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define LAMELLA_SANITIZED

@@ -10,8 +10,7 @@ struct Vector {
     typedef double Doubles __attribute__((vector_size(width * sizeof(double)), may_alias));
     typedef float Floats __attribute__((vector_size(width * sizeof(float)), may_alias));
     typedef long long Words __attribute__((vector_size(width * sizeof(long long)), may_alias));
-    /// An unaligned vector. (A vector type with less alignment does not work: clang 14 drops the alignment in
-    /// templates.)
+    /// An unaligned vector. (Clang 14 drops a lower alignment of the vector type itself in templates.)
     struct __attribute__((packed, may_alias)) Anywhere {
         Doubles v;
     };

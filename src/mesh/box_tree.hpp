@@ -1,11 +1,9 @@
 #pragma once
 
-// A tree of boxes over triangles in the order of a space-filling curve (a BVH). It finds triangles of a mesh
-// that are close to one another.
+// A tree of boxes (BVH) over triangles in the order of a space-filling curve, for finding close triangles.
 //
 // Boxes are stored in single precision, relative to the box of the whole mesh. The conversion (subtract,
-// multiply, round) preserves the order of numbers, so boxes that overlap still do; boxes may only overlap a
-// little more.
+// multiply, round) preserves the order of numbers, so boxes that overlap still do; no overlap is missed.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 

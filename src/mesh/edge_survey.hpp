@@ -1,7 +1,6 @@
 #pragma once
 
-// One pass over all edges of a mesh: counts their defects, lists them on request, and joins connected
-// triangles.
+// One pass over all edges of a mesh: counts and lists their defects, and joins connected triangles.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/inspect.hpp"
@@ -51,8 +50,7 @@ struct TriangleOverEdge {
     friend auto operator<=>(const TriangleOverEdge&, const TriangleOverEdge&) noexcept = default;
 };
 
-/// Returns all groups of two or more triangles with the same three vertices, each group in ascending order;
-/// the groups are in any order.
+/// Returns all groups of two or more triangles with the same vertices, in any order; each group ascends.
 [[nodiscard]] std::vector<std::vector<TriangleOverEdge>> find_same_vertices(Executor& executor,
                                                                             const IndexedMesh& mesh);
 

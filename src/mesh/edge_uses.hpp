@@ -32,8 +32,7 @@ struct EdgeUse {
 
     /// Returns true if the triangle runs from `low` to `high`.
     [[nodiscard]] bool upwards() const noexcept { return (place & upwards_bit) != 0; }
-    /// Returns true if these are the two lowest vertices of the triangle: this holds for exactly one of its
-    /// sides.
+    /// Returns true if these are the two lowest vertices of the triangle, as for exactly one of its sides.
     [[nodiscard]] bool lowest_side() const noexcept { return (place & lowest_bit) != 0; }
     [[nodiscard]] std::uint32_t low_in_partition() const noexcept { return place & (lowest_bit - 1); }
 };

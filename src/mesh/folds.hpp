@@ -17,8 +17,7 @@ namespace lamella {
 /// Elements per chunk.
 inline constexpr std::size_t fold_piece = std::size_t{1} << 15;
 
-/// Computes piece(begin, end) -> Value for chunks of [0, n), then calls merge(total, value) in ascending
-/// order.
+/// Computes piece(begin, end) -> Value for chunks of [0, n), then merge(total, value) in ascending order.
 template <class Value, class Piece, class Merge>
 [[nodiscard]] Value fold(Executor& executor, std::size_t n, Value total, const Piece& piece,
                          const Merge& merge) {

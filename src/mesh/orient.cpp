@@ -307,16 +307,14 @@ Shells tied_shells(const Shells& patches, const Ties& ties) {
     return shells;
 }
 
-/// Content of a shell. An open one is measured as if fans from the centre of the box around its open edges
-/// closed it.
+/// Content of a shell. Fans from the centre of the box around its open edges close an open one.
 struct Content {
     ShellContent shell;
     double area = 0; ///< of an open shell
     double fans = 0; ///< total area of its fans
 
-    /// Returns true if the sign of the volume is certain, and is mostly due to existing triangles. (The limit
-    /// is below one half: a box four times as wide as high, without a lid, has exactly half, and rounding
-    /// would decide.)
+    /// Returns true if the sign of the volume is certain and mostly due to existing triangles. (The limit is
+    /// below one half: a box four times as wide as high, without a lid, has exactly half.)
     [[nodiscard]] bool certain() const noexcept {
         return shell.certain() && (fans == 0 || fans < 0.45 * area);
     }
@@ -430,8 +428,7 @@ std::vector<Sense> find_senses(Executor& executor, const IndexedMesh& mesh, cons
             ++depth[shell];
             involved[shell] = involved[encloser] = any = true;
         });
-    // So far one point of each shell was examined. Where surfaces touch or cross, other points may lie
-    // elsewhere.
+    // So far one point of each shell was examined. Where surfaces meet, others may lie elsewhere.
     std::vector<bool> touching(count, false);
     if (any) {
         const std::map<ShellPair, bool> contacts = find_contacts(executor, mesh, shells, boxes, involved);

@@ -19,9 +19,8 @@ class PolygonTriangulator {
     using Triangle = std::array<std::uint32_t, 3>;
 
     /// Returns the n - 2 triangles of a polygon of n finite corners (none for fewer than three), each with
-    /// its corners in the order of the polygon. They are valid until the next call. For every polygon, each
-    /// of its edges is an edge of one triangle, and all other edges have two: a closed surface of polygons
-    /// stays closed.
+    /// its corners in the order of the polygon. They are valid until the next call. Each edge of the polygon
+    /// is an edge of one triangle, and all other edges have two: a closed surface of polygons stays closed.
     ///
     /// A convex polygon becomes a fan from its first corner. For any other polygon whose projection does not
     /// cross itself, each triangle faces as the polygon does, or has no area where corners are collinear. The

@@ -87,8 +87,7 @@ std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& 
         for (const auto& [shell, some] : runs)
             contents[shell].add(some);
     });
-    // Another order of summands changes a sum by up to twice its rounding: sums close to 0 are added up in
-    // order.
+    // Another order changes a sum by up to twice its rounding: sums close to 0 are added up in order.
     std::vector<bool> close(shells.size());
     for (std::size_t s = 0; s < shells.size(); ++s)
         close[s] = std::abs(contents[s].six_volumes) <= 3 * contents[s].rounding();

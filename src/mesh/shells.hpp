@@ -41,8 +41,7 @@ struct ShellContent {
     [[nodiscard]] double volume() const noexcept { return six_volumes / 6; }
     /// Returns true if rounding cannot have changed the sign of the volume.
     [[nodiscard]] bool certain() const noexcept { return std::abs(six_volumes) > rounding(); }
-    /// A sum of k terms has an error of at most k epsilons of their sizes; the rounding of one term is 32
-    /// more.
+    /// A sum of k terms has an error of at most k epsilons of their sizes; rounding one term adds up to 32.
     [[nodiscard]] double rounding() const noexcept {
         return std::numeric_limits<double>::epsilon() * (triangles + 32) * sizes;
     }

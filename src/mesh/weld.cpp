@@ -7,8 +7,8 @@
 //     number     the first of each kind becomes a vertex, in the order of the file
 //     rewrite    triangles refer to vertices instead of local vertices, and vertices get their coordinates
 //
-// The order in the file determines all numbers, so the result does not depend on the ranges or on the number
-// of workers.
+// The order in the file determines all numbers, so the number of ranges or workers does not change the
+// result.
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"

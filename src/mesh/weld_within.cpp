@@ -76,7 +76,7 @@ class CellGrid {
 
     /// Returns a lower bound on the number of pairs within the tolerance. An eighth of a cell has a diagonal
     /// below the tolerance, so c points in a cell make at least (c^2 - 8 c) / 16 pairs. `after` visits at
-    /// most 14 times the sum of c^2.
+    /// most 14 c^2.
     [[nodiscard]] std::size_t least_pairs() const noexcept {
         std::size_t squares = 0;
         for (std::size_t i = 0, begin = 0; i < places_.size(); ++i) {

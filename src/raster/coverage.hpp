@@ -65,8 +65,7 @@ class CoverageRows {
     /// Adds the coverage of a row; returns the number of rows from there on that are equal.
     std::uint32_t cover(std::uint32_t row);
     void draw_knot(Pieces knot, int left, std::uint32_t row);
-    /// Draws a knot that is a single line with bends from the row's upper to its lower border, as most knots
-    /// are; returns false if it is not.
+    /// Draws a knot that is a single line with bends through the whole row, as most are; false if it is not.
     bool draw_line(Pieces knot, int left, std::uint32_t row);
     /// Finds the heights at which a knot has corners and crossings; returns false if there are too many.
     bool find_strips(Pieces knot, std::uint32_t row);

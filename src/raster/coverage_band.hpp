@@ -22,11 +22,9 @@ class CoverageBand {
     /// Adds material of the given weight along a slope: it rises from nothing at u = `from` to the full
     /// weight at `to` and lasts until the end of the row. A negative weight ends material.
     void begin_along(std::uint32_t row, double from, double to, double weight);
-    /// Does the same along an edge, in the rows from `top` to `end` of the image; `top` is the first row of
-    /// the band.
+    /// Does the same along an edge, in the rows from `top`, the first of the band, to `end`.
     void begin_along(const PictureEdge& edge, std::uint32_t top, std::uint32_t end, double weight);
-    /// Adds material that begins within a pixel: its weight, and its weight times the x within the pixel, 0
-    /// to 1.
+    /// Adds material that begins within a pixel: its weight, and weight times x within the pixel, 0 to 1.
     void begin_within(std::uint32_t row, std::size_t column, double weight, double moment) {
         own_.row(row).add_from(column, weight - moment, moment);
     }
@@ -36,8 +34,7 @@ class CoverageBand {
 
     /// Returns whether a row has only the material of all rows.
     [[nodiscard]] bool plain(std::uint32_t row) const noexcept { return !own_.touched(row); }
-    /// Returns the row as runs, which are valid until the next call. Keeps only the material of all rows in
-    /// it.
+    /// Returns the row as runs, valid until the next call. Keeps only the material of all rows in it.
     [[nodiscard]] std::span<const PixelRun> take(std::uint32_t row);
     /// Covered pixels of the row that was taken last.
     [[nodiscard]] double covered() const noexcept { return covered_; }

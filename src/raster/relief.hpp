@@ -43,8 +43,7 @@ class Relief {
     /// A relief of a part within this box.
     Relief(const Box3& box, std::uint32_t width, std::uint32_t height);
 
-    /// Returns the visible spans of the layers of all parts at one height. May be called from any number of
-    /// threads.
+    /// Returns the visible spans of the layers of all parts at one height. For any number of threads.
     [[nodiscard]] std::vector<ReliefSpan> spans(std::span<const Layer> parts) const;
     /// Adds a layer above the lower ones.
     void add(std::span<const ReliefSpan> spans);

@@ -64,8 +64,7 @@ class RowSweep {
         for (const Entry& entry : entries_) {
             if (rows_[entry.edge].end <= row)
                 continue;
-            // Copied only if an entry was removed: copying an entry just after it was moved waits for its
-            // stores.
+            // Copied only if an entry was removed: a copy just after a move waits for its stores.
             Entry& here = entries_[kept++];
             if (&here != &entry)
                 here = entry;

@@ -6,9 +6,8 @@
 namespace lamella {
 
 // The area between an edge and the right end of a row, with the sign of its direction, is linear in the edge,
-// so the coverage of a pixel is the sum over all edges, in any order. So edges are visited in the order of
-// the contours. Many of them may lie in one pixel: they are summed up before the sum is added to that of the
-// row.
+// so the coverage of a pixel is the sum over all edges, in any order. Edges are visited in the order of the
+// contours. Many of them may lie in one pixel: their sum is added to that of the row at once.
 
 SummedRows::SummedRows(std::span<const Layer> parts, const PixelGrid& grid, double gamma)
     : bands_(parts, grid), width_(grid.width), height_(grid.height),

@@ -11,8 +11,7 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// States that a chain was continued from its last point `from` to the first point `to` of a chain, possibly
-/// of itself.
+/// States that a chain was continued from its last point `from` to the first point `to` of a chain.
 struct GapJoin {
     Point2 from;
     Point2 to;
@@ -30,8 +29,7 @@ struct ClosedGaps {
 
 /// Joins the last point of a chain to the first point of a chain no farther away than `within_mm`, so
 /// material stays on the left. The closest pairs are joined first, equally close ones in the order of the
-/// coordinates of the first end, then of the second one. Each end is joined at most once. A chain joined to
-/// itself becomes a ring.
+/// coordinates of their ends. Each end is joined at most once. A chain joined to itself becomes a ring.
 ///
 /// A pair is refused if the straight line between the ends would cross a contour or an earlier join, or pass
 /// through a point of one. It is also refused if it would make a ring of fewer than three points, or of a
@@ -39,8 +37,8 @@ struct ClosedGaps {
 /// point the 64 closest first points are examined.
 ///
 /// If the two chains overlap, so that the segments before and after the join cross, one of the two ends is
-/// dropped. This happens where a vertex lies on the edge of a neighbour (a T-junction): both ends are the
-/// same point except for rounding.
+/// dropped. This happens where a vertex lies on the edge of a neighbour (a T-junction): both ends differ by
+/// rounding.
 ///
 /// A layer without chains is returned as it is. Throws Error{usage} for a distance that is not a positive
 /// finite number. O(n + c log c) for n points and c chains if each is close to few others.

@@ -13,8 +13,7 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// A fixed array of points in shared memory: copies, and other arrays in the same allocation, keep the memory
-/// alive.
+/// A fixed array of points in shared memory: copies and arrays in the same allocation keep it alive.
 class PointArray {
   public:
     PointArray() = default;
@@ -47,8 +46,7 @@ class PointArray {
 /// A layer without contours has offsets == {0}.
 ///
 /// Material lies to the left of the direction of a contour: outer rings run counter-clockwise, holes
-/// clockwise. Coordinates are finite (see `check`), and zero is +0 (-0 would compare equal but hash
-/// differently).
+/// clockwise. Coordinates are finite (see `check`), and zero is +0 (-0 would hash differently).
 ///
 /// The members may be filled directly: an engine that knows its counts beforehand lets many layers share one
 /// allocation of points.
@@ -89,8 +87,7 @@ class LayerBuilder {
     void end_contour(bool closed);
     /// Appends a whole contour; none may be under construction.
     void add_contour(std::span<const Point2> points, bool closed);
-    /// Returns the layer in normal form with the given index, z, bottom and top. The builder is empty
-    /// afterwards.
+    /// Returns the layer in normal form with these members. The builder is empty afterwards.
     [[nodiscard]] Layer finish(std::uint64_t index, double z, double bottom, double top);
     /// Does the same for contours whose order matters, such as scan vectors: rings, then chains, in the order
     /// in which they were added, each from its first point.

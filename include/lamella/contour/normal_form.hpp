@@ -14,9 +14,8 @@ namespace lamella {
 /// Returns the normal form of a layer. Every ring starts at its lexicographically smallest point; if that
 /// point occurs more than once, at the occurrence that makes the whole sequence smallest. Closed rings come
 /// first, then open chains. Each of the two groups is ordered by first point, then by the whole sequence.
-/// Slicing and reading return layers in normal form. A layer that is in normal form is returned as it is; its
-/// points are shared, not copied. O(n + c log c) for n points in c contours; O(n log c) if many contours
-/// begin alike.
+/// Slicing and reading return layers in normal form. A layer in normal form is returned as it is; its points
+/// are shared. O(n + c log c) for n points in c contours; O(n log c) if many contours begin alike.
 [[nodiscard]] Layer normal_form(Layer layer);
 
 /// Returns whether a layer is in normal form. Stops at the first contour out of order. O(n).
@@ -27,8 +26,7 @@ namespace lamella {
 /// Returns the index at which the normal form of a ring starts: the first one whose rotation of the ring is
 /// smallest. 0 for an empty ring. O(n), even for rings that repeat themselves.
 [[nodiscard]] std::size_t smallest_rotation(std::span<const Point2> ring) noexcept;
-/// Returns whether contour `a` comes before `b` in its group, both already rotated. False if they are equal.
-/// O(n).
+/// Returns whether contour `a` comes before `b` in its group, both already rotated; false if equal. O(n).
 [[nodiscard]] bool stands_before(std::span<const Point2> a, std::span<const Point2> b) noexcept;
 
 /// Returns whether the contours are the same, bit for bit. Index, z, bottom and top are ignored.

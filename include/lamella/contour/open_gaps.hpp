@@ -9,8 +9,7 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// The gaps of a layer: each from the last point of a chain to the first point of the chain that is assumed
-/// to continue it.
+/// The gaps of a layer: each from the last point of a chain to the first point of its assumed continuation.
 struct OpenGaps {
     std::uint64_t count = 0; ///< equals the number of open chains
     double longest_mm = 0;
@@ -28,8 +27,7 @@ struct OpenGaps {
 /// gap is as long as the part of the contour that runs in the wrong direction.
 ///
 /// O(1) for a layer without chains, otherwise O(c log c) for c chains on average. An end whose match was
-/// taken 16 times gets a remaining one, in the order of the chains; so gaps of hostile layers may be reported
-/// too long.
+/// taken 16 times gets a remaining one, in the order of the chains; hostile layers may get gaps too long.
 [[nodiscard]] OpenGaps open_gaps(const Layer& layer);
 
 } // namespace lamella

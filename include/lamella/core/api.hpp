@@ -1,7 +1,6 @@
 #pragma once
 
-// The exports of a shared library: all declarations of public headers between these two macros, and nothing
-// else.
+// The exports of a shared library: exactly the declarations of public headers between these two macros.
 //
 // A pragma marks each declaration. An attribute of the namespace would not work: clang looks for it where a
 // function is defined.

@@ -42,7 +42,7 @@ class CancelFlag {
     const CancelFlag* outer_;
 };
 
-/// Parameters of every long computation. Results never depend on them: any number of threads gives the same
+/// Parameters of every long computation. They never change results: any number of threads gives the same
 /// bytes.
 struct Execution {
     /// Number of threads; 0 means one per processor available to this process. Fewer are used if the system

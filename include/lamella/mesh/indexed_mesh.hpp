@@ -54,8 +54,7 @@ void drop_unused_vertices(IndexedMesh& mesh, const Execution& execution = {});
 /// Returns the box of all vertices, used or not. Empty for a mesh without vertices.
 [[nodiscard]] Box3 bounding_box(const IndexedMesh& mesh, const Execution& execution = {});
 
-/// Returns the signed volume in mm^3, as for a soup: the same bits as for the soup from which the mesh was
-/// welded.
+/// Returns the signed volume in mm^3: the same bits as for the soup from which the mesh was welded.
 [[nodiscard]] double volume(const IndexedMesh& mesh, const Execution& execution = {});
 
 /// Returns the mapped mesh. If the map mirrors, triangles are flipped so that they stay counter-clockwise

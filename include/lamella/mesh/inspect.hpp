@@ -25,8 +25,7 @@ struct Inspection {
     std::uint64_t boundary_edges = 0;
     /// Edges with more than two triangles.
     std::uint64_t nonmanifold_edges = 0;
-    /// Edges through which triangles run more often in one direction than in the other; without boundary
-    /// edges.
+    /// Edges that triangles use more often in one direction than in the other; without boundary edges.
     std::uint64_t orientation_conflicts = 0;
     /// Triangles beyond the first with the same three vertices, in either orientation.
     std::uint64_t duplicate_triangles = 0;
@@ -100,9 +99,8 @@ inline bool Inspection::sound() const noexcept {
 }
 
 /// Counts the defects of a mesh. Degenerate triangles (equal corners) are counted and otherwise ignored, as
-/// in slicing. Expected O(n) if few triangles lie above or below each shell; n nested shells take O(n^2)
-/// time, but no more memory than others. Runs in parallel where it pays; the result is the same for any
-/// number of threads.
+/// in slicing. Expected O(n) if few triangles lie above or below each shell; O(n^2) time for n nested shells,
+/// but no more memory. Parallel where it pays; the result is the same for any number of threads.
 [[nodiscard]] Inspection inspect(const IndexedMesh& mesh, const Execution& execution = {});
 
 } // namespace lamella

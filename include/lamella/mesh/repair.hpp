@@ -1,8 +1,7 @@
 #pragma once
 
 // Repairs for meshes that are not sound. Nothing in this library applies them by itself: the caller chooses,
-// and the result reports the changes. Each function takes a mesh and returns another; apply them in the order
-// of this header.
+// and the result reports the changes. Apply them in the order of this header.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -52,9 +51,9 @@ struct DroppedDuplicates {
 
 /// Drops triangles that have the same three vertices as others. Among those, triangles of opposite
 /// orientation cancel in pairs, since nothing lies between the two; of the rest the first is kept. So a body
-/// stored twice remains once, a wall between two touching bodies vanishes, and a body stored together with
-/// its inside-out copy vanishes completely. Triangles keep their order; vertices that become unused are
-/// dropped. Expected O(n).
+/// stored twice remains once, a wall between two touching bodies vanishes, and so does a body stored together
+/// with its inside-out copy. Triangles keep their order; vertices that become unused are dropped. Expected
+/// O(n).
 [[nodiscard]] DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& execution = {});
 
 struct OrientedMesh {

@@ -46,8 +46,8 @@ struct Transform {
 [[nodiscard]] Transform rotation(char axis, double degrees);
 
 /// Returns the rotation from `direction` (any length, not zero) to +z: slicing the mapped mesh is slicing
-/// along `direction`. Coordinate axes give exact maps. Throws Error{usage} for a zero or non-finite
-/// direction.
+/// along `direction`. Coordinate axes give exact maps. Throws Error{usage} unless the length is finite and
+/// not 0.
 [[nodiscard]] Transform upright(const Point3& direction);
 
 } // namespace lamella

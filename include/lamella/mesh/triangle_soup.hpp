@@ -69,8 +69,7 @@ class TriangleSoup {
         return t;
     }
 
-    /// Returns triangle i with the placement applied, counter-clockwise seen from outside even if the
-    /// placement mirrors.
+    /// Returns triangle i with the placement applied, still counter-clockwise if the placement mirrors.
     [[nodiscard]] Triangle3 placed(std::size_t i) const noexcept {
         const Triangle3f t = stored(i);
         const auto corner = [&](std::size_t k) {
@@ -121,9 +120,8 @@ class TriangleSoup {
 /// for a binary STL file without a placement, because reading computes its box.
 [[nodiscard]] Box3 bounding_box(const TriangleSoup& soup, const Execution& execution = {});
 
-/// Returns the signed volume in mm^3: positive if the soup is closed and counter-clockwise seen from outside
-/// (divergence theorem), meaningless if it is not closed. O(n), parallel; the same bits for any number of
-/// threads.
+/// Returns the signed volume in mm^3: positive if the soup is closed and counter-clockwise seen from outside,
+/// meaningless if it is not closed. O(n), parallel; the same bits for any number of threads.
 [[nodiscard]] double volume(const TriangleSoup& soup, const Execution& execution = {});
 
 } // namespace lamella

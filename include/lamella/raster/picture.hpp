@@ -33,9 +33,8 @@ struct RasterOptions {
     /// is divided into this number of strips. Each strip is evaluated along its middle; its error is less
     /// than its own area, and only occurs where contours begin, end, bend or cross within it.
     ///
-    /// 1 disables anti-aliasing: the centre of a pixel decides whether it is covered. A centre on a contour
-    /// counts if the material lies to its right or, on a horizontal line, below it: adjacent bodies share no
-    /// pixel.
+    /// 1 disables anti-aliasing: the centre of a pixel decides. A centre on a contour counts if the material
+    /// lies to its right or, on a horizontal line, below it, so that adjacent bodies share no pixel.
     unsigned antialias = 8;
     /// States that the winding number is 0 or 1 everywhere, as `winds_once` of polygon determines. Then
     /// coverage is a sum over the edges in any order: exact, and several times as fast if contours are finer
@@ -59,9 +58,8 @@ struct PixelRun {
 using RowSink = std::function<void(std::span<const PixelRun> row, std::uint32_t times)>;
 
 /// Rasterises the closed rings of all parts at one height, row by row. Area covered by several parts counts
-/// once. Open chains have no area and are ignored; everything outside the image is clipped. Returns the
-/// covered area in pixels before rounding to values. Throws Error{usage} for a grid or options that define no
-/// image.
+/// once. Open chains are ignored; everything outside the image is clipped. Returns the covered area in pixels
+/// before rounding to values. Throws Error{usage} for a grid or options that define no image.
 ///
 /// O(p + c log c + r) for p points, r rows and c crossings of contours with rows (or with strips of rows),
 /// with memory for the points and one row. With `winds_once` O(p + c + r), with memory for a few rows.
