@@ -186,8 +186,8 @@ class KeyPartitions {
     unsigned bits_;
     std::uint32_t size_ = 0;
     PageArray<Record> records_;       // the records of each chunk, ordered by partition
-    PageArray<std::uint32_t> counts_; // per block
-    PageArray<std::uint16_t> begins_; // per block and partition
+    PageArray<std::uint32_t> counts_; // per chunk
+    PageArray<std::uint16_t> begins_; // per chunk and partition
 };
 
 /// Does the same for keys in memory: calls found(first, other, worker) as KeyPartitions::join does. The id of

@@ -164,11 +164,11 @@ void add_up(std::vector<Balance>& balances) {
     balances.resize(kept);
 }
 
-/// States how many times more often a patch uses an edge upwards than downwards.
+/// A patch that uses an edge more often in one direction than in the other.
 struct UnevenUse {
     VertexPair edge;
     std::uint32_t patch; ///< or the first patch of a group
-    int balance;         ///< not 0
+    int balance;         ///< uses upwards minus uses downwards, not 0
 };
 
 /// Returns the uneven uses in ascending order; without non-orientable patches.

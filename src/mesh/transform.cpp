@@ -119,8 +119,8 @@ Transform upright(const Point3& direction) {
             out.linear = {{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
         return out;
     }
-    // The shortest rotation, about the horizontal axis perpendicular to `direction`. x^2 / (1 + z) in Rodrigues'
-    // formula is computed as c^2 (1 - z), which loses nothing if `direction` points almost straight down.
+    // The shortest rotation, about the horizontal axis perpendicular to `direction`. In Rodrigues' formula,
+    // x^2 / (1 + z) is written c^2 (1 - z), which loses nothing if `direction` points almost straight down.
     const double c = x / radius;
     const double s = y / radius;
     const double lean = z > 0 ? radius * radius / (1 + z) : 1 - z;

@@ -6,7 +6,7 @@
 
 namespace lamella {
 
-// A row consists of places where a single edge passes from its upper to its lower border, and of knots:
+// A row consists of parts where a single edge passes from its upper to its lower border, and of knots:
 // groups of edges side by side, with corners, crossings, or the upper and lower ends of contours. Between
 // these nothing begins or ends at any height of the row, so the winding number there is constant and each can
 // be drawn by itself. A knot is divided into strips at its corners and crossings. Within a strip the order of
