@@ -1,6 +1,6 @@
 #pragma once
 
-// NumPy arrays that show memory of the library.
+// NumPy arrays that refer to memory of the library.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -10,8 +10,8 @@
 
 namespace lamella::python {
 
-/// Numbers that lie one after the other, row by row, as an array of this shape, without a copy. The array
-/// keeps `owner`, whose memory it is, alive, and cannot be written to.
+/// Returns contiguous numbers, row by row, as an array of this shape, without a copy. The array keeps
+/// `owner`, which owns the memory, alive, and is read-only.
 template <class T>
 [[nodiscard]] pybind11::array_t<T> view(const T* first, std::vector<pybind11::ssize_t> shape,
                                         const pybind11::handle& owner) {
@@ -20,7 +20,7 @@ template <class T>
     return array;
 }
 
-/// An array of its own, with a value for each element of the range.
+/// Returns a new array with a value for each element of the range.
 template <class T, class Range, class Value>
 [[nodiscard]] pybind11::array_t<T> array_of(const Range& range, const Value& value) {
     pybind11::array_t<T> array(static_cast<pybind11::ssize_t>(std::size(range)));

@@ -33,7 +33,7 @@ const char* class_name(ErrorKind kind) {
     return "InternalError";
 }
 
-/// Texts name paths, and paths are bytes: what is no UTF-8 is escaped, as the program does it.
+/// Texts contain paths, which are bytes: those that are not UTF-8 are escaped, as in the program.
 void raise(ErrorKind kind, const char* text) {
     const py::object type = py::module_::import("lamella._errors").attr(class_name(kind));
     PyErr_SetObject(type.ptr(), py::str(printable(text)).ptr());
@@ -50,8 +50,8 @@ void register_errors() {
         } catch (const Error& error) {
             raise(error.kind(), error.what());
         } catch (const py::error_already_set&) {
-            throw;                        // Python's own
-        } catch (const py::cast_error&) { // see made.hpp; of pointers pybind11 looks itself
+            throw;                        // an exception of Python
+        } catch (const py::cast_error&) { // see made.hpp; pybind11 checks pointers itself
             PyErr_SetString(PyExc_TypeError,
                             "an object cannot be used: perhaps its __init__ has not been called");
         } catch (const py::builtin_exception&) {

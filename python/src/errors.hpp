@@ -2,9 +2,9 @@
 
 namespace lamella::python {
 
-/// Makes every exception of C++ that leaves this module one of the package: of a lamella::Error the class of
-/// lamella._errors that belongs to its kind, with the same text; a LimitError where memory ran out; an
-/// InternalError of anything else.
+/// Converts every C++ exception that leaves this module to one of the package: a lamella::Error to the class
+/// of lamella._errors for its kind, with the same text; std::bad_alloc to a LimitError; anything else to an
+/// InternalError.
 void register_errors();
 
 } // namespace lamella::python

@@ -57,7 +57,7 @@ StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layer
     return stack;
 }
 
-/// With a stack of each part where there are several.
+/// Returns the stack of the file, with a stack of each part if there are several.
 StackPointer stack_of(LayerFile file) {
     const bool several = file.parts.size() > 1;
     const StackPointer together = several ? stack_of(file, {}, file.merged()) : nullptr;
@@ -73,7 +73,7 @@ StackPointer stack_of(LayerFile file) {
     return together;
 }
 
-/// The layers of the file, and its warnings.
+/// Returns the layers of the file, and its warnings.
 std::pair<StackPointer, py::list> read_stack(const std::string& path, std::uint64_t max_memory,
                                              unsigned threads, const py::object& progress) {
     std::vector<std::string> warnings;
@@ -85,7 +85,7 @@ std::pair<StackPointer, py::list> read_stack(const std::string& path, std::uint6
     return {read, message_texts(warnings)};
 }
 
-/// The mesh or the layers of the file, and its warnings.
+/// Returns the mesh or the layers of the file, and its warnings.
 std::pair<std::variant<MeshPointer, StackPointer>, py::list>
 read_either(const std::string& path, std::optional<double> unit_mm, bool strict, const std::string& include,
             std::uint64_t max_triangles, std::uint64_t max_memory, unsigned threads,
@@ -106,14 +106,14 @@ read_either(const std::string& path, std::optional<double> unit_mm, bool strict,
     return {read, message_texts(warnings)};
 }
 
-/// A slice file under construction. Closed or dropped before `finish`, it leaves nothing behind.
+/// A slice file under construction. If it is closed or destroyed before `finish`, it leaves nothing behind.
 class StackWriter {
   public:
     StackWriter(const std::string& path, const std::string& format, const LayerFileInfo& info,
                 const LayerWriteOptions& options)
         : writer_(open_layer_writer(path, layer_format(format, path), info, options)) {}
 
-    /// The layers of each part, plane by plane.
+    /// Writes the layers of each part, plane by plane.
     void write(const std::vector<std::vector<LayerPointer>>& planes, unsigned threads) {
         const auto parts_of = [&](std::size_t i) {
             std::vector<Layer> layers;
@@ -149,7 +149,7 @@ class StackWriter {
     std::unique_ptr<LayerWriter> writer_;
 };
 
-/// An option by its keyword, where it is given.
+/// Returns an option by its keyword, if it is given.
 template <class T>
 std::optional<T> option(const py::dict& given, const char* keyword) {
     return given.contains(keyword) ? std::optional(given[keyword].cast<T>()) : std::nullopt;
@@ -185,7 +185,7 @@ LayerWriteOptions write_options(const py::dict& given) {
     return options;
 }
 
-/// The formats that take something of LayerWriteOptions, by the name of that in LayerFormat.
+/// Returns the formats that take an option of LayerWriteOptions, by its name in LayerFormat.
 std::vector<std::string> formats_with(const std::string& name) {
     const auto takes = name == "units"        ? &LayerFormat::units
                        : name == "short_form" ? &LayerFormat::short_form
@@ -198,7 +198,7 @@ std::vector<std::string> formats_with(const std::string& name) {
     return found;
 }
 
-/// Of each part the label, the bounds, what its vectors are where it has such, and whether it is a support.
+/// Label and bounds of each part, the exposure of its vectors if it has any, and whether it is a support.
 using PartHeads = std::vector<std::tuple<std::string, Bounds, std::optional<Exposure>, bool>>;
 
 std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::string& format,
@@ -273,7 +273,7 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
     return fields;
 }
 
-/// What is found, and the warnings of the file.
+/// Returns the findings, and the warnings of the file.
 std::pair<py::dict, py::list> vectors_verified(const std::string& path, const MeshPointer& mesh,
                                                const std::optional<ScanStrategy>& strategy,
                                                const std::string& at, double snap_mm, double tolerance,
@@ -321,8 +321,8 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
     return {fields, message_texts(warnings)};
 }
 
-/// The tolerance; of each plane the numbers of its layers in the stacks, or None, same, agree, distance and
-/// where that begins; and whether the stacks are cut apart.
+/// Returns the tolerance; for each plane the indices of its layers in the stacks, or None, same, agree,
+/// distance and its location; and whether the stacks are cut at different heights.
 py::tuple compared(const Stack& first, const Stack& second, std::optional<double> tolerance, unsigned threads,
                    const py::object& progress) {
     const StackComparison found = result_of(threads, progress, [&](const Execution& execution) {

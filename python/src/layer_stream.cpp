@@ -15,7 +15,7 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-// Enough for the threads not to wait for each other, little enough not to be felt: 16 MB.
+// Enough for the threads not to wait for each other, and little memory: 16 MB.
 constexpr std::size_t most_points = (std::size_t{16} << 20) / sizeof(Point2);
 
 } // namespace
@@ -98,7 +98,7 @@ LayerStream::LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, uns
     });
 }
 
-// To join a worker that nobody else has does not fail.
+// Joining a worker that no other thread owns does not fail.
 LayerStream::~LayerStream() { // NOLINT(bugprone-exception-escape)
     close();
 }
@@ -111,7 +111,7 @@ LayerPointer LayerStream::next() {
                 const Unlocked released;
                 found = queue_.take(layer);
             }
-            // A copy, since whoever is called may close the stream, which forgets its listener.
+            // A copy, since the listener may close the stream, which releases its listener.
             tell(progress_, py::object(listener_));
             check_signals();
             if (found == LayerQueue::Found::end)
@@ -122,11 +122,11 @@ LayerPointer LayerStream::next() {
             }
         }
     } catch (
-        const py::error_already_set&) { // of the listener, which may have closed it, too, or an interrupt
+        const py::error_already_set&) { // of the listener, which may have closed the stream, or an interrupt
         close();
         throw;
     } catch (...) {
-        if (closed_) // by another thread, meanwhile
+        if (closed_) // by another thread in the meantime
             throw py::stop_iteration();
         close();
         throw;
@@ -136,7 +136,7 @@ LayerPointer LayerStream::next() {
 
 void LayerStream::close() {
     closed_ = true;
-    // Of several threads that close it, one gets the worker.
+    // If several threads close it, one gets the worker.
     std::thread worker = std::move(worker_);
     {
         const Unlocked released;
@@ -161,7 +161,7 @@ LayerStream::Beside LayerStream::beside(std::uint64_t below, std::uint64_t above
     const std::uint64_t last = plan().layers.back().index;
     const std::uint64_t lowest = first - std::min(first, below);
     return result_of(threads_, py::none(), [&](const Execution& execution) {
-        // With those that were taken: what is left may miss the part, and a plan must not.
+        // Includes layers already taken: the remaining ones may miss the part, and a plan must not.
         const Plan wider =
             cuts_.only(std::min(lowest, plan().layers.front().index), last + 1 + above, *mesh_, execution);
         const auto sliced = [&](const auto& wanted) {

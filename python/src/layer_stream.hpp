@@ -24,20 +24,20 @@
 
 namespace lamella::python {
 
-/// Layers on their way from the threads that make them to the one that wants them: a bounded number of them.
+/// A bounded queue of layers between the threads that make them and the one that takes them.
 class LayerQueue {
   public:
-    /// Waits for room. Throws Error{cancelled} once the queue is closed.
+    /// Adds a layer, and waits until there is space for it. Throws Error{cancelled} once the queue is closed.
     void put(Layer&& layer);
-    /// No more will come; `failure` says why, where it is no good reason.
+    /// Marks the end of the layers; `failure` is the reason if it is an error.
     void end(std::exception_ptr failure);
 
-    /// Nobody wants any more of them.
+    /// Closes the queue: no more layers will be taken.
     void close();
     [[nodiscard]] const CancelFlag& closed() const noexcept { return closed_; }
 
     enum class Found { layer, nothing_yet, end };
-    /// Waits for a moment. At the end throws the failure, where there was one.
+    /// Takes a layer, and waits a moment for it. At the end throws the failure if there was one.
     Found take(Layer& layer);
 
   private:
@@ -45,23 +45,23 @@ class LayerQueue {
     std::condition_variable room_;
     std::condition_variable news_;
     std::deque<Layer> waiting_;
-    std::size_t points_ = 0; ///< in those that wait
+    std::size_t points_ = 0; ///< points of the waiting layers
     CancelFlag closed_;
     bool ended_ = false;
     std::exception_ptr failure_;
 };
 
-/// A plan, and how it was made.
+/// A plan, and the layering that it was made with.
 struct CutPlan {
     Plan plan;
     Layering layering;
 
-    /// The same with these layers, as far as there are such.
+    /// Returns the same plan restricted to these layers, as far as they exist.
     [[nodiscard]] Plan only(std::uint64_t begin, std::uint64_t end, const SourceMesh& mesh,
                             const Execution& execution) const;
 };
 
-/// Slices while somebody takes the layers, one by one and in ascending z.
+/// Slices while the caller takes the layers, one by one and in ascending z.
 class LayerStream {
   public:
     LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, unsigned threads,
@@ -70,24 +70,25 @@ class LayerStream {
     LayerStream& operator=(const LayerStream&) = delete;
     ~LayerStream(); // NOLINT(bugprone-exception-escape): see there
 
-    /// Throws pybind11::stop_iteration after the last one and once the stream is closed.
+    /// Returns the next layer. Throws pybind11::stop_iteration after the last one and once the stream is
+    /// closed.
     LayerPointer next();
     /// Stops slicing, and waits until it has stopped.
     void close();
 
     [[nodiscard]] const SourceMesh& mesh() const noexcept { return *mesh_; }
     [[nodiscard]] const Plan& plan() const noexcept { return cuts_.plan; }
-    /// How many layers are to come.
+    /// Returns the number of remaining layers.
     [[nodiscard]] std::size_t left() const noexcept { return closed_ ? 0 : plan().layers.size() - taken_; }
-    /// Where the next one begins. Throws Error{usage} where none is left.
+    /// Returns the bottom of the next layer. Throws Error{usage} if none is left.
     [[nodiscard]] double bottom() const;
 
-    /// So many layers right below the next one, and right above the last one, which the stream does not give:
-    /// in ascending z, fewer where the part ends.
+    /// Returns this many layers directly below the next one, and directly above the last one, neither of
+    /// which the stream yields: in ascending z, fewer at the ends of the part.
     using Beside = std::pair<std::vector<LayerPointer>, std::vector<LayerPointer>>;
     [[nodiscard]] Beside beside(std::uint64_t below, std::uint64_t above) const;
 
-    /// Who hears of progress; None once the stream is closed or at its end.
+    /// Returns the listener for progress; None once the stream is closed or at its end.
     [[nodiscard]] const pybind11::object& listener() const noexcept { return listener_; }
     void forget_listener() { listener_ = pybind11::none(); }
 
@@ -104,7 +105,7 @@ class LayerStream {
     std::thread worker_;
 };
 
-/// The layers of the plan, each with points of its own.
+/// Returns the layers of the plan, each with its own points.
 [[nodiscard]] std::vector<LayerPointer> sliced(const Mesh& mesh, const Plan& plan, const Execution& execution,
                                                const Engine& engine);
 

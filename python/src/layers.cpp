@@ -37,7 +37,7 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-// What is no such number already, and would lose something, is none.
+// Arguments of other types are rejected if their conversion would lose information.
 using Doubles = py::array_t<double, py::array::c_style>;
 using Numbers = py::array_t<std::int64_t, py::array::c_style>;
 
@@ -53,7 +53,7 @@ py::array_t<double> view_of(std::span<const Point2> points, const py::object& ow
 }
 
 py::array_t<std::int64_t> offsets_of(const py::object& self) {
-    // Signed, since NumPy makes floating point of sums of signed and unsigned numbers.
+    // Signed, since in NumPy sums of signed and unsigned numbers are floating-point.
     const std::vector<std::uint64_t>& offsets = layer_of(self).offsets;
     const auto* first = reinterpret_cast<const std::int64_t*>(offsets.data());
     return view(first, {static_cast<py::ssize_t>(offsets.size())}, self);
@@ -75,7 +75,7 @@ std::string hash_text(const SharedLayer& layer) {
     return text.data();
 }
 
-/// Which of `size` things an index means; negative ones count from the end.
+/// Returns the position that an index denotes among `size` items; negative ones count from the end.
 std::size_t place_in(const py::object& index, std::size_t size, const char* what) {
     if (PyIndex_Check(index.ptr()) == 0)
         throw py::type_error(std::string("the number of a ") + what + ": expected a whole number, found " +
@@ -95,7 +95,7 @@ py::array_t<double> contour_of(const py::object& self, const py::object& index) 
     return view_of(layer.contour(place_in(index, layer.contours(), "contour")), self);
 }
 
-/// Pairs of a ring and its holes, by number.
+/// Returns pairs of a ring and its holes, by index.
 std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> polygons_of(const LayerPointer& layer) {
     return result_of_points(layer->get().points.size(), [layer](const Execution& /*execution*/) {
         std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> found;
@@ -105,7 +105,7 @@ std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> polygons_of(co
     });
 }
 
-/// Everything but the arrays; what layers are made from and pickled as.
+/// The fields of a layer except the arrays, for construction and pickling.
 struct LayerHead {
     std::uint64_t index = 0;
     double z = 0;
@@ -151,12 +151,12 @@ LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const
     layer.rings = rings;
     if (rings > layer.contours())
         throw Error(ErrorKind::input, "there are more closed contours than contours");
-    // As it was: the order of scan vectors counts.
+    // Not normalised: the order of scan vectors is significant.
     return std::make_shared<SharedLayer>(std::move(layer), rule);
 }
 
-/// Without what docs/conventions.md drops from contours: points equal to the one before them, contours with
-/// too few points left.
+/// Adds a contour without what docs/conventions.md drops: points equal to the one before them, and contours
+/// with too few remaining points.
 void add_contour(const PointArray& points, bool closed, LayerBuilder& builder) {
     std::vector<Point2> kept;
     std::unique_copy(points.begin(), points.end(), std::back_inserter(kept));
@@ -166,7 +166,7 @@ void add_contour(const PointArray& points, bool closed, LayerBuilder& builder) {
         builder.add_contour(kept, closed);
 }
 
-/// Contours in any order.
+/// Makes a layer of contours in any order.
 LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z, double bottom, double top,
                                std::uint64_t index, const std::vector<Doubles>& chains) {
     const Unlocked released;
@@ -177,7 +177,7 @@ LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z, doub
     return std::make_shared<SharedLayer>(builder.finish(index, z, bottom, top));
 }
 
-/// By its name, which is one of the three.
+/// Returns the rule of this name, which is one of the three.
 FillRule fill_rule(const std::string& name) {
     for (const FillRule rule : {FillRule::nonzero, FillRule::evenodd})
         if (fill_rule_name(rule) == name)
@@ -185,7 +185,7 @@ FillRule fill_rule(const std::string& name) {
     return FillRule::positive;
 }
 
-/// By its name, which is one of the three.
+/// Returns the corner of this name, which is one of the three.
 OffsetCorner offset_corner(const std::string& name) {
     for (const OffsetCorner corner : {OffsetCorner::bevel, OffsetCorner::round})
         if (offset_corner_name(corner) == name)
@@ -209,7 +209,7 @@ std::string layer_text(const SharedLayer& layer) {
     return text.data();
 }
 
-/// The layer after steps, each of which leaves it alone unless it is asked for.
+/// Returns the layer after the steps that are set.
 LayerPointer after(const LayerPointer& layer, const LayerSteps& steps) {
     return result_of_points(layer->get().points.size(), [layer, steps](const Execution& /*execution*/) {
         LayerChanges changes;
@@ -217,7 +217,7 @@ LayerPointer after(const LayerPointer& layer, const LayerSteps& steps) {
     });
 }
 
-/// What the operation makes of a layer and another one.
+/// Returns the result of the operation for a layer and another one.
 template <BooleanOperation operation>
 LayerPointer combined(const LayerPointer& layer, const LayerPointer& other) {
     const std::size_t points = layer->get().points.size() + other->get().points.size();
@@ -267,7 +267,7 @@ StackPointer part_of(const Stack& stack, const py::slice& range) {
     return part;
 }
 
-/// One number for each layer.
+/// Returns a function that computes one number for each layer.
 template <class T, class Value>
 auto numbers_of(const Value& value) {
     return [value](const Stack& stack) {
@@ -275,7 +275,7 @@ auto numbers_of(const Value& value) {
     };
 }
 
-/// The same where it takes work to know it.
+/// Does the same for numbers that are expensive to compute.
 template <class T, class Value>
 auto measures_of(const Value& value) {
     return [value](const Stack& stack) {
@@ -367,7 +367,7 @@ py::tuple pickled(const Stack& stack) {
                           stack.exposure, stack.support, stack.of_mesh, stack.planned);
 }
 
-/// None of them None, which pybind11 takes for a pointer.
+/// Converts a list; throws for None, which pybind11 takes for a null pointer.
 template <class Pointer>
 std::vector<Pointer> pointers_of(const py::object& list) {
     auto pointers = list.cast<std::vector<Pointer>>();
@@ -398,7 +398,7 @@ StackPointer unpickled(const py::tuple& state) {
     return stack;
 }
 
-/// Goes by __getitem__ and the error that ends it.
+/// Returns an iterator that uses __getitem__ and the error that ends it.
 py::object each_of(const py::object& sequence) {
     return py::reinterpret_steal<py::object>(PySeqIter_New(sequence.ptr()));
 }
@@ -579,7 +579,7 @@ void bind_stack(py::module_& module) {
         .def_property_readonly(
             "support", [](const Stack& self) { return self.support; },
             "Whether that file marks the part as a support.")
-        // Of nothing it is empty, from inf to -inf, where `bounds` has the origin.
+        // If there are no layers it is empty, from inf to -inf, while `bounds` is the origin.
         .def_property_readonly("_box", [](const Stack& self) { return bounds_of(self.box); })
         .def_property_readonly("_planned", [](const Stack& self) { return self.planned; })
         .def_property_readonly(
@@ -623,7 +623,7 @@ py::str path_text(const std::string& path) {
 py::list message_texts(const std::vector<std::string>& texts) {
     py::list list;
     for (const std::string& text : texts)
-        list.append(printable(text)); // as the program shows them
+        list.append(printable(text)); // as in the program
     return list;
 }
 

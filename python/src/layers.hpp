@@ -9,12 +9,12 @@
 
 namespace lamella::python {
 
-/// A path, or a text that may name one, as Python has it: bytes that are no UTF-8 are kept.
+/// Returns a path, or a text that may contain one, as a Python string: bytes that are not UTF-8 are kept.
 [[nodiscard]] pybind11::str path_text(const std::string& path);
-/// Warnings as the program shows them (see printable).
+/// Returns warnings as the program prints them (see printable).
 [[nodiscard]] pybind11::list message_texts(const std::vector<std::string>& texts);
 
-/// The classes Layer and Stack.
+/// Binds the classes Layer and Stack.
 void bind_layers(pybind11::module_& module);
 
 } // namespace lamella::python

@@ -1,7 +1,7 @@
 #pragma once
 
-// Objects that are not made yet: a derived class may use itself before it calls __init__ of its base, and
-// __new__ does not call it at all. pybind11 would give functions memory that nothing was ever put into.
+// Objects that are not yet constructed: a derived class may use itself before it calls __init__ of its base,
+// and __new__ does not call it at all. pybind11 would pass uninitialised memory to functions.
 
 #include "lamella/contour/exposure.hpp"
 #include "lamella/scan/strategy.hpp"

@@ -1,4 +1,4 @@
-// The extension lamella._lamella. What users call is in the package around it; see __init__.py there.
+// The extension lamella._lamella. The public functions are in the package around it; see __init__.py there.
 
 #include "lamella/core/version.hpp"
 
@@ -14,7 +14,7 @@
 namespace py = pybind11;
 
 PYBIND11_MODULE(_lamella, module) {
-    // The stubs have the signatures, in the words of Python.
+    // The stubs contain the signatures, with Python's types.
     py::options options;
     options.disable_function_signatures();
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Classes whose objects travel between processes.
+// Pickling of classes.
 
 #include "lamella/core/error.hpp"
 
@@ -12,8 +12,9 @@
 
 namespace lamella::python {
 
-/// For classes of users: without a `__new__` of their own, pickle protocols before 2 and `__reduce__` make an
-/// object of pybind11's base class, which ends the process. With one they raise a TypeError.
+/// Returns a setup for public classes: without a `__new__` of their own, pickle protocols before 2 and
+/// `__reduce__` make an object of pybind11's base class, which ends the process. With one they raise a
+/// TypeError.
 inline pybind11::custom_type_setup own_new() {
     return pybind11::custom_type_setup([](PyHeapTypeObject* heap_type) {
         heap_type->ht_type.tp_new = [](PyTypeObject* type, PyObject* /*arguments*/, PyObject* /*named*/) {
@@ -22,16 +23,16 @@ inline pybind11::custom_type_setup own_new() {
     });
 }
 
-/// Has objects pickled and copied as a tuple of `size` things: `get(object)` gives it, `set(tuple)` makes an
-/// object of it and looks at what it finds there, since it may come from anywhere.
+/// Makes objects picklable and copyable as a tuple of `size` items. `get(object)` returns the tuple.
+/// `set(tuple)` makes an object of it and checks its content, since it may come from anywhere.
 template <class Class, class Get, class Set>
 void bind_pickle(Class& cls, const char* what, std::size_t size, const Get& get, const Set& set) {
     const auto checked = [=](const pybind11::tuple& state) {
         try {
             if (state.size() == size)
                 return set(state);
-        } catch (const pybind11::cast_error&) {              // a thing of another type
-        } catch (const pybind11::error_already_set& error) { // an array of another one
+        } catch (const pybind11::cast_error&) {              // an item of another type
+        } catch (const pybind11::error_already_set& error) { // an array of another type
             if (!error.matches(PyExc_TypeError))
                 throw;
         }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Boxes and maps as Python sees them: arrays of numbers.
+// Boxes and transforms as Python objects: arrays of numbers.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/transform.hpp"
@@ -19,7 +19,7 @@ using Matrix = std::array<std::array<double, 4>, 4>; ///< by rows; acts on colum
 [[nodiscard]] bool finite(const Box3& box) noexcept;
 
 [[nodiscard]] pybind11::array_t<double> matrix_of(const Transform& map);
-/// Throws Error{usage} where the last row is not 0, 0, 0, 1.
+/// Returns the transform. Throws Error{usage} if the last row is not 0, 0, 0, 1.
 [[nodiscard]] Transform transform_of(const Matrix& rows);
 
 } // namespace lamella::python

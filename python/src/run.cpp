@@ -12,7 +12,7 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-/// Says when the work is done.
+/// Signals the end of the work.
 class Bell {
   public:
     void ring() {
@@ -21,7 +21,7 @@ class Bell {
         changed_.notify_one();
     }
 
-    /// Waits for a moment. True when the work is done.
+    /// Waits for a moment. Returns true if the work is done.
     bool wait() {
         const Unlocked released;
         std::unique_lock lock(mutex_);
@@ -34,7 +34,7 @@ class Bell {
     bool rung_ = false;
 };
 
-/// Others go on meanwhile: the end of what the thread did may take a while, as to free gigabytes does.
+/// Joins without the interpreter lock: the end of the thread may take a while, for example to free gigabytes.
 void join(std::thread& worker) {
     const Unlocked released;
     worker.join();

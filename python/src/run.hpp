@@ -1,6 +1,7 @@
 #pragma once
 
-// Long work, called from Python: without the global interpreter lock, with progress, and Ctrl-C heard.
+// Long work called from Python: without the global interpreter lock, with progress, and interruptible by
+// Ctrl-C.
 
 #include "lamella/core/execution.hpp"
 
@@ -20,8 +21,8 @@
 
 namespace lamella::python {
 
-/// What threads of the library have to tell, kept until the thread of the caller comes by: it alone calls
-/// into Python. Of one stage only the latest progress is kept, so that a slow listener holds nobody up.
+/// Progress reports of the library's threads, kept until the calling thread collects them: only that thread
+/// calls into Python. Only the latest progress of a stage is kept, so that a slow listener delays nothing.
 class ProgressBox {
   public:
     void put(const Progress& progress);
@@ -32,23 +33,23 @@ class ProgressBox {
     std::vector<Progress> waiting_;
 };
 
-/// Calls `listener(stage, done, total)` for everything in the box. None is no listener.
+/// Calls `listener(stage, done, total)` for all reports in the box. None is no listener.
 void tell(ProgressBox& box, const pybind11::object& listener);
 
-/// How long a thread of Python waits before it looks for signals again.
+/// Interval at which a waiting thread of Python checks for signals.
 inline constexpr std::chrono::milliseconds between_signals{50};
 
-/// Throws what a signal handler of Python raised, such as KeyboardInterrupt. Only Python's main thread has
-/// such handlers; elsewhere this does nothing.
+/// Throws the exception raised by a signal handler of Python, such as KeyboardInterrupt. Only Python's main
+/// thread has such handlers; elsewhere this does nothing.
 void check_signals();
 
-/// Runs the work on a thread of its own, while the calling thread waits without the interpreter lock, passes
-/// progress on, and hears signals some twenty times a second. Returns or throws what the work does; when the
-/// listener or a signal handler raises, the work is stopped and their exception is thrown.
+/// Runs the work on a new thread, while the calling thread waits without the interpreter lock, reports
+/// progress, and checks for signals some twenty times a second. Returns or throws as the work does. If the
+/// listener or a signal handler raises an exception, the work is stopped and the exception is thrown.
 void run(unsigned threads, const pybind11::object& listener,
          const std::function<void(const Execution&)>& work);
 
-/// The same for work that gives something.
+/// Does the same for work with a result.
 template <class Work>
 [[nodiscard]] auto result_of(unsigned threads, const pybind11::object& listener, const Work& work) {
     std::optional<decltype(work(Execution{}))> result;
@@ -56,12 +57,13 @@ template <class Work>
     return std::move(*result);
 }
 
-/// Runs work that keeps alive whatever it uses. The same, but for one thing: what a signal handler raises is
-/// thrown at once, and work that does not hear the request to stop goes on by itself until its end.
+/// Runs work that keeps alive all that it uses. Works as `run` with one exception: an error raised by a
+/// signal handler is thrown at once, and work that ignores the request to stop continues by itself until its
+/// end.
 void run_alone(const std::function<void(const Execution&)>& work);
 
-/// What work on layers with this many points in all gives. It keeps alive whatever it uses. Few points take
-/// less time than a thread does: the calling thread works on them itself.
+/// Returns the result of work on layers with this many points in total. The work must keep alive all that it
+/// uses. Work on few points takes less time than starting a thread, so the calling thread does it itself.
 template <class Work>
 [[nodiscard]] auto result_of_points(std::size_t points, const Work& work) {
     constexpr std::size_t few = 1000;

@@ -34,7 +34,7 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-/// The value as a check of the package gives it, whose errors name the attribute.
+/// Returns the value converted by a check of the package, whose errors name the attribute.
 template <class Value, class... More>
 Value checked(const char* check, const char* name, const py::object& value, const More&... more) {
     return py::module_::import("lamella._arguments").attr(check)(name, value, more...).template cast<Value>();
@@ -62,7 +62,7 @@ py::object value_of(const Value& value) {
         return py::cast(value);
 }
 
-/// The values that an attribute can have, where there are few.
+/// Returns the values that an enumerated attribute can have.
 template <class Rule, class Value>
 std::string choices_of(Value Rule::* /*member*/) {
     std::string text;
@@ -72,7 +72,7 @@ std::string choices_of(Value Rule::* /*member*/) {
     return text;
 }
 
-/// An attribute that is a rule itself.
+/// Binds an attribute that is itself a rule.
 template <class Rule, class Part>
 void bind_part(py::class_<Rule>& cls, const char* name, Part Rule::*part, const char* about) {
     cls.def_property(
@@ -87,7 +87,7 @@ void bind_part(py::class_<Rule>& cls, const char* name, Part Rule::*part, const 
         about);
 }
 
-/// Attributes by the table of fields.
+/// Binds attributes by the table of fields.
 template <class Rule>
 py::class_<Rule> bind_rule(py::module_& module, const char* name, const char* about,
                            std::span<const StrategyField<Rule>> fields) {
@@ -124,12 +124,12 @@ LayerStack layers_of(const Stack& stack) {
     return layers;
 }
 
-/// Of the file that the layers come from, where they do.
+/// Returns the rounding of the file that the layers come from, if any.
 Rounding rounding_of(const Stack* stack) {
     return stack != nullptr ? stack->rounding : Rounding{};
 }
 
-/// Layers of vectors, and how much of the material none of them reaches, in mm^2.
+/// Layers of vectors, and the area of material that none of them reaches, in mm^2.
 using Scanned = std::pair<std::vector<LayerPointer>, double>;
 
 double sum_of(const std::vector<double>& areas) {

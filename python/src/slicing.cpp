@@ -36,7 +36,7 @@ namespace {
 using ZRange = std::optional<std::pair<double, double>>;
 using IndexRange = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
 
-/// What slice_file would cut, by the layering of a job.
+/// Returns the plan that slice_file would use for the layering of a job.
 CutPlan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at, const ZRange& z_range,
                  const IndexRange& layers, double snap_mm, unsigned threads, const py::object& progress) {
     FileJob job;
@@ -49,7 +49,8 @@ CutPlan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at,
     return {std::move(plan), std::move(job.layering)};
 }
 
-/// How many layers the whole plan has: up to one more than these, which tells whether there are any above.
+/// Returns the number of layers of the whole plan, but at most one more than the end of these: enough to know
+/// whether there are any above.
 std::uint64_t planned(const CutPlan& cuts, const SourceMesh& mesh, const Execution& execution) {
     const std::uint64_t end = cuts.plan.layers.back().index + 1;
     const PlaneSelection& only = cuts.layering.only;
@@ -77,7 +78,7 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const CutPlan& cuts,
     return stack;
 }
 
-/// What the layers tell about the mesh.
+/// Returns the defects of the mesh that its layers reveal.
 std::vector<std::string> doubts_of(const Stack& stack) {
     const Unlocked released;
     MeshDoubts doubts{.layers = stack.layers.size()};
@@ -88,7 +89,7 @@ std::vector<std::string> doubts_of(const Stack& stack) {
     return doubts.texts();
 }
 
-/// Where rounding decides what the layers are; "" where it does not.
+/// Returns a warning if rounding decides the content of layers; else "".
 std::string near_faces_of(const MeshPointer& mesh, const CutPlan& cuts, unsigned threads,
                           const py::object& progress) {
     const NearFaceLayers found = result_of(threads, progress, [&](const Execution& execution) {
@@ -97,7 +98,7 @@ std::string near_faces_of(const MeshPointer& mesh, const CutPlan& cuts, unsigned
     return found.text(cuts.plan.layers.size());
 }
 
-/// The ways to cut.
+/// Binds the layerings.
 void bind_cuts(py::module_& module) {
     py::class_<UniformLayers>(module, "UniformLayers")
         .def(py::init([](double layer_height, std::optional<double> first_layer_height) {
@@ -119,7 +120,8 @@ void bind_cuts(py::module_& module) {
         }));
 }
 
-/// Null where it is not made yet. Objects of several bases, which Python can derive, never are.
+/// Returns null if the object is not yet constructed. Objects with several bases, which Python can derive,
+/// never are.
 LayerStream* stream_of(PyObject* self) {
     auto* const instance = reinterpret_cast<py::detail::instance*>(self);
     if (!instance->simple_layout || !instance->simple_holder_constructed)
@@ -127,7 +129,8 @@ LayerStream* stream_of(PyObject* self) {
     return instance->get_value_and_holder().value_ptr<LayerStream>();
 }
 
-/// A listener may hold the stream that holds it: only the garbage collector finds that nobody else does.
+/// A listener may refer to the stream that refers to it: only the garbage collector can find that the cycle
+/// is unreachable.
 void collect_streams(PyHeapTypeObject* heap_type) {
     PyTypeObject& type = heap_type->ht_type;
     type.tp_flags |= Py_TPFLAGS_HAVE_GC;
@@ -142,8 +145,8 @@ void collect_streams(PyHeapTypeObject* heap_type) {
             stream->forget_listener();
         return 0;
     };
-    // Other threads run while the stream stops. Where one collects garbage then, it must not find what is
-    // half taken down; pybind11 2.10 leaves it where it is found.
+    // Other threads run while the stream stops. A garbage collection in one of them must not see a partly
+    // destroyed object; pybind11 2.10 does not untrack it.
     type.tp_dealloc = [](PyObject* self) {
         PyObject_GC_UnTrack(self);
         py::detail::pybind11_object_dealloc(self);

@@ -4,7 +4,7 @@
 
 namespace lamella::python {
 
-/// Plans, slicing into a stack, the class LayerStream, and the engines.
+/// Binds plans, slicing into a stack, the class LayerStream, and the engines.
 void bind_slicing(pybind11::module_& module);
 
 } // namespace lamella::python

@@ -54,8 +54,8 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const Numbers& rows, std:
     return triangles;
 }
 
-/// Vertices that no face has count as none, whatever they are; until they are dropped, the others keep their
-/// numbers.
+/// Resets vertices without a face, so that their values are ignored; the others keep their indices until
+/// these are dropped.
 void forget_unused(IndexedMesh& mesh) {
     std::vector<bool> used(mesh.vertices.size());
     for (const auto& triangle : mesh.triangles)
@@ -66,7 +66,7 @@ void forget_unused(IndexedMesh& mesh) {
             mesh.vertices[i] = {};
 }
 
-/// `vertices` (n, 3) and `faces` (m, 3).
+/// Makes a mesh of `vertices` (n, 3) and `faces` (m, 3).
 MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
     if (vertices.ndim() != 2 || vertices.shape(1) != 3 || faces.ndim() != 2 || faces.shape(1) != 3)
         throw Error(ErrorKind::input, "vertices and faces must be arrays of the shapes (n, 3) and (m, 3)");
@@ -80,7 +80,7 @@ MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
     check(mesh);
     if (mesh.triangles.empty())
         throw Error(ErrorKind::input, "faces: holds no triangle");
-    drop_unused_vertices(mesh); // as files do: bounds are those of the faces
+    drop_unused_vertices(mesh); // as for files: bounds are those of the faces
     MeshOrigin origin;
     origin.stored_triangles = mesh.triangles.size();
     MeshFile file;
@@ -99,7 +99,7 @@ MeshPointer read_source_mesh(const std::string& path, std::optional<double> unit
     });
 }
 
-/// Of all that the map adds up for a point of the box, nothing is beyond what a number can be.
+/// Returns whether no sum that the transform computes for a point of the box overflows.
 bool stays_finite(const Transform& map, const Box3& box) {
     const std::array largest{std::max(std::abs(box.min.x), std::abs(box.max.x)),
                              std::max(std::abs(box.min.y), std::abs(box.max.y)),
@@ -114,7 +114,7 @@ bool stays_finite(const Transform& map, const Box3& box) {
     return true;
 }
 
-/// `argument` is what asked for the map.
+/// Returns the transformed mesh. `argument` is the name of the argument with the transform.
 MeshPointer transformed(const SourceMesh& source, const Transform& map, const char* argument,
                         unsigned threads) {
     MeshOrigin origin = source.origin();

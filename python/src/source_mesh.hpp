@@ -21,35 +21,35 @@
 
 namespace lamella::python {
 
-/// What there is to know of a mesh besides its triangles.
+/// Properties of a mesh besides its triangles.
 struct MeshOrigin {
-    std::string path = {};   ///< empty for a mesh made of arrays
-    std::string format = {}; ///< likewise
-    std::string name = {};   ///< that the file gives
+    std::string path = {};   ///< empty for a mesh made from arrays
+    std::string format = {}; ///< empty for a mesh made from arrays
+    std::string name = {};   ///< given by the file
     std::string label = "part";
     double unit_mm = 1; ///< millimetres per unit of the file
     std::uint64_t stored_triangles = 0;
     std::vector<std::string> warnings = {};
-    Transform matrix = {}; ///< from the coordinates it came with to those it has
+    Transform matrix = {}; ///< from the original coordinates to the present ones
 };
 
-/// What a mesh is before it is placed. All that moves and turns it is put together before it is applied, as
-/// the program does: coordinates are rounded once. One that was pickled begins anew from those that it has.
+/// A mesh before it is placed. All transforms are composed before they are applied, as in the program, so
+/// coordinates are rounded once. An unpickled mesh begins with its coordinates at the time of pickling.
 struct MeshSource {
     std::shared_ptr<const MeshFile> file;
-    std::optional<double> unit_mm = {}; ///< where the file states none
+    std::optional<double> unit_mm = {}; ///< if the file states none
     Transform placement = {};
 
-    /// Throws what load_plate throws.
+    /// Returns the plate. Throws the errors of load_plate.
     [[nodiscard]] Plate plate(const Execution& execution) const;
-    /// Whether there are volumes on it that are subtracted from others.
+    /// Returns whether the plate has negative volumes.
     [[nodiscard]] bool has_negatives() const;
 };
 
-/// A mesh in millimetres that never changes, and where it came from.
+/// An immutable mesh in millimetres, with its origin.
 class SourceMesh {
   public:
-    /// `mesh`: all that is on the plate of the source, as one.
+    /// `mesh` is everything on the plate of the source, as one mesh.
     SourceMesh(MeshSource source, Mesh mesh, MeshOrigin origin, const Execution& execution);
 
     [[nodiscard]] const MeshSource& source() const noexcept { return source_; }
@@ -58,10 +58,11 @@ class SourceMesh {
     [[nodiscard]] const MeshOrigin& origin() const noexcept { return origin_; }
     [[nodiscard]] const Box3& box() const noexcept { return box_; }
 
-    /// Equal vertices joined; done when somebody asks first. To be asked without the interpreter lock.
+    /// Returns the mesh with equal vertices joined; computed on first use. Must be called without the
+    /// interpreter lock.
     [[nodiscard]] const IndexedMesh& welded(const Execution& execution) const;
 
-    /// A plate on which it stands alone.
+    /// Returns a plate with this mesh alone.
     [[nodiscard]] Plate plate() const;
 
   private:
@@ -75,11 +76,11 @@ class SourceMesh {
 
 using MeshPointer = std::shared_ptr<SourceMesh>;
 
-/// All meshes of a file, placed, as one.
+/// Returns all meshes of a file, placed, as one.
 [[nodiscard]] MeshPointer source_mesh(MeshFile file, std::optional<double> unit_mm,
                                       const Execution& execution);
 
-/// The class Mesh, and functions that read and make meshes.
+/// Binds the class Mesh, and functions that read and make meshes.
 void bind_meshes(pybind11::module_& module);
 
 } // namespace lamella::python

@@ -1,6 +1,6 @@
 #pragma once
 
-// Without the interpreter lock, also where the interpreter ends meanwhile.
+// Work without the interpreter lock, safe even if the interpreter ends meanwhile.
 
 #include <pybind11/pybind11.h>
 
@@ -13,9 +13,9 @@
 
 namespace lamella::python {
 
-/// Calls what may have to wait for the interpreter lock. While the interpreter ends, Python before 3.14 ends
-/// the daemon threads that ask for the lock by unwinding their stacks. Destructors do not let that through,
-/// and the process would abort; so the thread waits here for the end of the process, as Python 3.14 has it.
+/// Calls a function that may wait for the interpreter lock. While the interpreter ends, Python before 3.14
+/// ends daemon threads that request the lock by unwinding their stacks. Unwinding through a destructor would
+/// abort the process, so the thread waits here for the end of the process, as in Python 3.14.
 template <class Call>
 void or_wait_for_the_end(const Call& call) {
 #ifdef __GLIBCXX__
@@ -30,7 +30,7 @@ void or_wait_for_the_end(const Call& call) {
 #endif
 }
 
-/// Gives the interpreter lock to others for as long as it lives.
+/// Releases the interpreter lock during its lifetime.
 class Unlocked {
   public:
     Unlocked() : thread_(PyEval_SaveThread()) {}
