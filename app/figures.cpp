@@ -164,6 +164,7 @@ Json near_faces_json(const FileResult& result) {
     return files;
 }
 
+/// Objects and lists of plain values take one line each: a layer, a point, a row of a matrix.
 void append_json(std::string& text, const Json& value, std::size_t depth) {
     if (std::none_of(value.begin(), value.end(), [](const Json& item) { return item.is_structured(); })) {
         text += compact_json(value);

@@ -8,10 +8,10 @@
         print(ring.min(axis=0), ring.max(axis=0))
     lamella.write("part.cli", stack)
 
-Lengths are millimetres, heights are absolute z, and a mesh is whatever holds one: a path, a pair of arrays
-(vertices, faces), a trimesh.Trimesh. Layers show their points as NumPy arrays without a copy. Arguments that are
-wrong are a TypeError or a ValueError, other failures a lamella.Error, all with texts for a person; what is odd but no
-failure is a lamella.DefectWarning.
+Lengths are millimetres, heights are absolute z. A mesh is a path, a pair of arrays (vertices, faces), or an object
+such as a trimesh.Trimesh. Layers show their points as NumPy arrays without a copy. Invalid arguments raise a TypeError
+or a ValueError, other failures a lamella.Error, all with texts for people; defects that are no failure cause a
+lamella.DefectWarning.
 """
 
 from . import _methods

@@ -1,7 +1,7 @@
-"""Looks at arguments before the work begins.
+"""Checks of arguments before the work begins.
 
-A wrong type is a TypeError, a wrong value a UsageError, which is a ValueError. The text names the argument, says what
-was found, and what was expected.
+A wrong type is a TypeError, a wrong value a UsageError, which is a ValueError. The text names the argument, the value
+found, and the expected one.
 """
 
 from __future__ import annotations
@@ -33,13 +33,13 @@ MOST_QUOTED = 200  # characters of a value; the library quotes as many bytes
 
 
 def excerpt(value: object) -> str:
-    """A value as errors quote it."""
+    """Returns a value as errors quote it."""
     text = str(value)
     return text if len(text) <= MOST_QUOTED else f"{text[:MOST_QUOTED]}..."
 
 
 def described(value: object) -> str:
-    """What was found, in a few words."""
+    """Describes a value in a few words."""
     if isinstance(value, np.ndarray):
         return f"{value.shape} of {excerpt(value.dtype)}"
     if isinstance(value, (str, bytes)):
@@ -47,7 +47,7 @@ def described(value: object) -> str:
     if value is None or isinstance(value, numbers.Number):
         try:
             return excerpt(value)
-        except ValueError:  # Python writes down no whole number of so many digits
+        except ValueError:  # Python does not convert integers of so many digits
             return "a number of thousands of digits"
     return f"an object of type {excerpt(type(value).__name__)}"
 
@@ -65,7 +65,7 @@ def has_masked_entries(value: Any) -> bool:
 
 
 def is_array_of_one(value: Any) -> bool:
-    """Whether it is a number in the guise of an array, and not masked."""
+    """Returns whether it is a number in an array without dimensions, and not masked."""
     return isinstance(value, np.ndarray) and value.ndim == 0 and not has_masked_entries(value)
 
 
@@ -133,12 +133,12 @@ def _listed(choices: Sequence[str], last: str) -> str:
 
 
 def label(name: str, value: Any) -> bytes:
-    """A text that may come from a file, whose bytes need not be UTF-8."""
+    """Returns the bytes of a text that may come from a file, and thus need not be UTF-8."""
     return _encoded(name, text(name, value))
 
 
 def path(name: str, value: Any) -> bytes:
-    """The bytes of a path."""
+    """Returns the bytes of a path."""
     if not isinstance(value, (str, bytes, os.PathLike)):
         refuse_type(name, "a path: str, bytes or os.PathLike", value)
     plain = os.fspath(value)
@@ -160,7 +160,7 @@ def _encoded(name: str, value: str) -> bytes:
 def several(
     name: str, value: Any, count: Optional[int], expected: str, each: Callable[[str, Any], T]
 ) -> Tuple[T, ...]:
-    """`count` of something, or any number."""
+    """Returns `count` checked items, or any number of them."""
     if isinstance(value, (str, bytes)):
         refuse_type(name, expected, value)
     try:
@@ -178,12 +178,12 @@ def pair(name: str, value: Any, expected: str, each: Callable[[str, Any], T]) ->
 
 
 def optional(check: Callable[..., T], name: str, value: Any, *more: Any) -> Optional[T]:
-    """None, or what the check makes of it."""
+    """Returns None, or the result of the check."""
     return None if value is None else check(name, value, *more)
 
 
 def array(name: str, value: Any, expected: str, kinds: str = "fiu") -> npt.NDArray[Any]:
-    """An array of numbers: whole ones where kinds is "iu"."""
+    """Returns an array of numbers, which are integers if `kinds` is "iu"."""
     if value is None or isinstance(value, (str, bytes, dict, set)):
         refuse_type(name, expected, value)
     if has_masked_entries(value):
@@ -202,7 +202,7 @@ def array(name: str, value: Any, expected: str, kinds: str = "fiu") -> npt.NDArr
 def shaped(
     name: str, value: Any, shape: Tuple[Optional[int], ...], expected: str
 ) -> npt.NDArray[np.float64]:
-    """An array of numbers of this shape, where None is any length, as float64, row by row."""
+    """Returns an array of numbers of this shape, where None is any length, as float64, row by row."""
     found = array(name, value, expected)
     if found.ndim != len(shape) or any(want not in (None, has) for want, has in zip(shape, found.shape)):
         raise UsageError(f"{name}: expected {expected}, found {described(found)}")
@@ -226,7 +226,7 @@ def listener(progress: Any) -> Optional[Progress]:
 
 
 def words(name: str, value: Any) -> str:
-    """Those of a string or of several, with commas between them."""
+    """Returns the words of one or several strings, separated by commas."""
     if isinstance(value, str):
         return text(name, value)
     try:
@@ -248,7 +248,7 @@ def reading(
     threads: Any,
     progress: Any,
 ) -> Tuple[bytes, Optional[float], bool, str, int, int, int, Optional[Progress]]:
-    """Those of a file that may hold a mesh."""
+    """Checks the arguments for reading a file that may hold a mesh."""
     return (
         path("path", file),
         optional(positive, "unit_mm", unit_mm),

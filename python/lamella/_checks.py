@@ -1,4 +1,4 @@
-"""Are layers right, and are they the same as others?"""
+"""Verification and comparison of layers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ._warning import warn
 
 @dataclass(frozen=True)
 class Verification:
-    """What `verify` finds. Lengths are millimetres."""
+    """Findings of `verify`. Lengths are millimetres."""
 
     ok: bool  #: no open chains, crossings, misoriented rings, layer gaps or overlaps; areas and centres agree
     layers: int
@@ -31,15 +31,15 @@ class Verification:
     points: int
     open_chains: int  #: contours that are not closed
     crossings: int  #: pairs of segments that cross
-    misoriented: int  #: rings that run the wrong way round for where they lie
+    misoriented: int  #: rings whose orientation contradicts their nesting
     overlapping: int  #: rings of bodies within other bodies; no error
     volume: float  #: mm^3, the sum of area times thickness
     max_area_error: Optional[float]  #: mm^2, the largest difference from the section of the mesh, if one was given
-    areas_agree: bool  #: those differences are no larger than rounding explains
-    displaced: int  #: layers of the right area that lie elsewhere than the mesh's section, as their centres tell
+    areas_agree: bool  #: those differences are within rounding
+    displaced: int  #: layers of the right area whose centroids differ from those of the mesh's sections
     height_overlaps: int  #: layers that begin within the height of another one
-    gaps: int  #: between layers, where the mesh has material; 0 without one
-    findings: List[str]  #: one line for each kind of finding, with the first layer and place
+    gaps: int  #: between layers, where the mesh has material; 0 without a mesh
+    findings: List[str]  #: one line for each kind of finding, with the first layer and location
 
 
 def verify(
@@ -55,18 +55,18 @@ def verify(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Verification:
-    """Checks layers: every contour closed, outer rings counter-clockwise and holes clockwise by their nesting, none
-    crossing another or itself; and, where a mesh is given, of the area of its section, where that is, without gaps between
-    layers.
+    """Checks that every contour of layers is closed, that outer rings are counter-clockwise and holes clockwise by
+    their nesting, and that none crosses another or itself. If a mesh is given, also checks that the areas and
+    centroids of layers are those of its sections, and that there are no gaps between layers.
 
     layers: a path or a Stack.
-    mesh: what was sliced, as `slice` takes it, and `direction`, `transform`, `unit_mm` as they were given there.
-    at: where in their thickness the layers were cut, if not where they say: "bottom", "middle" or "top".
-    snap: as it was given to `slice`.
-    tolerance: how far points, ends of lines and cuts may be off, in millimetres, beside what the format rounds: for
-        layers that were rounded before, such as those of a CLI file that became JSON.
-    threads: 0 takes one for each processor.
-    progress: called as progress(stage, done, total) now and then, from the thread that called this.
+    mesh: the mesh that was sliced, as for `slice`, with the same `direction`, `transform` and `unit_mm`.
+    at: position of the cuts within the layers if it differs from that in the file: "bottom", "middle" or "top".
+    snap: as for `slice`.
+    tolerance: additional tolerance of points, ends of lines and cuts, in millimetres, besides the rounding of the
+        format: for layers that were rounded before, such as those of a CLI file converted to JSON.
+    threads: number of threads; 0 is one for each processor.
+    progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
     Raises InputError.
     """
@@ -80,29 +80,29 @@ def verify(
 
 @dataclass(frozen=True)
 class VectorVerification:
-    """What `verify_vectors` finds."""
+    """Findings of `verify_vectors`."""
 
-    ok: bool  #: nothing of what follows, but for `unbounded`
+    ok: bool  #: no findings, except `unbounded`
     layers: int
     contour_vectors: int
     hatch_vectors: int
-    open_chains: int  #: contours that are not closed; of each exposure by themselves, as the next two
+    open_chains: int  #: contours that are not closed; each exposure by itself, also for the next two
     crossings: int  #: pairs of segments that cross
-    misoriented: int  #: rings that run the wrong way round for where they lie
-    outside: int  #: vectors that leave the material, or are nearer to its edges than the strategy says
+    misoriented: int  #: rings whose orientation contradicts their nesting
+    outside: int  #: vectors that leave the material, or are closer to its edges than the strategy allows
     too_short: int  #: hatch lines shorter than the shortest of the strategy
-    misplaced: int  #: hatch lines beside those of the strategy, turned otherwise or of another exposure
-    miscovered: int  #: planes of a part whose lines cover more or less than they are to fill
-    wrong_contours: int  #: that are missing on a plane, or of another area than the material has at their depth
-    inverted_rings: int  #: of the mesh's sections, that bound no material and have no vectors; 0 without a mesh
-    inverted_volume: float  #: mm^3, what these enclose
+    misplaced: int  #: hatch lines with another position or direction than in the strategy, or of another exposure
+    miscovered: int  #: planes of a part whose lines cover more or less than they must fill
+    wrong_contours: int  #: missing on a plane, or with another area than the material has at their depth
+    inverted_rings: int  #: of the mesh's sections, bound no material and have no vectors; 0 without a mesh
+    inverted_volume: float  #: mm^3, enclosed by these
     height_overlaps: int  #: layers that begin within the height of another one
-    gaps: int  #: between layers, where the mesh has material; 0 without one
-    cover: Optional[float]  #: what lines cover by what they are to fill, where a strategy is given
+    gaps: int  #: between layers, where the mesh has material; 0 without a mesh
+    cover: Optional[float]  #: ratio of the area covered by lines to that which they must fill, if a strategy is given
     unreached_layers: int  #: planes with more material that no vector reaches than the strategy accepts
     unreached_mm2: float  #: all such material; 0 without a strategy
-    unbounded: int  #: vectors of which nothing tells where the material is
-    findings: List[str]  #: one line for each kind of finding, with the first layer and place
+    unbounded: int  #: vectors whose material is unknown
+    findings: List[str]  #: one line for each kind of finding, with the first layer and location
 
 
 def verify_vectors(
@@ -119,20 +119,20 @@ def verify_vectors(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> VectorVerification:
-    """Checks a file of scan vectors: contours of each exposure closed, oriented and without crossings, and all vectors
-    within the mesh, or without one within the outermost contours of their part; with the strategy by which they were
-    made, as far from its edges as that says, each contour there, all lines at their distance and angle, none shorter than the
-    shortest, and enough of them to fill it.
+    """Checks that in a file of scan vectors the contours of each exposure are closed, oriented and without crossings,
+    and that all vectors are within the mesh, or without one within the outermost contours of their part. If the
+    strategy by which they were made is given, also checks their distance from the edges, that each contour is present,
+    the distance, angle and least length of hatch lines, and that these fill the material.
 
-    path: of a file that `lamella slice --scan` or `lamella scan` wrote, or other programs, with scan vectors.
-    mesh: what was sliced, as `slice` takes it, and `direction`, `transform`, `unit_mm` as they were given there.
-    strategy: as `scan` takes it; lamella.ScanStrategy() is the one by default, None does not ask for any.
-    at: where in their thickness the layers were cut, if not where they say: "bottom", "middle" or "top".
-    snap: as it was given to `slice`.
-    tolerance: how far points, ends of lines and cuts may be off, in millimetres, beside what the format rounds: for
-        layers that were rounded before, such as those of a CLI file that became JSON.
-    threads: 0 takes one for each processor.
-    progress: called as progress(stage, done, total) now and then, from the thread that called this.
+    path: path of a file with scan vectors, by `lamella slice --scan`, `lamella scan` or another program.
+    mesh: the mesh that was sliced, as for `slice`, with the same `direction`, `transform` and `unit_mm`.
+    strategy: as for `scan`; lamella.ScanStrategy() is the default one, None checks no strategy.
+    at: position of the cuts within the layers if it differs from that in the file: "bottom", "middle" or "top".
+    snap: as for `slice`.
+    tolerance: additional tolerance of points, ends of lines and cuts, in millimetres, besides the rounding of the
+        format: for layers that were rounded before, such as those of a CLI file converted to JSON.
+    threads: number of threads; 0 is one for each processor.
+    progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
     Raises InputError, and UsageError for a file without scan vectors.
     """
@@ -166,23 +166,23 @@ def _mesh_as_sliced(
 
 @dataclass(frozen=True)
 class LayerDifference:
-    """How far two layers on one plane are from each other."""
+    """Difference between two layers on one plane."""
 
     z: float  #: of the plane, in millimetres
-    distance: float  #: mm, from a point of one's contours to the nearest contour of the other; inf where one has none
-    where: Optional[Tuple[float, float]]  #: where that distance begins
-    first: Optional[Layer]  #: None where only the second stack has contours there
+    distance: float  #: mm, from a point of one's contours to the nearest contour of the other; inf if one has none
+    where: Optional[Tuple[float, float]]  #: point at which that distance begins
+    first: Optional[Layer]  #: None if only the second stack has contours there
     second: Optional[Layer]
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """What `compare` finds. It is true where the stacks agree."""
+    """Result of `compare`. It is true if the stacks agree."""
 
     agree: bool
     tolerance: float  #: in millimetres
-    layers: int  #: that were compared
-    same: int  #: of these, those that are the same to the last bit
+    layers: int  #: number of compared layers
+    same: int  #: number of these that are equal, bit for bit
     differences: List[LayerDifference]  #: layers that do not agree, in ascending z
 
     def __bool__(self) -> bool:
@@ -197,17 +197,17 @@ def compare(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Comparison:
-    """Compares the contours of layers plane by plane. Hatch lines, heights and parameters of files are compared by the
+    """Compares the contours of layers plane by plane. To compare hatch lines, heights and parameters of files, use the
     program: `lamella compare`.
 
     first, second: paths or stacks.
-    tolerance: how far contours may be apart, in millimetres; what the rounding of both formats explains unless
-        given, which is nothing for stacks that were sliced.
-    threads: 0 takes one for each processor.
-    progress: called as progress(stage, done, total) now and then, from the thread that called this.
+    tolerance: largest distance between equal contours, in millimetres; by default that explained by the rounding of
+        both formats, which is 0 for stacks that were sliced.
+    threads: number of threads; 0 is one for each processor.
+    progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
-    A DefectWarning says so where no layers belong together since the lowest of both are cut at different heights.
-    Raises InputError.
+    Raises InputError. Issues a DefectWarning if no layers correspond because the lowest of both stacks are cut at
+    different heights.
     """
     tolerance = check.optional(check.distance, "tolerance", tolerance)
     threads, progress = check.thread_count(threads), check.listener(progress)

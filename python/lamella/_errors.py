@@ -2,20 +2,20 @@
 
 
 class Error(Exception):
-    """Every failure that Lamella reports. Its text is one line: the file, the place in it, what was found, and what
-    was expected."""
+    """Base of all failures that Lamella reports. Its text is one line: the file, the location in it, the content found,
+    and the expected one."""
 
     __module__ = "lamella"
 
 
 class InternalError(Error):
-    """A broken promise of Lamella itself; please report it."""
+    """A defect of Lamella itself; please report it."""
 
     __module__ = "lamella"
 
 
 class UsageError(Error, ValueError):
-    """Arguments that contradict themselves or cannot be met."""
+    """Arguments that contradict each other or cannot be satisfied."""
 
     __module__ = "lamella"
 
@@ -27,13 +27,13 @@ class InputError(Error):
 
 
 class DefectError(Error):
-    """A defect of a file or a mesh, where `strict` allowed none."""
+    """A defect of a file or a mesh when `strict` is set."""
 
     __module__ = "lamella"
 
 
 class LimitError(Error):
-    """A limit was hit: of triangles, of memory, of numbers."""
+    """A limit was exceeded: of triangles, of memory, of numbers."""
 
     __module__ = "lamella"
 
@@ -51,7 +51,7 @@ class CancelledError(Error):
 
 
 class DefectWarning(UserWarning):
-    """Something was odd about a file or a mesh, and the result may not be what was meant. With `strict` it is a
+    """A defect of a file or a mesh because of which the result may not be as intended. With `strict` it is a
     DefectError instead."""
 
     __module__ = "lamella"

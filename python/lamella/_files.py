@@ -1,4 +1,4 @@
-"""Slice files and mesh files, in and out."""
+"""Reading and writing of slice files and mesh files."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ._warning import warn, with_arguments
 
 MESH_EXTENSIONS = (".stl", ".ply", ".obj")
 
-# What formats must take for an option to go with them. Options that are not here go with pictures.
+# Field of a format that an option requires. Options that are not listed require an image format.
 ASKED_OF_FORMATS = {
     "units_mm": "units",
     "short_form": "short_form",
@@ -31,7 +31,7 @@ ASKED_OF_FORMATS = {
     "fade_layers": "exposure",
 }
 PAGES = "html"
-# Formats that keep the heights of layers as they are, or have none: to these a layer without thickness is no loss.
+# Formats that keep the heights of layers as they are, or have none: they accept layers without thickness.
 WITHOUT_THICKNESS = ("json", "npz", "dxf", "geojson", "svg-layers", "png", "png-zip")
 MOST_PIXELS = 65535
 MOST_ANTIALIAS = 64
@@ -41,12 +41,12 @@ BATCH_POINTS = 2**22  # 64 MB
 
 Layers = Union[Layer, Stack, LayerStream, ScanLayer, Iterable[Layer], Iterable[Stack], Iterable[ScanLayer]]
 
-# The label and the bounds of a part, what its vectors are where it has such, and whether it is a support.
+# Label and bounds of a part, the exposure of its vectors if it has any, and whether it is a support.
 Part = Tuple[bytes, npt.NDArray[np.float64], Optional[Exposure], bool]
-# The parts, the layers plane by plane, how many planes, where the first one begins, and the rule of the plane.
+# The parts, the layers plane by plane, the number of planes, the bottom of the first layer, and the plane rule.
 Planes = Tuple[List[Part], Iterator[List[Layer]], int, float, str]
 
-# What layers of all parts on a plane have in common.
+# Values that layers of all parts on a plane have in common.
 HEIGHTS = {"z": "cuts (z)", "bottom": "bottoms", "top": "tops", "index": "indices"}
 
 
@@ -69,7 +69,7 @@ def read_layers(
 
 
 def _told(path: PathLike, warnings: Sequence[str], strict: bool) -> None:
-    """What is odd about a slice file."""
+    """Issues the warnings of a slice file, or raises the first if `strict`."""
     texts = [f"{os.fsdecode(path)}: {warning}" for warning in warnings]
     if strict and texts:
         raise DefectError(texts[0])
@@ -127,28 +127,29 @@ def read(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Union[Mesh, Stack]:
-    """Reads a mesh file or a slice file, whichever it is by its content.
+    """Reads a mesh file or a slice file, which is recognised by its content.
 
     path: str or os.PathLike. Meshes: see `mesh_formats`. Layers: Common Layer Interface, layered SVG, SLC,
-        3MF with slices, JSON, NumPy arrays, ILT, Open Vector Format, 3MF with toolpaths. Each may be packed with gzip.
-    kind: what the file must hold, "mesh" or "layers"; another file is an InputError.
-    unit_mm: millimetres per unit of a mesh file that does not say its unit; 1 unless given. Slice files say theirs.
-    strict: makes a DefectError of what is otherwise a DefectWarning.
-    include: what 3MF and AMF files mark as "support", "negative", "modifier", "support-blocker", "support-enforcer",
-        "surface" or "other" is read as solids, too: one of these words or several. Otherwise negative volumes are
-        subtracted where the mesh is sliced, and a DefectWarning counts what else was left out. Of slice files
-        supports are parts like others, see Stack.support.
-    max_triangles: more of them are a LimitError; 0 is any number.
-    max_memory: more bytes than this for what is read are a LimitError; 0 is three quarters of the memory there is. A
-        binary STL file that is not packed does not count, nor does what is made of a mesh afterwards.
-    threads: 0 takes one for each processor.
-    progress: called as progress(stage, done, total) now and then, from the thread that called this.
+        3MF with slices, JSON, NumPy arrays, ILT, Open Vector Format, 3MF with toolpaths. Each may be compressed with
+        gzip.
+    kind: the required content of the file, "mesh" or "layers"; another file is an InputError.
+    unit_mm: millimetres per unit of a mesh file that does not state its unit; 1 by default. Slice files state theirs.
+    strict: raises a DefectError instead of issuing a DefectWarning.
+    include: one or several of the words "support", "negative", "modifier", "support-blocker", "support-enforcer",
+        "surface" and "other": objects that 3MF and AMF files mark so are read as solids, too. Otherwise negative
+        volumes are subtracted when the mesh is sliced, and a DefectWarning counts the other objects that were left
+        out. In slice files supports are parts like others, see Stack.support.
+    max_triangles: a mesh with more of them is a LimitError; 0 is any number.
+    max_memory: reading more bytes than this is a LimitError; 0 is three quarters of the physical memory. An
+        uncompressed binary STL file does not count, nor does data made from a mesh afterwards.
+    threads: number of threads; 0 is one for each processor.
+    progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
     Returns a Mesh or a Stack. A binary STL file that would take more than a quarter of `max_memory` is not copied but
-    mapped: while its Mesh lives, the file may be replaced or deleted, but must not be written to or cut shorter.
+    mapped: while its Mesh exists, the file may be replaced or deleted, but must not be modified or truncated.
 
-    Raises InputError that names the file, the place in it, what was found, and what was
-    expected, and UsageError where `unit_mm` is given for a slice file.
+    Raises InputError that names the file, the location in it, the invalid content and the expected one, and
+    UsageError if `unit_mm` is given for a slice file.
     """
     wanted = check.optional(check.choice, "kind", kind, ("mesh", "layers"))
     read, warnings = _lamella.read_any(
@@ -160,7 +161,7 @@ def read(
     if wanted not in (None, found):
         held = "layers" if found == "layers" else "a mesh"
         raise InputError(f'{os.fsdecode(path)}: holds {held}, and kind="{wanted}" was given')
-    # Reading a mesh has looked at `strict` itself.
+    # Reading a mesh has checked `strict` itself.
     _told(path, warnings, strict and isinstance(read, Stack))
     return read
 
@@ -196,34 +197,35 @@ def write(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> None:
-    """Writes layers or a mesh to a file, whose extension says the format. Nobody ever sees half a file.
+    """Writes layers or a mesh to a file, whose extension selects the format. No reader ever sees an incomplete file.
 
     path: str or os.PathLike. Meshes: .stl, .ply, .obj. Layers: see `layer_formats`.
     what: a Mesh; a Layer, a Stack, or any iterable of layers in ascending z; several stacks on the same planes,
-        which are the parts of the file; or scan vectors, as `scan` gives them. What `iter_layers` gives, and `scan` of
-        that or of a Stack, is written while it is being made; layers of any other iterable are collected first.
-    format: name of the format of layers, where the extension does not say it.
-    units_mm: Common Layer Interface, ILT, 3MF with toolpaths: millimetres per unit; 0.001 unless given. Coordinates are
-        rounded to whole ones with short_form, in "cli-ascii" and in "3mf-toolpath".
+        which are the parts of the file; or scan vectors, as `scan` returns them. A stream from `iter_layers`, and
+        `scan` of that or of a Stack, is written while it is computed; layers of any other iterable are collected first.
+    format: name of the format of layers, if the extension does not select it.
+    units_mm: Common Layer Interface, ILT, 3MF with toolpaths: millimetres per unit; 0.001 by default. Coordinates are
+        rounded to whole units with short_form, in "cli-ascii" and in "3mf-toolpath".
     short_form: binary Common Layer Interface, ILT: coordinates of 16 bits.
 
-    Pictures (png, png-zip, sl1, sl1s):
-    pixel_mm, pixels, display_mm: size of a pixel, their number, and size of the display, each along x and y; of
-        these three, two tell the third. What is not given is the printer's, and 0.05 mm without one.
-    orientation: "landscape" or "portrait": whether x runs along the columns of a picture or along its rows.
+    Images (png, png-zip, sl1, sl1s):
+    pixel_mm, pixels, display_mm: size of a pixel, their number, and size of the display, each along x and y; any two
+        of these three determine the third. Values not given are the printer's; without a printer, pixels are 0.05 mm
+        wide.
+    orientation: "landscape" or "portrait": x runs along the columns of an image or along its rows.
     mirror: "none", "x", "y" or "xy".
-    antialias: 1 is black and white, by the middles of pixels; 2 to 64: grey by the covered part of each pixel, exact
-        for up to that many corners close together; 8 unless given.
-    gamma: grey becomes 255 times the covered part to this power; 1 unless given.
+    antialias: 1 is black and white, by the centres of pixels; 2 to 64: grey by the covered fraction of each pixel,
+        exact for up to that many corners close together; 8 by default.
+    gamma: grey is 255 times the covered fraction to this power; 1 by default.
     exposure_s, first_exposure_s: sl1, sl1s: seconds of a layer, and of each of the first three.
-    fade_layers: sl1, sl1s: layers in which the first exposure fades to the normal one; 10 unless given.
+    fade_layers: sl1, sl1s: number of layers in which the first exposure fades to the normal one; 10 by default.
 
-    strict: makes a DefectError of what is otherwise a DefectWarning, in place of the file.
-    threads: that layers are formatted on; 0 takes one for each processor. The file is the same.
+    strict: raises a DefectError instead of issuing a DefectWarning, and writes no file.
+    threads: number of threads that format layers; 0 is one for each processor. The file does not depend on it.
     progress: called as progress("write", done, total), in layers.
 
-    Raises OutputError, UsageError for a format that is not known and for options that do not go with it, and
-    TypeError. Issues a DefectWarning for what the format has no place for.
+    Raises OutputError, UsageError for an unknown format and for options that do not apply to it, and TypeError.
+    Issues a DefectWarning for content that the format cannot hold.
     """
     target = check.path("path", path)
     threads, progress = check.thread_count(threads), check.listener(progress)
@@ -263,7 +265,7 @@ def write(
             raise CancelledError(f"{os.fsdecode(path)}: the stream was closed while it was written")
         warnings = writer.finish()
     finally:
-        writer.close()  # now, not once an exception is forgotten that holds it
+        writer.close()  # now, even if an exception keeps it alive
     warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
 
 
@@ -291,7 +293,7 @@ def _columns_and_rows(name: str, value: Any) -> Tuple[int, int]:
 
 
 def _format_for(path: bytes, format: str, given: Iterable[str]) -> str:
-    """The name of the format, with which all options that are given go."""
+    """Returns the name of the format, to which all given options apply."""
     name = _lamella.layer_format(format, path)
     if name == PAGES:
         raise UsageError(f"{os.fsdecode(path)}: pages are written by the program, with lamella view, not by Python")
@@ -304,7 +306,7 @@ def _format_for(path: bytes, format: str, given: Iterable[str]) -> str:
 
 
 def _batches(planes: Iterable[List[Layer]]) -> Iterator[List[List[Layer]]]:
-    """Planes that are formatted together: enough for all threads, as far as memory is meant for layers in flight."""
+    """Yields planes to be formatted together: enough for all threads, within the memory for layers in flight."""
     batch: List[List[Layer]] = []
     points = 0
     for plane in planes:
@@ -367,7 +369,7 @@ def _planes_of_parts(stacks: List[Stack]) -> Planes:
 
 
 def _boxes(stacks: List[Stack]) -> List[npt.NDArray[np.float64]]:
-    """A part without contours makes the box of the file no larger, where there are others with some."""
+    """Returns boxes such that a part without contours does not enlarge the box of the file, if others have some."""
     boxes = [stack._box for stack in stacks]
     return boxes if any(np.isfinite(box).all() for box in boxes) else [stack.bounds for stack in stacks]
 
@@ -398,7 +400,7 @@ def _planes_of_vectors(
 
 
 def _collected(what: Any) -> List[Any]:
-    """One or more, and all of one kind: layers, stacks or scan layers."""
+    """Returns one or more objects, all of one kind: layers, stacks or scan layers."""
     expected = "a lamella.Mesh, Layer or Stack, or an iterable of layers, stacks or scan layers"
     if isinstance(what, (Layer, Stack, ScanLayer)):
         return [what]
@@ -439,14 +441,14 @@ def convert(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> None:
-    """Reads the layers of a slice file and writes them in another format. Contours stay as they are, up to the
+    """Reads the layers of a slice file and writes them in another format. Contours are unchanged except for the
     rounding of the new format; parts and labels are kept.
 
     source, target: str or os.PathLike.
     For the rest see `write`.
 
-    Raises InputError, OutputError, UsageError and TypeError. Issues a DefectWarning where the file is odd, and where
-    rings of it bound no material; with `strict` it raises DefectError.
+    Raises InputError, OutputError, UsageError and TypeError. Issues a DefectWarning if the file has defects or rings
+    that bound no material; with `strict` it raises DefectError.
     """
     if _same_file(check.path("source", source), check.path("target", target)):
         raise UsageError(f"{os.fsdecode(target)}: the output would overwrite the input")
@@ -469,15 +471,15 @@ def convert(
 def _same_file(first: bytes, second: bytes) -> bool:
     try:
         return os.path.samefile(first, second)
-    except OSError:  # at least one is not there, which whoever opens it reports
+    except OSError:  # at least one does not exist, which opening it reports
         return False
 
 
 def mesh_formats() -> List[str]:
-    """The formats that meshes are read in, by their extensions, such as "stl"."""
+    """Returns the formats that meshes are read in, by their extensions, such as "stl"."""
     return _lamella.mesh_extensions()
 
 
 def layer_formats() -> List[Tuple[str, str, str]]:
-    """The formats that layers are written in: (name, extension, one line about it) of each."""
+    """Returns the formats that layers are written in, each as (name, extension, one line about it)."""
     return [row for row in _lamella.layer_formats() if row[0] != PAGES]

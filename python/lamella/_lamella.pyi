@@ -1,4 +1,4 @@
-"""What the extension gives to the package. The classes are public; functions are wrapped by the package."""
+"""Interface of the extension. The classes are public; functions are wrapped by the package."""
 
 from typing import Any, ClassVar, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
 

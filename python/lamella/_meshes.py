@@ -1,4 +1,4 @@
-"""Meshes from whatever holds one, and what is wrong with them."""
+"""Conversion of objects to meshes, and inspection of meshes."""
 
 from __future__ import annotations
 
@@ -36,29 +36,29 @@ MeshLike = Union[PathLike, Mesh, HasFaces, Tuple[npt.ArrayLike, npt.ArrayLike], 
 
 @dataclass(frozen=True, eq=False)
 class Inspection:
-    """What `inspect` finds in a mesh. Lengths are millimetres; defects are counted, never mended."""
+    """Findings of `inspect` about a mesh. Lengths are millimetres; defects are counted, never repaired."""
 
     path: str  #: the file; empty for arrays
     format: str  #: such as "stl-binary"; empty for arrays
     bounds: npt.NDArray[np.float64]  #: (2, 3): the smallest and the largest x, y and z
     triangles: int  #: as the file stores them
-    vertices: int  #: different ones
+    vertices: int  #: number of different ones
     volume: float  #: mm^3; meaningful when closed, negative when inside out
     area: float  #: mm^2, of all triangles
     closed: bool  #: slices have no open chains
     sound: bool  #: closed, and no defect was counted
-    shells: int  #: parts connected over edges
+    shells: int  #: components connected by edges
     cavities: int  #: closed shells that are hollows in the material of others
     boundary_edges: int  #: with one triangle: rims of holes
-    nonmanifold_edges: int  #: crowded: with more than two triangles
-    orientation_conflicts: int  #: edges whose triangles do not run opposite ways
+    nonmanifold_edges: int  #: with more than two triangles
+    orientation_conflicts: int  #: edges whose triangles do not run in opposite directions
     duplicate_triangles: int  #: beyond the first with the same three vertices
     degenerate_triangles: int  #: with two equal corners
-    inverted_shells: int  #: closed shells turned inside out
+    inverted_shells: int  #: closed shells that are inside out
 
     @property
     def defects(self) -> str:
-        """The defects in words, such as "2 boundary edges, 1 inverted shell"; empty where there is none."""
+        """Returns the defects in words, such as "2 boundary edges, 1 inverted shell"; empty if there are none."""
         kinds = [(getattr(self, key), one, many) for key, one, many in _lamella.defect_kinds()]
         return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in kinds if count)
 
@@ -97,7 +97,7 @@ def arrays_of_mesh(vertices: Any, faces: Any) -> Tuple[npt.NDArray[np.float64], 
 
 
 def _mesh_of_triangles(name: str, corners: npt.NDArray[Any]) -> Mesh:
-    """Triangles that share nothing: (m, 3, 3)."""
+    """Makes a mesh of triangles without shared vertices: (m, 3, 3)."""
     if corners.ndim != 3 or corners.shape[1:] != (3, 3):
         raise UsageError(
             f"{name}: triangles: expected an array of the shape (m, 3, 3), found {check.described(corners)}; "
@@ -113,7 +113,7 @@ def _mesh_of_triangles(name: str, corners: npt.NDArray[Any]) -> Mesh:
 
 
 def as_mesh(name: str, part: Any, unit_mm: Optional[float] = None, **reading: Any) -> Mesh:
-    """A mesh from whatever the user has. `reading` is for paths."""
+    """Returns a mesh from any supported object. `reading` applies to paths."""
     if isinstance(part, (str, bytes, os.PathLike)):
         return read_mesh(check.path(name, part), unit_mm=unit_mm, **reading)
     if unit_mm is not None:
@@ -144,7 +144,7 @@ def placing(direction: Sequence[float], transform: Optional[npt.ArrayLike]) -> P
 
 
 def placed(mesh: Mesh, where: Placing, threads: int) -> Mesh:
-    """First the transform, then the direction turned upright."""
+    """Applies the transform, then rotates the direction upright."""
     direction, transform = where
     if transform is not None:
         mesh = mesh._transformed(transform, threads)
@@ -158,13 +158,13 @@ def inspect(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Inspection:
-    """Counts what is wrong with a mesh. Nothing is mended.
+    """Counts the defects of a mesh. Nothing is repaired.
 
     part: a path, a Mesh, a pair of arrays (vertices (n, 3) in millimetres, faces (m, 3)), an array of triangles
         (m, 3, 3), or anything with .vertices and .faces, such as a trimesh.Trimesh.
-    unit_mm: millimetres per unit of a file that does not say its unit; 1 unless given.
-    threads: 0 takes one for each processor.
-    progress: called as progress(stage, done, total) now and then, from the thread that called this.
+    unit_mm: millimetres per unit of a file that does not state its unit; 1 by default.
+    threads: number of threads; 0 is one for each processor.
+    progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
     Raises InputError for a file that cannot be read.
     """

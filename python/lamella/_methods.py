@@ -1,5 +1,5 @@
-"""What the classes of the extension do when somebody gives them something: arguments are looked at here, as everywhere
-in the package, and what is good goes on to the method of the extension with an underscore."""
+"""Methods with arguments of the extension's classes. Arguments are checked here, as everywhere in the package, and
+passed on to the method of the extension with an underscore."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ T = TypeVar("T")
 
 
 def _methods_of(cls: type) -> Callable[[T], T]:
-    """Gives the functions of the class below it to `cls`, under whose name their errors speak."""
+    """Adds the functions of the decorated class to `cls`, whose name their errors use."""
 
     def give(source: T) -> T:
         for name, method in vars(source).items():
@@ -85,48 +85,48 @@ class Layer(_lamella.Layer):
         _make_layer(self, _contours("rings", rings), height, below, above, number, _contours("chains", chains))
 
     def polygons(self) -> List[Tuple[int, List[int]]]:
-        """Pieces of material: pairs (outer, holes) of the number of the ring around it and a list of the numbers of
-        its holes. Open chains, and rings that bound no material, are left out."""
+        """Returns the polygons of the material: pairs (outer, holes) of the index of the outer ring and a list of the
+        indices of its holes. Open chains, and rings that bound no material, are left out."""
         return self._polygons()
 
     def to_shapely(self) -> Any:
-        """The material as a valid shapely.geometry.MultiPolygon in millimetres, holes where they belong; where bodies
-        overlap, it counts once. Open chains are left out. Needs shapely."""
+        """Returns the material as a valid shapely.geometry.MultiPolygon in millimetres, with its holes; overlapping
+        bodies are united. Open chains are left out. Needs shapely."""
         return multi_polygon(self)
 
     def filled(self, rule: check.FillRule = "nonzero") -> _lamella.Layer:
-        """The layer with bodies that overlap united: material is where contours wind around `rule` times: "nonzero",
-        "evenodd" or "positive". Contours that do not overlap keep their points."""
+        """Returns the layer with overlapping bodies united. Material is where the winding number satisfies `rule`:
+        "nonzero", "evenodd" or "positive". Contours that do not overlap keep their points."""
         if check.text("rule", rule) not in ("nonzero", "evenodd", "positive"):
             raise UsageError(f'rule: "{check.excerpt(rule)}" is no fill rule; there are nonzero, evenodd and positive')
         return _made_of(self._filled(rule), self)
 
     def offset(self, distance: float, corners: check.Corners = "mitre") -> _lamella.Layer:
-        """The layer with its material grown by `distance` millimetres, or shrunk by a negative one. `corners` says what
-        joins sides that part at a corner when they are moved: "mitre", "bevel" or "round"."""
+        """Returns the layer with its material grown by `distance` millimetres, or shrunk by a negative one. `corners`
+        is the join of moved sides that separate at a corner: "mitre", "bevel" or "round"."""
         if check.text("corners", corners) not in ("mitre", "bevel", "round"):
             raise UsageError(f'corners: "{check.excerpt(corners)}" are no corners; there are mitre, bevel and round')
         return _made_of(self._offset(check.number("distance", distance), corners), self)
 
     def union(self, other: _lamella.Layer) -> _lamella.Layer:
-        """The layer with material where it or `other` has: where contours wind counter-clockwise around. Contours
-        that meet no others keep their points. Heights and open chains are those of this layer."""
+        """Returns the union of the material of this layer and `other`, where winding numbers are positive. Contours
+        that intersect no others keep their points. Heights and open chains are those of this layer."""
         return _made_of(self._union(_one_layer("other", other, "a layer")), self, other)
 
     def intersection(self, other: _lamella.Layer) -> _lamella.Layer:
-        """The layer with material where it and `other` have; see `union`."""
+        """Returns the intersection of the material of this layer and `other`; see `union`."""
         return _made_of(self._intersection(_one_layer("other", other, "a layer")), self, other)
 
     def difference(self, other: _lamella.Layer) -> _lamella.Layer:
-        """The layer without the material of `other`; see `union`."""
+        """Returns the layer without the material of `other`; see `union`."""
         return _made_of(self._difference(_one_layer("other", other, "a layer")), self, other)
 
     def symmetric_difference(self, other: _lamella.Layer) -> _lamella.Layer:
-        """The layer with material where either it or `other` has, and not both; see `union`."""
+        """Returns the symmetric difference of the material of this layer and `other`; see `union`."""
         return _made_of(self._symmetric_difference(_one_layer("other", other, "a layer")), self, other)
 
     def simplified(self, tolerance: float) -> _lamella.Layer:
-        """The layer with points left out, so that no contour moves by more than `tolerance` millimetres."""
+        """Returns the layer with fewer points, such that no contour moves by more than `tolerance` millimetres."""
         return _made_of(self._simplified(check.distance("tolerance", tolerance)), self)
 
 
@@ -142,7 +142,7 @@ class LayerStream(_lamella.LayerStream):
         raise TypeError("a lamella.LayerStream is made by lamella.iter_layers")
 
     def close(self) -> None:
-        """Stops slicing. To be called more than once does no harm."""
+        """Stops slicing. May be called more than once."""
         self._close()
 
 
@@ -158,7 +158,7 @@ class ParameterSet(_lamella.ParameterSet):
 
 
 def _attributes(base: type, rule: Any) -> Dict[str, Any]:
-    """Those that the class of ours has, whatever is derived from it."""
+    """Returns the attributes of our class, without those of derived classes."""
     return {name: getattr(rule, name) for name in dir(base) if not name.startswith("_")}
 
 
@@ -171,7 +171,7 @@ def _with_attributes(cls: Any, base: Any, attributes: Dict[str, Any]) -> Any:
 
 
 def _is_its_attributes(cls: type) -> None:
-    """Has what a strategy consists of compared, copied and pickled by attributes."""
+    """Makes a class of strategies compare, copy and pickle its objects by their attributes."""
 
     def __eq__(self: Any, other: object) -> bool:
         if not isinstance(other, cls):
@@ -191,7 +191,7 @@ def _is_made_of_nothing(cls: type) -> None:
     def __init__(self: Any) -> None:
         make(self)
 
-    __init__.__qualname__ = f"{cls.__name__}.__init__"  # under which its errors speak
+    __init__.__qualname__ = f"{cls.__name__}.__init__"  # the name in its errors
     setattr(cls, "__init__", __init__)
 
 

@@ -1,4 +1,4 @@
-"""From layers to scan vectors: what a powder-bed machine executes."""
+"""Scan vectors of layers, for powder-bed machines."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ class ScanLayer:
 
     index: int  #: of the layer in the whole plan
     z: float  #: where it was cut, in millimetres
-    bottom: float  #: of the material it stands for
+    bottom: float  #: of the material that it represents
     top: float
     exposures: Tuple[Exposure, ...]
-    #: Of each exposure: contours as rings, each from where the beam begins; hatches as `hatches`. Without copies.
+    #: One for each exposure: contours as rings, each from its first exposed point; hatches as `hatches`. No copies.
     layers: Tuple[Layer, ...]
     #: Material of the layer that no vector reaches, in mm2; see `accepted_mm2` of a ScanStrategy.
     unreached_mm2: float = 0.0
@@ -54,19 +54,19 @@ class ScanLayer:
 
     @property
     def vectors(self) -> npt.NDArray[np.float64]:
-        """All lines, from point to point, in their order: (n, 2, 2), millimetres. A copy."""
+        """Returns all lines, from point to point, in their order: (n, 2, 2), millimetres. A copy."""
         lines = [_lines(layer) for layer in self.layers]
         return np.concatenate(lines) if lines else np.empty((0, 2, 2))
 
     @property
     def exposure(self) -> npt.NDArray[np.int64]:
-        """For each line the number of its exposure: (n,)."""
+        """Returns the index of the exposure of each line: (n,)."""
         counts = [len(_lines(layer)) for layer in self.layers]
         return np.repeat(np.arange(len(counts)), counts)
 
     @property
     def figures(self) -> List[ScanFigures]:
-        """What a machine does for each exposure: lengths, seconds, energy; the beam goes from one to the next."""
+        """Returns the figures of each exposure: lengths, seconds, energy; the beam goes from one to the next."""
         return _lamella.measure_vectors(list(self.layers), list(self.exposures))
 
 
@@ -78,7 +78,7 @@ def _lines(layer: Layer) -> npt.NDArray[np.float64]:
 
 
 class ScanStream(Iterator[ScanLayer]):
-    """What `scan` makes of layers of which a file's head is known before they are there."""
+    """Scan layers of a source whose file header is known before its layers."""
 
     def __init__(self, scanned: Generator[ScanLayer, None, None], source: Union[Stack, LayerStream]) -> None:
         self._scanned = scanned
@@ -88,7 +88,7 @@ class ScanStream(Iterator[ScanLayer]):
         self.rule = source.rule
 
     def first(self) -> Optional[ScanLayer]:
-        """The next one, which stays the next one; None at the end."""
+        """Returns the next one without taking it; None at the end."""
         if self._first is None:
             self._first = next(self._scanned, None)
         return self._first
@@ -110,23 +110,23 @@ class ScanStream(Iterator[ScanLayer]):
 def scan(
     layers: Iterable[Layer], strategy: StrategyLike = None, part: str = "part", *, support: bool = False
 ) -> Iterator[ScanLayer]:
-    """Makes scan vectors of layers in ascending z, such as a Stack or what `iter_layers` gives; one by one, while no
-    more layers are held than skins ask for. Layers that `iter_layers` was to leave out count for skins, too; of other
-    layers, and of a Stack of some of its part's layers only, there is no material beside them. Of a Stack that comes
-    from a file, points are left out that the file's rounding alone moved off a straight way.
+    """Makes scan vectors of layers in ascending z, such as a Stack or a stream from `iter_layers`. Yields them one by
+    one, and holds no more layers than skins need. Skins take account of layers that `iter_layers` was told to leave
+    out; above and below other layers, and a Stack with only some of its part's layers, there is no material. Points of
+    a Stack from a file are left out if they are collinear except for the rounding of the file.
 
-    strategy: a ScanStrategy, as it is now; the path of a TOML file, as the program takes it (needs Python 3.11); the
-        same as a dict, such as {"hatch": {"distance": 0.08}}; None is what is there by default.
-    part: what exposures call the part; an empty text is "part".
-    support: it is a support: exposed by the strategy's rule for these, without skins.
+    strategy: a ScanStrategy, of which a copy is taken; the path of a TOML file, as for the program (needs Python 3.11);
+        the same tables as a dict, such as {"hatch": {"distance": 0.08}}; None is the default strategy.
+    part: name of the part in exposures; an empty text is "part".
+    support: exposes the part as a support: by the strategy's rule for these, without skins.
 
-    `write` takes what this gives.
+    Pass the result to `write` to store it.
 
-    Raises UsageError for a strategy that is not right and for layers that do not ascend, InputError for a Stack that
-    holds scan vectors already, LimitError for layers that would have too many vectors. Issues a DefectWarning where
-    layers have what no vectors are made of: hatch lines, open chains, rings that bound no material as the mesh is
-    inside out. It comes at once for a Stack, for other layers when the last one has been taken. So it does where skins
-    ask for layers of the part that are not in a Stack.
+    Raises UsageError for an invalid strategy and for layers that do not ascend, InputError for a Stack that already
+    holds scan vectors, LimitError for layers that would have too many vectors. Issues a DefectWarning if layers have
+    content that vectors are not made of: hatch lines, open chains, rings that bound no material because the mesh is
+    inside out. It is issued at once for a Stack, for other layers when the last one has been taken. Issues another
+    one if skins need layers of the part that are not in a Stack.
     """
     try:
         each = _ascending(iter(layers))
@@ -159,7 +159,7 @@ def _ascending(layers: Iterator[Any]) -> Iterator[Layer]:
 
 
 def _check_stack(stack: Stack) -> None:
-    """Vectors are no material: a hatch has no contours, and each contour would be hatched."""
+    """Rejects scan vectors, which are not material: hatches have no contours, and each contour would be hatched."""
     for part in stack.parts:
         if part.exposure is not None:
             raise InputError(
@@ -183,7 +183,7 @@ def _warn_of_skins(stack: Stack, strategy: ScanStrategy) -> None:
 
 
 def _told(layers: Iterable[Layer]) -> Iterator[Layer]:
-    """Warns at the end of what they have that no vectors are made of."""
+    """Yields the layers, and warns at the end of content that vectors are not made of."""
     losses = _lamella.ScanLosses()
     for layer in layers:
         losses.add(layer)
@@ -206,7 +206,7 @@ def _scan(
     stack = source if isinstance(source, Stack) else None
     exposures = tuple(_lamella.exposures(strategy, part))
     wanted = strategy.downskin.layers, strategy.upskin.layers
-    # Those that iter_layers left out tell what is skin, too.
+    # Layers that iter_layers left out determine skins, too.
     beneath, on_top = source._beside(*wanted) if isinstance(source, LayerStream) and any(wanted) else ([], [])
     end = on_top[0] if on_top else None
     layers = chain(layers, on_top)
@@ -226,7 +226,7 @@ def _scan_layer(layer: Layer, exposures: Tuple[Exposure, ...], scanned: Tuple[Li
 
 
 def as_strategy(name: str, strategy: StrategyLike) -> ScanStrategy:
-    """One of its own: what becomes of the given one afterwards does not count."""
+    """Returns a copy, so that later changes of the given strategy have no effect."""
     if strategy is None:
         return ScanStrategy()
     if isinstance(strategy, ScanStrategy):
@@ -248,7 +248,7 @@ def _toml(path: str) -> Dict[str, Any]:
     except ImportError as error:
         raise ImportError("strategies as files need Python 3.11; a dict of the same tables will do") from error
     try:
-        with open(path, encoding="utf-8-sig", newline="") as file:  # a byte order mark is left out
+        with open(path, encoding="utf-8-sig", newline="") as file:  # skips a byte order mark
             return tomllib.loads(file.read())
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from error
@@ -257,7 +257,7 @@ def _toml(path: str) -> Dict[str, Any]:
 
 
 def _from_tables(name: str, tables: Mapping[str, Any]) -> ScanStrategy:
-    """The tables of a strategy file, of which any may be missing."""
+    """Converts the tables of a strategy file, any of which may be missing."""
     strategy = ScanStrategy()
     rules: List[Union[ContourRule, HatchRule]] = [
         strategy.contours, strategy.hatch, strategy.upskin.hatch, strategy.downskin.hatch,
@@ -312,21 +312,21 @@ def _assign(name: str, rule: Any, table: Any, sets: Optional[Dict[str, Parameter
         else:
             try:
                 setattr(rule, key, value)
-            except (TypeError, UsageError) as error:  # whose text begins with the key
+            except (TypeError, UsageError) as error:  # its text begins with the key
                 raise type(error)(f"{before}{error}") from None
 
 
 @dataclass(frozen=True)
 class Geometry:
-    """Lines as PySLM has them: its HatchGeometry, ContourGeometry."""
+    """Lines in the form of PySLM's HatchGeometry or ContourGeometry."""
 
     coords: npt.NDArray[np.float64]  #: hatches: (2 n, 2), from point to point; contours: (n, 2), the first one again
-    bid: int  #: the number of the build style: that of the exposure, from 1
+    bid: int  #: number of the build style, which is that of the exposure, from 1
     mid: int  #: of the model
     kind: str  #: "contour" or "hatch"
 
     def numPoints(self) -> int:  # noqa: N802, the name is PySLM's
-        """How many points it has."""
+        """Returns the number of points."""
         return len(self.coords)
 
 
@@ -339,25 +339,25 @@ class PyslmLayer:
     geometry: List[Geometry]
 
     def getGeometry(self) -> List[Geometry]:  # noqa: N802
-        """All of it, in order."""
+        """Returns all geometry, in order."""
         return list(self.geometry)
 
     def getHatchGeometry(self) -> List[Geometry]:  # noqa: N802
-        """The hatches."""
+        """Returns the hatches."""
         return [one for one in self.geometry if one.kind == "hatch"]
 
     def getContourGeometry(self) -> List[Geometry]:  # noqa: N802
-        """The contours."""
+        """Returns the contours."""
         return [one for one in self.geometry if one.kind == "contour"]
 
     def getPointsGeometry(self) -> List[Geometry]:  # noqa: N802
-        """None: no exposures of points."""
+        """Returns an empty list: there are no point exposures."""
         return []
 
 
 def to_pyslm(layer: ScanLayer, mid: int = 1) -> PyslmLayer:
-    """The layer as tools that know PySLM's layers take it; PySLM itself is not needed. `mid`: the number of the model.
-    Build styles (`bid`) are numbered like the exposures, from 1."""
+    """Converts a layer for tools that take PySLM's layers; PySLM itself is not needed. `mid` is the number of the
+    model. Build styles (`bid`) are numbered like the exposures, from 1."""
     if not isinstance(layer, ScanLayer):
         check.refuse_type("layer", "a ScanLayer", layer)
     mid = check.whole("mid", mid)

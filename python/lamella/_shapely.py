@@ -1,4 +1,4 @@
-"""Layers as polygons of shapely. Imported when somebody asks for them: Lamella itself does not need it."""
+"""Layers as polygons of shapely, which is imported on first use: Lamella itself does not need it."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ def multi_polygon(layer: Layer) -> Any:
         from shapely.validation import make_valid  # type: ignore[import]
     except ImportError as error:
         raise ImportError("to_shapely needs shapely: on Debian, apt install python3-shapely") from error
-    united = layer._filled("positive")  # material counts once where bodies overlap
+    united = layer._filled("positive")  # unites overlapping bodies
     material = MultiPolygon([
         Polygon(united[outer], [united[hole] for hole in holes]) for outer, holes in united.polygons()
     ])  # fmt: skip
     if material.is_valid:
         return material
-    # Bodies share edges, or rings touch themselves: they are right, but shapely takes them otherwise.
+    # Bodies share edges, or rings touch themselves: this is correct, but not valid in shapely.
     joined = unary_union([make_valid(polygon) for polygon in material.geoms])
     return MultiPolygon([part for part in getattr(joined, "geoms", [joined]) if isinstance(part, Polygon)])

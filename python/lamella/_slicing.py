@@ -1,4 +1,4 @@
-"""From a mesh to its layers."""
+"""Slicing of meshes."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ PLACES = ("bottom", "middle", "top")
 class Engine(NamedTuple):
     """An algorithm that makes layers of a mesh."""
 
-    name: str  #: what `engine=` takes
+    name: str  #: value for `engine=`
     summary: str  #: one line
     source: str  #: the publication it follows, or ""
 
 
 def engines() -> List[Engine]:
-    """The algorithms there are; the first is the default.
+    """Returns the available algorithms; the first is the default.
 
-    All give the same layers of a mesh that is closed and consistently oriented, with two triangles at each edge; but
-    "conventional" may err where contours touch in a point.
+    All give the same layers of a mesh that is closed and consistently oriented, with two triangles at each edge. An
+    exception is "conventional", which may err where contours touch in a point.
     """
     return [Engine(*row) for row in _lamella.engines()]
 
@@ -63,37 +63,37 @@ def slice(
 
     part: a path, a Mesh, a pair of arrays (vertices (n, 3) in millimetres, faces (m, 3)), an array of triangles
         (m, 3, 3), or anything with .vertices and .faces, such as a trimesh.Trimesh.
-    layer_height: thickness of a layer in millimetres, stacked from the bottom of the part; 0.1 unless given.
+    layer_height: thickness of a layer in millimetres, stacked from the bottom of the part; 0.1 by default.
 
     Instead of one layer height:
     z: ascending heights in millimetres, (layers,): cuts at exactly these.
-    offsets: the same, counted from the bottom of the part.
+    offsets: the same, relative to the bottom of the part.
     heights: ranges (from, to, layer_height) in millimetres above the bottom of the part; elsewhere layers are
         `layer_height` high.
     adaptive: the smallest and the largest layer height, for layers as high as the slopes of the surface allow:
-        their steps stand off by `cusp` millimetres at most, 0.05 unless given.
+        their steps deviate from it by at most `cusp` millimetres, 0.05 by default.
 
-    first_layer_height: thickness of the first layer in millimetres, where it differs.
-    at: where in its thickness a layer is cut: "bottom", "middle" or "top".
+    first_layer_height: thickness of the first layer in millimetres, if it differs.
+    at: position of the cut within a layer: "bottom", "middle" or "top".
     z_range: only layers cut from the first to the second of these heights, in millimetres.
-    layers: only layers from the first of these numbers to the one before the second.
-    snap: vertices no further from a plane than this, in millimetres, count as on it, such as those of faces that are
-        level but for rounding.
-    direction: the way up, (x, y, z) of any length; the mesh is turned so that it points along z.
+    layers: only layers from the first of these indices to the one before the second.
+    snap: vertices at most this far from a plane, in millimetres, count as on it, such as those of faces that are
+        horizontal except for rounding.
+    direction: the upward direction, (x, y, z) of any length; the mesh is rotated so that it points along z.
     transform: a (4, 4) matrix that is applied to the mesh before that, in millimetres.
-    unit_mm: millimetres per unit of a file that does not say its unit; 1 unless given.
+    unit_mm: millimetres per unit of a file that does not state its unit; 1 by default.
     engine: the algorithm, one of `engines`.
-    strict: makes a DefectError of any defect of the file or its mesh.
-    threads: 0 takes one for each processor. The result is the same, to the last bit, for any number.
-    progress: called as progress(stage, done, total) now and then, from the thread that called this: `done` of
-        `total` bytes, triangles or layers of the stages "read", "weld", "link" and "slice". What it raises stops
+    strict: raises a DefectError for any defect of the file or its mesh.
+    threads: number of threads; 0 is one for each processor. The result is the same, bit for bit, for any number.
+    progress: called as progress(stage, done, total) from time to time, on the calling thread: `done` of `total`
+        bytes, triangles or layers of the stages "read", "weld", "link" and "slice". An exception that it raises stops
         slicing and reaches the caller.
 
     Other Python threads run meanwhile. Ctrl-C stops within a second.
 
-    Raises UsageError, InputError, DefectError, LimitError. Issues a DefectWarning where the file is odd, where
-    contours do not close because the mesh has holes, where rings bound no material because triangles face inwards, and where
-    level faces lie within rounding of a plane, so that rounding decides what their layers are.
+    Raises UsageError, InputError, DefectError, LimitError. Issues a DefectWarning if the file has defects, if contours
+    do not close because the mesh has holes, if rings bound no material because triangles face inwards, and if
+    horizontal faces lie within rounding of a plane, so that rounding decides the content of their layers.
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
@@ -129,14 +129,14 @@ def iter_layers(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> LayerStream:
-    """The layers of a mesh one by one, in ascending z, while the next ones are being made: for parts whose layers do
-    not fit into memory. A bounded number of layers is held; those that were taken belong to who took them.
+    """Yields the layers of a mesh one by one, in ascending z, while the next ones are computed: for parts whose layers
+    do not fit into memory. It holds a bounded number of layers; those that were taken belong to the caller.
 
-    Takes what `slice` takes and gives the same layers. The mesh is read before this returns; what goes wrong later
-    is raised by the iterator. Leaving the loop early, close(), or `with` stops the work.
+    Takes what `slice` takes and gives the same layers. The mesh is read before this returns; later errors are raised
+    by the iterator. Leaving the loop early, close(), or `with` stops the work.
 
-    strict: looks at the mesh first; without it open chains (see Layer.open_chains) and rings that bound no material
-        pass without a warning.
+    strict: inspects the mesh first; without it open chains (see Layer.open_chains) and rings that bound no material
+        cause no warning.
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
@@ -166,7 +166,7 @@ def _prepared(
     threads: int,
     progress: Optional[Progress],
 ) -> Tuple[Mesh, _lamella.Plan]:
-    """The mesh as it is to be sliced, and the planes to cut it at."""
+    """Returns the placed mesh, and the planes to cut it at."""
     _check_conflicts(layer_height, z, offsets, heights, adaptive, cusp, first_layer_height)
     names = [known.name for known in engines()]
     if check.text("engine", engine) not in names:

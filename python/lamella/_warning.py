@@ -1,4 +1,4 @@
-"""Warnings that point at the line of the caller, however deep inside the package they come from."""
+"""Warnings that refer to the line of the caller, from any depth inside the package."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Iterable
 from ._errors import DefectWarning
 
 
-#: What Python has in the place of fields that texts of the library name.
+#: Python's names for fields in texts of the library.
 ARGUMENTS = {
     "`snap_mm` ": "snap=",
     "`close_gaps_mm` ": "lamella slice --close-gaps ",
