@@ -107,7 +107,6 @@ Json sliced(const BatchItem& item, const SliceItem& slice, const Execution& exec
     }
 }
 
-/// Returns the record as a worker sends it.
 std::string as_line(const Json& record) {
     return compact_json(record) + '\n';
 }
@@ -171,7 +170,6 @@ class Batch {
                                            return lines_of(task, items, slice, cancel);
                                        }) {}
 
-    /// Returns whether all files were finished.
     bool run(const Execution& execution) {
         while (told_ < items_.size() && !execution.cancelled()) {
             start_some(execution);

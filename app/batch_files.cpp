@@ -123,7 +123,6 @@ std::vector<std::string> files_listed(const std::string& list) {
     return lines;
 }
 
-/// Returns the deepest folder that contains all paths.
 fs::path common_folder(std::span<const fs::path> paths) {
     std::optional<fs::path> common;
     for (const fs::path& path : paths) {

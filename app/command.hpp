@@ -93,7 +93,6 @@ struct Example {
     std::string effect;
 };
 
-/// Arguments of a running command.
 struct Context {
     const Command& command;
     Messages& messages;
@@ -111,7 +110,7 @@ struct Command {
     std::function<int(const Context&)> run;
 };
 
-/// Returns the option of that name, or nullptr.
+/// Returns nullptr if there is none.
 [[nodiscard]] Option* find_option(Command& command, std::string_view name);
 [[nodiscard]] const Option* find_option(const Command& command, std::string_view name);
 

@@ -20,7 +20,6 @@ enum class Wish { run, help, dump_config };
 /// A --timeout on the command line also applies to reading the configuration file, which may be a pipe.
 [[nodiscard]] Wish parse(Command& command, std::span<const std::string> words, const Messages& messages);
 
-/// Returns the options that every command has.
 [[nodiscard]] OptionGroup common_options(bool configurable);
 
 /// Returns ", did you mean --layer-height?" or "", to be appended to an unknown option's name.

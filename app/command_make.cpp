@@ -197,7 +197,6 @@ void write_mesh(const std::string& output, const TriangleSoup& soup, const MakeA
         write_stl(output, soup);
 }
 
-/// Figures of the generated body.
 struct Made {
     std::uint64_t triangles = 0;
     Box3 box;

@@ -107,7 +107,6 @@ OptionGroup output_options(SliceArguments& target) {
     return group;
 }
 
-/// Completes the options of the file named last.
 void finish_input(SliceArguments& target) {
     PlateInput& input = target.inputs.back();
     const InputOptions& options = target.of_input;

@@ -30,7 +30,6 @@ std::string shell_quoted(std::string_view text) {
     return out;
 }
 
-/// Returns all options of a command in one list.
 std::vector<const Option*> options_of(const Command& command) {
     std::vector<const Option*> options;
     for (const OptionGroup& group : command.groups)

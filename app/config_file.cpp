@@ -61,7 +61,6 @@ std::optional<std::string> as_text(const TomlValue& value) {
     return std::nullopt;
 }
 
-/// Reads a table of the file.
 class Reading {
   public:
     explicit Reading(Command& command) : command_(command) {}

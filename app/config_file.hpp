@@ -9,7 +9,6 @@
 
 namespace lamella::app {
 
-/// An option's value in a file.
 struct ConfigEntry {
     std::string place; ///< file and line
     Option* option;
@@ -22,7 +21,6 @@ struct ConfiguredInput {
     std::vector<ConfigEntry> options;
 };
 
-/// Content of a file.
 struct Configuration {
     std::vector<ConfigEntry> options;
     std::vector<ConfiguredInput> inputs;

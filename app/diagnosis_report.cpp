@@ -80,7 +80,6 @@ Json bodies_json(const MeshFile& file) {
     return bodies;
 }
 
-/// Defects of one kind.
 struct Defect {
     DefectWords words;
     std::uint64_t count;

@@ -12,12 +12,10 @@
 
 namespace lamella::app {
 
-/// Exit code of a limit.
 constexpr int limit_exit_code = 5;
 /// Exit code of a batch with failed files.
 constexpr int batch_failed_exit_code = 7;
 
-/// Message for std::bad_alloc.
 constexpr std::string_view out_of_memory =
     "memory ran out; free some, or work on less at once: fewer parts, copies, layers or files";
 
@@ -30,7 +28,6 @@ struct Failure {
 /// Returns a text of the library in which field names, such as `max_memory`, are replaced by options.
 [[nodiscard]] std::string with_options(std::string text);
 
-/// Converts any exception.
 [[nodiscard]] Failure failure_of(const std::exception_ptr& error);
 
 /// Converts the end of a process that could not report itself; `status` is that of waitpid, `path` the file

@@ -38,7 +38,6 @@ using Figures = std::vector<Figure>;
 /// Returns the figures with these keys, in the order of the keys.
 [[nodiscard]] Figures picked(const Figures& figures, const std::vector<std::string_view>& keys);
 [[nodiscard]] Json as_json(const Figures& figures);
-/// Returns the lines of a result.
 [[nodiscard]] std::string as_lines(const Figures& figures);
 [[nodiscard]] std::vector<PageFact> as_facts(const Figures& figures);
 
@@ -58,13 +57,11 @@ template <class Places, class Tell>
 /// Returns "20 x 30 x 10 mm".
 [[nodiscard]] std::string size_text(const Box3& box);
 
-/// Returns the gaps of open contours.
 [[nodiscard]] Json open_gaps_json(const OpenGaps& gaps);
 /// Returns the rings that bound no material, and their volume; empty if there are none.
 [[nodiscard]] Json inverted_json(const InvertedLayers& inverted);
 /// Returns the output of `lamella slice --stats`; docs/program.md lists the keys.
 [[nodiscard]] Json stats_json(const Command& command, const FileJob& job, const FileResult& result);
-/// Returns the figures of each of several processes.
 [[nodiscard]] Json processes_json(const std::vector<ProcessFigures>& figures);
 /// Returns the text with a line end; names that are not UTF-8 get replacement characters.
 [[nodiscard]] std::string json_text(const Json& object);

@@ -9,9 +9,7 @@
 
 namespace lamella::app {
 
-/// `lamella --help`
 [[nodiscard]] std::string program_help(std::span<const Command> commands);
-/// `lamella slice --help`
 [[nodiscard]] std::string command_help(const Command& command);
 
 /// Returns the text after the command's name: "FILE [options]".

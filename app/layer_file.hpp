@@ -21,7 +21,6 @@ namespace lamella::app {
 /// one.
 void tell(const LayerFile& file, const std::vector<std::string>& warnings, bool strict, Messages& messages);
 
-/// Changes made by steps.
 struct StepChanges {
     std::vector<LayerChanges> planes;
     LayerChanges all;

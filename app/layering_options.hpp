@@ -29,7 +29,6 @@ struct LayeringOptions {
     [[nodiscard]] Layering layering() const;
 };
 
-/// "--snap".
 [[nodiscard]] Option snap_option(std::optional<double>& target);
 
 [[nodiscard]] OptionGroup layering_options(LayeringOptions& target);

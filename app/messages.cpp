@@ -164,7 +164,6 @@ std::string Messages::error_line(const std::string& text, int exit_code) const {
 }
 
 void Messages::draw_bar(const Progress& progress, double seconds) {
-    // Very short runs need no bar.
     constexpr double patience = 0.3;
     if (seconds < patience || progress.total == 0)
         return;

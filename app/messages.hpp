@@ -49,7 +49,7 @@ class Messages {
     /// Reports progress. Must be called from one thread at a time, as Execution::progress is.
     void progress(const Progress& progress);
 
-    /// Prints a result on standard output. Throws Error{output}.
+    /// Throws Error{output}.
     void result(std::string_view text);
     /// Prints "lamella: warning: ..." on one line, with options in place of fields (`with_options`).
     void warn(const std::string& text);

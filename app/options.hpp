@@ -88,13 +88,11 @@ struct ReadLimits {
     [[nodiscard]] MeshReadOptions of_meshes() const;
     [[nodiscard]] LayerReadOptions of_layers() const;
 };
-/// For commands that read meshes.
 [[nodiscard]] Option include_option(ReadLimits& target);
 [[nodiscard]] Option max_triangles_option(ReadLimits& target);
 /// For commands that hold their input in memory; `what` describes the input in their help.
 [[nodiscard]] Option max_memory_option(ReadLimits& target, std::string_view what);
 
-/// Format and options of the slice file.
 struct LayerOutputOptions {
     std::string format = {};
     std::optional<double> units_mm = {};
@@ -113,7 +111,6 @@ struct LayerOutputOptions {
 /// Throws Error{usage} that lists these formats, if the option is given and the format is none of them.
 void check_format(const LayerFormat& chosen, bool given, std::string_view option, bool LayerFormat::*takes);
 
-/// Steps applied to the layers before they are written.
 struct LayerStepOptions {
     std::string fill = "none";
     std::optional<double> offset;

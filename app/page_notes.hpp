@@ -24,7 +24,6 @@ inline constexpr std::size_t page_places = 500;
 /// Returns the title of the page of a plate: "rook.stl", "rook.stl and 2 more".
 [[nodiscard]] std::string title_of(const std::vector<PlateInput>& inputs);
 
-/// Returns the extensions of pages.
 [[nodiscard]] std::vector<std::string_view> page_extensions();
 
 /// Returns options with this program's viewer and the title for that file.

@@ -69,7 +69,6 @@ Json file_json(const std::string& path, const Execution& execution) {
     return std::filesystem::is_regular_file(path, ignored) ? output_json(path, execution) : Json();
 }
 
-/// A stamp with its file.
 struct Stamped {
     std::string path;
     Json stamp;

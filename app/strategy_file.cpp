@@ -132,7 +132,6 @@ const TomlTable& table_of(const TomlValue& value, const std::string& name) {
     return *table;
 }
 
-/// Reads a file.
 class StrategyReading {
   public:
     ScanStrategy strategy;

@@ -33,7 +33,6 @@
 namespace lamella::app {
 namespace {
 
-/// Makes values from the library's nodes.
 class Conversion {
   public:
     explicit Conversion(const std::string& name) : name_(name) {}

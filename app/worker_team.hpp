@@ -22,7 +22,6 @@ struct WorkerTask {
     unsigned threads = 1;
 };
 
-/// Result of a task.
 struct WorkerAnswer {
     WorkerTask task;
     std::optional<std::string> text; ///< result of the work; unset if the process ended before

@@ -25,7 +25,7 @@ from ._warning import warn
 class Verification:
     """Findings of `verify`. Lengths are millimetres."""
 
-    ok: bool  #: no open chains, crossings, misoriented rings, layer gaps or overlaps; areas and centres agree
+    ok: bool  #: no open chains, crossings, misoriented rings, layer gaps or overlaps; areas and centroids agree
     layers: int
     contours: int
     points: int

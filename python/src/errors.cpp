@@ -55,7 +55,7 @@ void register_errors() {
             PyErr_SetString(PyExc_TypeError,
                             "an object cannot be used: perhaps its __init__ has not been called");
         } catch (const py::builtin_exception&) {
-            throw; // likewise
+            throw; // an exception of Python
         } catch (const std::bad_alloc&) {
             raise(ErrorKind::limit,
                   "memory ran out; free some, or work on less at once: fewer parts or fewer layers (layers)");

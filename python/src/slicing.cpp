@@ -98,7 +98,6 @@ std::string near_faces_of(const MeshPointer& mesh, const CutPlan& cuts, unsigned
     return found.text(cuts.plan.layers.size());
 }
 
-/// Binds the layerings.
 void bind_cuts(py::module_& module) {
     py::class_<UniformLayers>(module, "UniformLayers")
         .def(py::init([](double layer_height, std::optional<double> first_layer_height) {

@@ -40,9 +40,8 @@ struct MeshSource {
     std::optional<double> unit_mm = {}; ///< if the file states none
     Transform placement = {};
 
-    /// Returns the plate. Throws the errors of load_plate.
+    /// Throws the errors of load_plate.
     [[nodiscard]] Plate plate(const Execution& execution) const;
-    /// Returns whether the plate has negative volumes.
     [[nodiscard]] bool has_negatives() const;
 };
 

@@ -30,7 +30,6 @@ void or_wait_for_the_end(const Call& call) {
 #endif
 }
 
-/// Releases the interpreter lock during its lifetime.
 class Unlocked {
   public:
     Unlocked() : thread_(PyEval_SaveThread()) {}

@@ -25,7 +25,6 @@ namespace lamella {
 
 namespace {
 
-/// Returns the labels of parts with hatches, ascending.
 std::vector<std::string> hatched_labels(const LayerFile& file) {
     std::vector<std::string> labels;
     for (const LayerPart& part : file.parts)

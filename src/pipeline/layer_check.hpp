@@ -23,7 +23,6 @@ struct Finding {
     void add(const Finding& other);
 };
 
-/// Findings about the contours of layers.
 struct ContourFindings {
     Finding open_chains;
     Finding crossings;

@@ -48,7 +48,6 @@ class LayerWindow {
         Parts parts;
         std::uint32_t users; ///< number of planes that still need it
     };
-    /// A plane with all of its neighbours.
     struct Complete {
         std::uint32_t plane;
         std::vector<Parts> layers; ///< ascending

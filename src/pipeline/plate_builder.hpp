@@ -27,7 +27,6 @@ void check_inputs(std::span<const PlateInput> inputs);
 /// Collects the instances of all files.
 class PlateBuilder {
   public:
-    /// Returns the box of a mesh under a transform.
     using BoxOf = std::function<Box3(const Mesh& mesh, const Transform& placement)>;
 
     /// Adds a file. Calls `box_of` once for each instance. Throws as load_plate.
@@ -60,7 +59,6 @@ class PlateBuilder {
     Plate plate_;
     std::vector<std::vector<MeshObject>> objects_;
     std::vector<Instance> instances_;
-    /// Parts by input, copy and body.
     std::map<std::tuple<std::size_t, std::uint64_t, std::uint64_t>, std::vector<std::size_t>> bodies_;
 };
 

@@ -20,7 +20,6 @@ namespace {
 /// Reports the progress of several runs of one kind as one.
 class JointProgress {
   public:
-    /// Announces another run.
     void expect(std::uint64_t triangles, std::uint64_t planes) {
         triangles_ += triangles;
         planes_ += planes;
@@ -68,7 +67,6 @@ Layer moved(const Layer& layer, double dx, double dy) {
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
-/// Visits parts, and then negative volumes.
 template <class Visit>
 void for_bodies(const Plate& plate, const Visit& visit) {
     for (const PlatePart& part : plate.parts)
@@ -203,8 +201,8 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
                         const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
                         SinkYield yield, const ShapeVisitor& visitor) {
     SliceReport report;
-    // Each range visits all triangles; they are few, and large. Engines that weld would weld again for each
-    // range.
+    // Each range visits all triangles, so ranges are few and large. Engines that weld would weld again for
+    // each range.
     constexpr std::uint64_t share = 2;
     const auto all = static_cast<std::uint32_t>(plan.layers.size());
     const std::vector<PlaneRange> runs = engine.welds || points_in_flight == 0

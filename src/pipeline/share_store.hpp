@@ -60,8 +60,8 @@ class ShareStore {
     std::size_t shares_;
     std::size_t shapes_;
     std::vector<Stretch> stretches_;
-    std::deque<SpillFile> files_;                         ///< either
-    std::shared_ptr<const PageArray<Triangle3f>> memory_; ///< or
+    std::deque<SpillFile> files_;                         ///< of several ranges
+    std::shared_ptr<const PageArray<Triangle3f>> memory_; ///< of a single range
 };
 
 } // namespace lamella

@@ -103,7 +103,6 @@ struct ContourRow {
     }
 };
 
-/// Findings about the vectors of a plane.
 struct PlaneCheck : ContourFindings {
     Finding outside;
     Finding too_short;
@@ -127,7 +126,6 @@ struct Bounds {
     double depth = 0;            ///< distance of their outlines from that of the part
 };
 
-/// Tolerance of the area covered by lines.
 class Slack {
   public:
     /// A line may end half a distance beside the edge of the area, and areas narrower than the shortest line
@@ -197,7 +195,6 @@ class AskedLines {
     double tolerance_;
 };
 
-/// A hatch line with its rule and layer.
 struct HatchLine {
     const Point2* ends = nullptr;
     const HatchRule* rule = nullptr;

@@ -30,7 +30,6 @@ char* put_value(char* out, T value) noexcept {
     return out + sizeof value;
 }
 
-/// Returns the same bytes as a string.
 template <class T>
 std::string bytes_of(T value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};

@@ -97,7 +97,6 @@ void for_each_contour(const Layer& layer, Sequence sequence, const Write& write)
         write(layer.contour(i), false);
 }
 
-// Calls format(part, id) for each part.
 template <class Format>
 void for_each_part(std::span<const Layer> parts, const Format& format) {
     for (std::size_t i = 0; i < parts.size(); ++i)

@@ -23,7 +23,6 @@ void check_length(const std::optional<AlongXY<double>>& mm, std::string_view wha
                     fmt::format("{} of {} x {} mm: choose positive numbers", what, mm->x, mm->y));
 }
 
-/// One direction of the display.
 struct Side {
     std::uint32_t pixels;
     double pixel_mm;

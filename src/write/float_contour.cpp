@@ -45,7 +45,6 @@ using FourFloats = Vector<4>::Floats;
     return __builtin_convertvector(pair * scale, FourFloats) + 0.0F;
 }
 
-// Returns whether two neighbours are equal.
 [[gnu::always_inline]] inline bool any_repeats(const char* points, std::size_t count) {
     const auto words = [&](std::size_t i) -> const Vector<4>::WordsAnywhere& {
         return *reinterpret_cast<const Vector<4>::WordsAnywhere*>(points + i * float_point_size);

@@ -53,7 +53,6 @@ ParameterSet kept_in_list(ParameterSet set) {
     return set;
 }
 
-/// One file of the archive.
 struct Section {
     std::string name;
     std::string code; ///< in the name

@@ -136,7 +136,6 @@ class Thinning {
     double tolerance_mm_ = 0;
 };
 
-/// Size of a layer on the page.
 struct Cost {
     std::uint64_t bytes = 0;
     std::uint64_t points = 0;

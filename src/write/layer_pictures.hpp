@@ -14,7 +14,6 @@
 
 namespace lamella {
 
-/// A layer as a PNG file.
 struct LayerPicture {
     std::shared_ptr<const ByteBuffer> file;
     std::uint32_t crc = 0; ///< of the file

@@ -66,7 +66,7 @@ class LeftOut {
     std::uint64_t unknown_ = 0;       ///< parts without parameters of scan vectors
     std::uint64_t supports_ = 0;      ///< support parts that are not marked otherwise
     std::uint64_t labelled_ = 0;      ///< parts whose labels differ from the default
-    std::string first_labelled_;      ///< of those
+    std::string first_labelled_;      ///< first label of these
     std::uint64_t changed_parts_ = 0; ///< parts that lose a parameter that differs from its default
     PlaneExtras noted_;               ///< of all planes
     RoundingLoss rounding_;

@@ -60,7 +60,6 @@ std::u32string characters(std::string_view text) {
 
 /// Size in the tables: end, layer, part, and whether it is closed.
 constexpr std::uint64_t bytes_of_contour = 3 * sizeof(std::int64_t) + 1;
-/// Two points.
 constexpr std::uint64_t bytes_of_line = 4 * sizeof(double);
 /// A line with its layer and part.
 constexpr std::uint64_t bytes_of_hatch = bytes_of_line + 2 * sizeof(std::int64_t);
@@ -115,7 +114,6 @@ class NpzWriter final : public OrderedWriter {
         zip_.finish();
     }
 
-    /// Counts of one part on one plane.
     struct PartPlane {
         std::uint64_t contours;
         std::uint64_t rings;

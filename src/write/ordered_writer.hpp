@@ -58,7 +58,6 @@ class PlaneOrder {
     [[nodiscard]] bool adjoins(const PlanePlace& plane) const noexcept {
         return is_piece_ || count_ == 0 || std::abs(plane.bottom - last_.top) <= same_height_mm;
     }
-    /// Returns the number of planes so far.
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
   private:
@@ -94,7 +93,6 @@ class OrderedWriter : public LayerWriter {
 
     /// Returns the counter of losses by rounding.
     [[nodiscard]] RoundingLoss& rounding_loss() noexcept { return left_out_.rounding(); }
-    /// Returns a buffer for formatted text.
     [[nodiscard]] std::shared_ptr<ByteBuffer> buffer() { return buffers_->take(); }
 
   private:

@@ -90,7 +90,6 @@ std::vector<std::string> ends_of_blocks(const ExposureKeys& keys) {
     return ends;
 }
 
-/// Writes parameters and parts of the job.
 void put_keys(const ExposureKeys& keys, double layer_thickness, ProtobufMessage& job) {
     std::int64_t key = 1;
     for (const Exposure& exposure : keys.exposures)

@@ -17,7 +17,6 @@
 
 namespace lamella::package_3mf {
 
-/// Compressed bytes of a part of the package.
 struct Piece {
     std::string bytes;
     std::uint64_t size = 0;
@@ -26,7 +25,6 @@ struct Piece {
     [[nodiscard]] ZipPiece in_zip() const { return {bytes, size, crc}; }
 };
 
-/// A package under construction.
 class PackageWriter : public OrderedWriter {
   public:
     [[nodiscard]] std::uint64_t bytes() const noexcept override { return zip_.bytes(); }

@@ -42,7 +42,6 @@ std::string json_list(const Range& range, const Tell& tell) {
 /// Returns {"sections":[...],"places":[...]}
 [[nodiscard]] std::string notes_json(const PageNotes& notes);
 
-/// Returns an element that holds JSON.
 [[nodiscard]] std::string json_element(std::string_view id, std::string_view json);
 /// Returns an element that holds bytes, in Base64.
 [[nodiscard]] std::string data_element(std::string_view bytes);

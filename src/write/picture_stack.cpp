@@ -109,7 +109,7 @@ class PictureStackWriter final : public OrderedWriter {
     Display display_;
     LayerPictures pictures_;
     Manifest manifest_;
-    std::optional<AtomicDirectory> folder_; ///< or
+    std::optional<AtomicDirectory> folder_; ///< or archive_
     std::optional<ZipWriter> archive_;
 };
 

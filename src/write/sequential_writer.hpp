@@ -33,7 +33,7 @@ class SequentialWriter : public OrderedWriter {
     void end_file() final;
     void append_bytes(std::string_view bytes);
 
-    std::optional<AtomicFile> file_; ///< or
+    std::optional<AtomicFile> file_; ///< unset if piece_ is set
     const LayerFilePiece* piece_;    ///< a range of its layers
     std::uint64_t piece_bytes_ = 0;
     std::uint64_t file_layers_;

@@ -28,7 +28,7 @@ struct MergeResult {
 };
 
 /// Merges slice files of one format with adjoining layers, such as the shards of one job; they may be in any
-/// order. Files of the Common Layer Interface are concatenated unchanged if that is also the output format
+/// order. Layers of the Common Layer Interface are copied unchanged if that is also the output format
 /// (`options` then have no effect): the result is, byte for byte, the file of a single run. Layers of other
 /// formats are read and rewritten. Memory holds one of the files at a time.
 ///
@@ -36,7 +36,7 @@ struct MergeResult {
 /// - Error{input}, naming both files, if they differ in their parts (formats of scan vectors list only parts
 ///   that are not empty), the parameters of a part, units or header, or if one begins above the end of the
 ///   one below it (a layer gap) or below it (an overlap);
-/// - Error{input} for files to be concatenated whose reading gives a warning;
+/// - Error{input} for files to be copied whose reading gives a warning;
 /// - Error{usage} for inputs that can be read only once, such as pipes, and if `output` exists and its layers
 ///   adjoin those of the files, since it then is one of them;
 /// - the errors of reading and writing.

@@ -86,7 +86,7 @@ struct LayerWriteOptions {
     /// Common Layer Interface: millimetres per coordinate unit. Coordinates are rounded to multiples of it in
     /// the ASCII and the short binary form; the long binary form keeps single precision.
     double units_mm = usual_units_mm;
-    /// Common Layer Interface, binary: 16-bit coordinates; Error{usage} where they do not fit.
+    /// Common Layer Interface, binary: 16-bit coordinates; Error{usage} if they do not fit.
     bool short_form = false;
     /// png, png-zip, sl1, sl1s.
     PictureOptions picture = {};
@@ -110,7 +110,7 @@ struct LayerFormat {
     std::string_view file_extension = extension;
     bool directory = false;    ///< writes one file per layer into a directory
     bool pieces = false;       ///< ranges of layers can be written separately
-    bool joins = false;        ///< files of consecutive layers can be concatenated
+    bool joins = false;        ///< files of consecutive layers can be merged without reading the layers
     bool one_way = false;      ///< layers cannot be read back
     bool filled_parts = false; ///< files contain only those parts that are not empty
     bool cuts = false;         ///< keeps the heights of cuts; readers of other formats take the middle
