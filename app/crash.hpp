@@ -19,6 +19,7 @@ namespace lamella::app {
 /// - A pipe without a reader and a file that is too large are errors of writing.
 /// - Exceeding the processor time limit ends the program with the exit code of limits; a worker, which
 ///   reports nothing, ends by that signal.
+///
 /// Signals with an existing handler (such as that of a sanitizer) are left alone.
 void prepare_for_crashes() noexcept;
 

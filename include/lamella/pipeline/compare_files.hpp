@@ -55,6 +55,7 @@ struct FileComparison {
 };
 
 /// Compares the contours of two files as `compare` does, and these details:
+///
 /// - Hatch lines are compared one by one, in their order: exposure by exposure if each exposure has a
 ///   partner; else part by part if the same labels have hatch lines; else those of all parts together. Their
 ///   ends agree within the tolerance, by default that explained by rounding.

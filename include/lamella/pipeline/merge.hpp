@@ -33,6 +33,7 @@ struct MergeResult {
 /// formats are read and rewritten. Memory holds one of the files at a time.
 ///
 /// `format` is a name; "" selects by the extension of `output`. Throws
+///
 /// - Error{input}, naming both files, if they differ in their parts (formats of scan vectors list only parts
 ///   that are not empty), the parameters of a part, units or header, or if one begins above the end of the
 ///   one below it (a layer gap) or below it (an overlap);
