@@ -15,27 +15,27 @@ def build_page(measured, figures, machine, timeout):
     growth."""
     titles = {part.name: part.title for part in measured.parts}
     page = Page("The EECC paper, measured again")
-    page.say(f"{figures['source']}. Beside each figure of the paper stands ours and the ratio paper / ours.",
-             "The paper does not say what its machine was, so a ratio of seconds mixes machine, implementation and the "
-             "part. Counts (Tables 2, 3, 4 and 7) do not depend on a machine; ratios between engines hardly do.",
+    page.say(f"{figures['source']}. Each figure of the paper is followed by ours and the ratio paper / ours.",
+             "The paper does not name its machine, so ratios of seconds depend on machine, implementation and part. "
+             "Counts (Tables 2, 3, 4 and 7) do not depend on the machine; ratios between engines hardly do.",
              f"{machine['processor']}, {machine['threads']} threads (the paper's engines use one); {machine['memory']}; "
              f"{machine['system']}; {machine['compiler']}; {machine['program']}; {machine['date']}.",
-             f"Each measurement is a process of its own; seconds are from opening the file to the last layer in memory, "
-             f"medians where a run is short. Limit for a run: {timeout:g} s. What takes longer "
-             "is estimated from runs on some of the planes, which gives a lower bound (**≥**: lists of few planes fit "
-             "the cache, those of all may not), or from the next smaller sheet (**≈**). "
-             "A time counts when the layers "
-             "are those of the sweep engine: see *correctness* below.".replace("*correctness*", "**Correctness**"))
+             "Each measurement is a process of its own. Seconds are from opening the file to the last layer in "
+             f"memory; those of short runs are medians. Limit for a run: {timeout:g} s. Longer times are estimated "
+             "from runs on some of the planes (**≥**: a lower bound, because the lists of few planes fit the cache "
+             "and those of all may not) or from the next smaller sheet (**≈**). A time counts only if the layers "
+             "equal those of the sweep engine; see **Correctness** below.")
     page.heading("The parts")
-    page.say("The sheets are the paper's to the triangle. Its other parts are not published: these are of the same kind, size "
-             "and number of triangles. Each is drawn in layers, opened at one of them, and that layer from above.")
+    page.say("The sheets equal the paper's to the triangle. The other parts of the paper are not published; ours have "
+             "the same kind, size and number of triangles. Each image shows the stack of layers up to one layer, and "
+             "that layer from above.")
     for part in measured.parts:
         if part.name in measured.pictures:
             page.show(Chart(f"part-{part.name}", f"{part.title}, as in {VIEWS[part.name].figures}", measured.pictures[part.name]))
     page.heading("Fig. 2: a false match")
-    page.say("Two boxes touch along an edge, which every plane cuts in one point. The conventional way asks whose end has the "
-             "same coordinates, and takes the first that it finds: here, of another box. ECC, EECC and the sweep ask which "
-             "triangles share the edge.")
+    page.say("Two boxes touch along an edge, which every plane cuts in one point. The conventional method looks for an "
+             "end with the same coordinates and takes the first that it finds, here one of the other box. ECC, EECC "
+             "and the sweep use the triangles that share the edge.")
     page.show(Chart("false-match", "The layer of two boxes that touch along an edge", measured.false_match))
     page.heading("Table 5: time")
     page.show(tables.times(measured.cells, titles, figures["table5_seconds"], ENGINES, figures["stopped_after_seconds"]))
@@ -49,47 +49,51 @@ def build_page(measured, figures, machine, timeout):
     page.show(tables.searches(measured.cells, titles, figures["table2_searches"]))
     page.heading("Table 3: cases under edge matching")
     page.show(tables.cases(measured.cells, titles, figures["table3_cases"]))
-    page.say("Sheets are rebuilt to the triangle; the other parts are of the same kind and size, so their counts can only "
-             "be alike. What the paper counts as put in front of or behind a list depends on the order of the triangles in "
-             "its files, which it does not give.")
+    page.say("The sheets equal the paper's to the triangle; the other parts only have the same kind and size, so their "
+             "counts can only be similar. The counts of front and back depend on the order of the triangles in the "
+             "paper's files, which it does not give.")
     page.heading("Table 4: how often each case occurs")
     shares, count = tables.case_shares(measured.cells, figures["table4_percent"])
     page.show(shares)
-    page.say(f"The paper's mean is over 50 parts that it does not publish, ours over {count}.")
+    page.say(f"The paper's mean is over 50 unpublished parts, ours over {count}.")
     page.heading("Table 6: other slicers")
     if measured.rival_cells:
         page.show(tables.against_rivals(measured.rival_cells, measured.cells, titles, measured.rival_titles,
                                         figures["table6_seconds"]))
-        page.say("Theirs are whole processes, from the STL file to G-code with one wall and no infill (Slic3r: its slices "
-                 "as SVG); `make rivals` has the full comparison. The paper had timers put into their sources, of "
-                 "versions that it does not name.")
+        page.say("Their times are of whole processes, from the STL file to G-code with one wall and no infill (for "
+                 "Slic3r, to slices as SVG); `make rivals` makes the full comparison. The paper's times come from "
+                 "timers added to the sources of unnamed versions.")
     else:
         page.say("Not measured in this run.")
     page.heading("Table 7: growth")
-    page.say("The paper's formulas, with k lists on a plane and m intersections on a triangle, and n triangles: ECC checks "
-             "O(m n) at best, O(k m n) at worst; EECC O(2 n) and O(2 k n). Here both are counted on sheets in which k and m "
-             "are set alone. k is half the triangles that cross a plane, which the split order reaches; hole by hole, the "
-             "active lists of EECC are those of one hole.")
+    page.say("In the paper's formulas, k is the number of lists on a plane, m the number of intersections on a "
+             "triangle, and n the number of triangles. ECC checks O(m n) lists at best and O(k m n) at worst, EECC O(2 "
+             "n) and O(2 k n). Here the checks are counted on sheets in which k and m vary independently. k is half "
+             "the number of triangles that cross a plane. The split order reaches this number of lists; in the order "
+             "hole by hole, the active lists of EECC are those of one hole.")
     page.show(tables.exponents(measured.growth, figures["table7_checks"]))
     for block in growth_charts(measured.growth):
         page.show(block)
     page.heading("Section 4.1: bytes per intersection")
     page.show(tables.memory(measured.growth, figures["section41_bytes"]))
-    page.say("The node is what the paper counts. Ours keeps coordinates in double precision, 8 bytes more. The other columns "
-             "are slopes over the number of intersections: of what nodes, lists and edges allocate, and of the peak memory "
-             "of the whole process. The sweep engine keeps no node per intersection: what grows is its output.")
+    page.say("The paper counts the node only. Our node is 8 bytes larger because its coordinates are in double "
+             "precision. The other columns are bytes per additional intersection: allocated for nodes, lists and "
+             "edges, and in the peak memory of the whole process. The sweep engine has no node per intersection; only "
+             "its output grows.")
     page.heading("The order of the triangles")
-    page.say("The same sheet with its triangles in four orders: wall by wall, hole by hole (the lower triangles of its "
-             "wall, then the upper ones; the sheets of all tables above), split (all lower triangles of the walls, then all "
-             "upper ones), and shuffled. The order decides how many lists are open at a time.")
+    page.say("These runs have the same sheet with its triangles in four orders: wall by wall; hole by hole (the lower "
+             "triangles of its walls, then the upper ones; so are the sheets of all tables above); split (all lower "
+             "triangles of the walls, then all upper ones); and shuffled. The order decides how many lists are open at "
+             "a time.")
     page.show(tables.orders(measured.order_cells, measured.order_parts))
-    page.say("**Which order had the paper's sheets?** It does not say. Table 3 leaves two: half of the intersections begin a "
-             "list and half link two, hardly any come to the front or the back, so all lower triangles of something come "
-             "before the upper ones: of each hole, or of the sheet. Table 5 decides. With the time of everything else taken "
-             "off, EECC needs 118, 174, 180, 181 and 196 microseconds per search of Table 3 on 100 to 1,225 holes: "
-             "its active list does not grow with the sheet, so it holds the lists of one hole. And edge matching alone, "
-             "which differs from EECC in the completed lists that it still visits, needs 0.34 to 0.45 microseconds more per "
-             "search for each hole of the sheet. Split over the sheet, the active list would grow with the holes. So:")
+    page.say("**Which order did the paper's sheets have?** The paper does not say. According to Table 3, half of the "
+             "intersections begin a list, half link two, and hardly any are put at the front or the back. All lower "
+             "triangles must therefore come before the upper ones, either in each hole or in the whole sheet. Table 5 "
+             "decides between the two. Without the time of everything else, EECC needs 118, 174, 180, 181 and 196 "
+             "microseconds per search of Table 3 on 100 to 1,225 holes. Its active list does not grow with the sheet, "
+             "so it holds the lists of one hole; with a split over the whole sheet, it would grow with the number of "
+             "holes. Edge matching alone, which still visits completed lists, needs 0.34 to 0.45 microseconds more per "
+             "search for each hole of the sheet. The ratios confirm the order hole by hole:")
     page.show(tables.order_of_the_paper(measured.cells, measured.split_cells, titles, figures["table5_seconds"]))
     page.heading("Correctness")
     page.show(correctness(measured.cells + measured.order_cells + measured.split_cells))
@@ -150,8 +154,8 @@ def correctness(cells):
 
 def not_reproduced(cells, titles, figures):
     """The largest departures from the paper, and the general reasons."""
-    texts = ["The seconds of the paper as such: its machine and compiler are not known, and all parts but the sheets had to "
-             "be built anew."]
+    texts = ["The seconds of the paper themselves: its machine and compiler are not known, and all parts except the "
+             "sheets had to be rebuilt."]
     for engine in ("ecc", "eecc"):
         ratios = {}
         for part, theirs in figures["table5_seconds"].items():
@@ -163,17 +167,19 @@ def not_reproduced(cells, titles, figures):
             low, high = min(ratios, key=ratios.get), max(ratios, key=ratios.get)
             texts.append(
                 f"{ENGINE_TITLES[engine]}: the paper's time is {brief(ratios[low])} times ours on {titles[low]} and "
-                f"{brief(ratios[high])} times on {titles[high]}. Where lists are few, ours does little per intersection; "
-                "where a search looks at tens of thousands of lists, both wait for memory.")
+                f"{brief(ratios[high])} times on {titles[high]}. If lists are few, ours does little work per "
+                "intersection; if a search looks at tens of thousands of lists, both wait for memory.")
     alike = [titles[part] for part in titles if not_slower(cells, part, "ecc", "eecc")]
     if alike:
-        texts.append(f"A gain of EECC over ECC on {', '.join(alike)}: there few lists are open at a time, so a search is "
-                     "over at once in ECC, too, and edge links only cost.")
+        texts.append(f"A gain of EECC over ECC on {', '.join(alike)}: few lists are open at a time there, so a search "
+                     "ends at once in ECC, too, and edge links only add cost.")
     odd = tables.find(cells, "rook", "ecc")
     if odd and odd.matching:
-        texts.append(f"Table 2 gives the rook {figures['table2_searches']['rook']['ecc']:,} searches by ECC. A rook of that size "
-                     f"has {odd.matching['searches']:,} intersections on these planes, and ECC searches once for each: the "
-                     "paper's figure must belong to another model or layer height. Its Tables 1 and 5 also give two times for "
+        texts.append(f"Table 2 gives the rook {figures['table2_searches']['rook']['ecc']:,} searches by ECC. A rook of "
+                     "that size "
+                     f"has {odd.matching['searches']:,} intersections on these planes, and ECC searches once for each; "
+                     "the paper's figure must belong to another model or layer height. Its Tables 1 and 5 also give "
+                     "two times for "
                      "the rook (5.573 and 34.81 s, 0.575 and 2.855 s).")
     return texts
 

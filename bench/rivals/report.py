@@ -16,9 +16,9 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
               **{rival.name: rival.title for rival, _ in rivals}}
     part_titles = {part.name: part.title for part in parts}
     page.say(
-        "The same parts, cut at the same heights (0.1 mm, in the middle of each layer), one process after the other on "
-        "one machine. A rival's time counts when its layers are Lamella's: the column *same layers* says what its "
-        "output shows. A cell that does not count stays visible, in brackets.".replace("*", "**"),
+        "All slicers cut the same parts at the same heights (layers of 0.1 mm, cut in the middle), one process after "
+        "the other on one machine. A rival's time counts only if its layers equal Lamella's; the column *same layers* "
+        "gives the result of this check. Times that do not count are in brackets.".replace("*", "**"),
         f"{machine['processor']}, {machine['threads']} threads, {machine['memory']}; {machine['system']}; "
         f"{machine['program']}; {machine['date']}. Limit for one run: {timeout:g} s.")
     telling = [part for part in TELLING if part in part_titles]
@@ -31,17 +31,18 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
         page.heading(part.title)
         page.show(part_table([cell for cell in cells if cell.part == part.name], titles))
     page.heading("What is compared")
-    page.say("**Whole process**: from its start to its end, file to file. Lamella writes a CLI file; what the others "
-             "write is in the table below. Printers' slicers go on to tool paths, with one wall and no infill, as in "
-             "the paper; their time for **cutting alone** is what they report of their first stage, which for some "
-             "includes cleaning up the contours. Lamella's is from the mesh in memory to the layers in memory. Times are "
-             "medians where a run is short. Memory is the peak resident size; what starts the programs weighs some "
-             "7 MB, and nothing shows less.",
-             "**Equal** means: the same number of contours in every layer, and areas and lengths that agree to one in "
-             "100,000. Otherwise the differences are told: layers without a partner at that height, contours in all "
-             "layers, and sums of differences over sums. A cell counts when at most one layer is missing (or 1% of them) "
-             "and contours, areas and lengths agree within 1%. Tool paths run inside the contour and close gaps by design: areas are "
-             "computed back from them.")
+    page.say("**Whole process** is the time from the start to the end of the process, from file to file. Lamella "
+             "writes a CLI file; the table below lists the outputs of the others. Slicers for printers continue to "
+             "tool paths, with one wall and no infill, as in the paper. **Cutting alone** is the time that they report "
+             "for their first stage, which for some includes cleaning up the contours; for Lamella, it is the time "
+             "from the mesh in memory to the layers in memory. Times of short runs are medians. Memory is the peak "
+             "resident size; it is never below about 7 MB, the size of the program that starts the others.",
+             "**Equal** means that every layer has the same number of contours, and that areas and lengths agree to "
+             "one in 100,000. Otherwise the column lists the differences: layers without a partner at the same height, "
+             "numbers of contours in all layers, and the sums of the differences of areas and lengths, relative to "
+             "their sums. A time counts if at most one layer (or 1% of them) is missing, and contours, areas and "
+             "lengths agree within 1%. Tool paths run inside the contour and close gaps by design; contour areas are "
+             "reconstructed from them.")
     table = Table(["slicer", "version", "threads", "writes", "compared"], texts=5)
     table.add("Lamella", machine["program"].split()[-1], "all, or one", "CLI file", "is compared with")
     for rival, version in rivals:
