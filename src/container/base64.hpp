@@ -1,6 +1,6 @@
 #pragma once
 
-// Bytes as text.
+// Base64 encoding of bytes.
 
 #include <cstddef>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace lamella {
 
-/// Characters that so many bytes take in Base64.
+/// Returns the number of characters that `bytes` bytes take in Base64.
 [[nodiscard]] constexpr std::size_t base64_size(std::size_t bytes) noexcept {
     return (bytes + 2) / 3 * 4;
 }

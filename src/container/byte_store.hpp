@@ -1,6 +1,6 @@
 #pragma once
 
-// Bytes that wait for their reader.
+// A buffer for bytes that are read later.
 
 #include "core/spill_file.hpp"
 
@@ -14,29 +14,29 @@
 
 namespace lamella {
 
-/// Bytes written one after the other, and read at any place: in memory up to a bound, beyond it in a file
-/// without a name (see SpillFile). For one thread.
+/// Bytes that are appended in order and read from any offset. They are kept in memory up to a bound and
+/// beyond it in an anonymous file (see SpillFile). For one thread.
 class ByteStore {
   public:
-    /// Keeps about `most_in_memory` bytes in memory, whole blocks of 8 MiB, and a block more.
+    /// Keeps about `most_in_memory` bytes in memory, in whole blocks of 8 MiB, and one more block.
     explicit ByteStore(std::uint64_t most_in_memory = std::uint64_t{32} << 20)
         : most_blocks_(most_in_memory / block_bytes) {}
 
-    /// Throws Error{output} where there is no room for the file.
+    /// Appends bytes. Throws Error{output} if the file system is full.
     void add(std::string_view bytes);
     [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-    /// The bytes from `place` on; there must be so many.
+    /// Copies the bytes from offset `place` on into `bytes`. Requires that the store holds them.
     void read(std::uint64_t place, std::span<char> bytes) const;
 
     static constexpr std::size_t block_bytes = std::size_t{8} << 20;
 
   private:
     std::size_t most_blocks_;
-    std::vector<std::string> blocks_; ///< full ones, the first of all bytes
-    std::optional<SpillFile> file_;   ///< full blocks that follow those
+    std::vector<std::string> blocks_; ///< full blocks at the beginning
+    std::optional<SpillFile> file_;   ///< full blocks that follow those in memory
     std::uint64_t spilled_ = 0;
-    std::string last_; ///< what follows, less than a block
+    std::string last_; ///< the last bytes, less than a block
     std::uint64_t size_ = 0;
 };
 

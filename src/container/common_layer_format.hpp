@@ -1,6 +1,6 @@
 #pragma once
 
-// What the reader and the writer of the Common Layer Interface both know of its geometry.
+// The geometry commands of the Common Layer Interface, for its reader and its writer.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace lamella {
 
-/// Of the binary form. Short commands have 16-bit numbers, long ones 32-bit integers and floats.
+/// Commands of the binary form. Short commands have 16-bit numbers, long ones 32-bit integers and floats.
 enum class CommonLayerCommand : std::uint16_t {
     layer_long = 127,
     layer_short = 128,
@@ -20,12 +20,12 @@ enum class CommonLayerCommand : std::uint16_t {
     hatches_long = 132,
 };
 
-/// How many bytes the command that begins here takes, where 16-bit numbers have two each; none where it is no
-/// command, or is cut off.
+/// Returns the size in bytes of the command that begins here; 16-bit numbers take two bytes each. Returns
+/// none if the bytes are not a command or are cut off.
 [[nodiscard]] inline std::optional<std::uint64_t> common_layer_command_size(std::string_view bytes) noexcept {
     const auto number = [&]<class T>(std::size_t at, T value) -> std::uint64_t {
         if (bytes.size() < at + sizeof value)
-            return bytes.size(); // more than that is not there
+            return bytes.size(); // the number is cut off
         std::memcpy(&value, bytes.data() + at, sizeof value);
         return value;
     };
@@ -55,7 +55,7 @@ enum class CommonLayerCommand : std::uint16_t {
     return size <= bytes.size() ? std::optional(size) : std::nullopt;
 }
 
-/// Of a polyline, by its numbers in both forms.
+/// Direction of a polyline; both forms use these numbers.
 enum class CommonLayerDirection : std::uint8_t { clockwise = 0, counter_clockwise = 1, open = 2 };
 
 } // namespace lamella

@@ -11,7 +11,7 @@ namespace lamella {
 
 namespace {
 
-// zlib counts in 32 bits.
+// zlib's counters have 32 bits.
 constexpr std::size_t most_at_once = std::size_t{1} << 30;
 
 const Bytef* input(std::string_view bytes) {
@@ -45,11 +45,11 @@ void Deflater::append_piece(std::string_view bytes, std::string& out) {
     for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), most_at_once))) {
         const std::string_view part = bytes.substr(0, most_at_once);
         deflateReset(&stream);
-        // zlib takes pointers to what it only reads.
+        // zlib only reads the input, but takes a pointer to mutable bytes.
         stream.next_in = const_cast<Bytef*>(input(part));
         stream.avail_in = static_cast<uInt>(part.size());
         const std::size_t begin = out.size();
-        // The bound is for a stream with its end; a flush takes a few bytes instead.
+        // deflateBound counts the end of a stream instead of the few bytes of a flush.
         constexpr std::size_t most_of_flush = 16;
         out.resize(begin + deflateBound(&stream, static_cast<uLong>(part.size())) + most_of_flush);
         stream.next_out = reinterpret_cast<Bytef*>(out.data() + begin);
@@ -62,7 +62,7 @@ void Deflater::append_piece(std::string_view bytes, std::string& out) {
 
 std::string deflated(std::string_view bytes) {
     std::string stream;
-    // zlib takes some hundred kilobytes at its start, and saves nothing of so few.
+    // zlib initialises some hundred kilobytes and cannot shorten an input of so few bytes.
     constexpr std::size_t few = 64;
     if (bytes.size() <= few) {
         constexpr char last_and_stored = 1;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Compression in pieces that any threads can make and that are joined by writing them one after the other.
+// Deflate compression in chunks that any thread can make and that are joined by concatenation.
 
 #include <cstdint>
 #include <memory>
@@ -9,23 +9,23 @@
 
 namespace lamella {
 
-/// The CRC-32 (`crc32_of`) of a text and a second one of `second_size` bytes after it, from those of the two.
-/// O(log second_size).
+/// Returns the CRC-32 (`crc32_of`) of the concatenation of two texts from their CRCs; the second has
+/// `second_size` bytes. O(log second_size).
 [[nodiscard]] std::uint32_t crc32_joined(std::uint32_t first, std::uint32_t second,
                                          std::uint64_t second_size) noexcept;
 
-/// Makes pieces of a raw Deflate stream. Each can be read without those before it and ends on a whole byte,
-/// so pieces made by several deflaters may be put together in any order; `deflate_end` ends the stream. Equal
-/// bytes give equal pieces, whichever deflater makes them. For one thread at a time.
+/// Makes chunks of a raw Deflate stream. Each chunk can be read without the ones before it and ends on a byte
+/// boundary, so chunks of several deflaters can be joined in any order; `deflate_end` ends the stream. Equal
+/// bytes give equal chunks, whichever deflater makes them. For one thread at a time.
 class Deflater {
   public:
-    /// The quick setting: formatting a layer must not be much faster than this.
+    /// Uses the fast setting, because formatting a layer takes about as long as compressing it.
     Deflater();
     ~Deflater();
     Deflater(const Deflater&) = delete;
     Deflater& operator=(const Deflater&) = delete;
 
-    /// Appends `bytes` as one piece; nothing for no bytes.
+    /// Appends `bytes` as one chunk; appends nothing if there are no bytes.
     void append_piece(std::string_view bytes, std::string& out);
 
   private:
@@ -33,10 +33,10 @@ class Deflater {
     std::unique_ptr<State> state_;
 };
 
-/// What stands after the last piece.
+/// The bytes that follow the last chunk.
 inline constexpr std::string_view deflate_end{"\x03\x00", 2};
 
-/// A whole raw Deflate stream.
+/// Returns the bytes as a whole raw Deflate stream.
 [[nodiscard]] std::string deflated(std::string_view bytes);
 
 } // namespace lamella

@@ -17,7 +17,7 @@ namespace lamella {
 
 namespace {
 
-/// zlib's state, for members with head and checksum.
+/// zlib's state for members with header and checksum.
 class Inflater {
   public:
     Inflater() {
@@ -30,14 +30,14 @@ class Inflater {
     Inflater& operator=(const Inflater&) = delete;
 
     struct Step {
-        std::size_t taken; ///< bytes of what is packed
-        std::size_t made;  ///< bytes of the room
-        int code;          ///< what zlib says
+        std::size_t taken; ///< compressed bytes consumed
+        std::size_t made;  ///< bytes written
+        int code;          ///< status returned by zlib
     };
 
-    /// Unpacks as much as is there and fits; each of the two is less than 4 GiB.
+    /// Decompresses as much as is available and fits. Both spans must be smaller than 4 GiB.
     [[nodiscard]] Step unpack(std::span<const std::byte> packed, std::span<std::byte> room) {
-        // zlib reads from this pointer only; its type is older than const.
+        // zlib only reads from this pointer, but its type lacks const.
         stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(packed.data()));
         stream_.avail_in = static_cast<uInt>(packed.size());
         stream_.next_out = reinterpret_cast<Bytef*>(room.data());
@@ -46,7 +46,7 @@ class Inflater {
         return {packed.size() - stream_.avail_in, room.size() - stream_.avail_out, code};
     }
 
-    /// For the next member.
+    /// Prepares for the next member.
     void start_again() {
         if (inflateReset(&stream_) != Z_OK)
             throw std::bad_alloc();
@@ -70,7 +70,7 @@ bool is_gzip(std::span<const std::byte> bytes) noexcept {
 ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes, const Execution& execution) {
     if (!is_gzip(source.bytes))
         return source;
-    // Small enough for zlib's counters, and for a look at cancelling now and then.
+    // Fits zlib's counters and lets cancellation take effect soon.
     constexpr std::size_t step = std::size_t{8} << 20;
     const std::uint64_t most = max_bytes != 0 ? max_bytes : usual_most_unpacked(source.bytes.size());
     Inflater inflater;
@@ -98,7 +98,7 @@ ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes, const Exe
                           source.name, most, most / source.bytes.size()));
         if (code == Z_STREAM_END) {
             const auto rest = source.bytes.subspan(at);
-            // Some programs fill up the last block with zeros.
+            // Some programs pad the last block with zeros.
             whole =
                 std::all_of(rest.begin(), rest.end(), [](std::byte byte) { return byte == std::byte{0}; });
             if (!whole && !is_gzip(rest))
@@ -120,13 +120,13 @@ ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes, const Exe
 }
 
 std::string first_inflated(std::string_view packed, std::size_t most) {
-    // libdeflate unpacks all or nothing.
+    // libdeflate returns all bytes or none.
     z_stream stream{};
     constexpr int raw_window = -15;
     if (inflateInit2(&stream, raw_window) != Z_OK)
         throw std::bad_alloc();
     std::string bytes(most, '\0');
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data())); // it is only read from
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data())); // zlib only reads from it
     stream.avail_in =
         static_cast<uInt>(std::min<std::size_t>(packed.size(), std::numeric_limits<uInt>::max()));
     stream.next_out = reinterpret_cast<Bytef*>(bytes.data());

@@ -1,6 +1,6 @@
 #pragma once
 
-// Files packed with gzip.
+// Decompression of gzip files.
 
 #include "core/byte_source.hpp"
 
@@ -10,14 +10,14 @@
 
 namespace lamella {
 
-/// Whether the bytes begin as a gzip file does.
+/// Returns whether the bytes begin with the signature of gzip.
 [[nodiscard]] bool is_gzip(std::span<const std::byte> bytes) noexcept;
 
-/// What a gzip file holds, of one member or several, in memory and under the same name; any other source as
-/// it is. How much comes out is found by unpacking, never taken from the file; more than `max_bytes` (0:
-/// usual_most_unpacked) is Error{limit} as soon as it is reached. Checksums are compared. Throws Error{input}
-/// naming the byte where the file is broken, cut off, followed by something else, or has nothing in it;
-/// Error{cancelled} soon after a stop is requested.
+/// Returns the decompressed contents of a gzip file of one or several members, in memory and under the same
+/// name; returns any other source unchanged. The size is found by decompressing and never taken from the
+/// file. Checksums are verified. Throws Error{limit} as soon as there are more than `max_bytes` (0:
+/// usual_most_unpacked). Throws Error{input} with the offset if the file is damaged, truncated, empty or
+/// followed by other data. Throws Error{cancelled} soon after a stop is requested.
 [[nodiscard]] ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes,
                                   const Execution& execution = {});
 

@@ -1,15 +1,16 @@
 #pragma once
 
-// What writer and reader of ILT share.
+// Constants of ILT files, for the writer and the reader.
 
 #include <string_view>
 
 namespace lamella {
 
-/// The entry of the archive that has the parameters of all the others.
+/// Name of the archive's entry with the parameters of all other entries.
 inline constexpr std::string_view ilt_parameters = "modelsection_param.txt";
 
-/// Planes of several files no further apart are one: each file rounds heights in its own way.
+/// Planes of different files at most this far apart are one plane, because each file rounds heights
+/// differently.
 inline constexpr double ilt_one_plane_mm = 1e-5;
 
 } // namespace lamella

@@ -30,7 +30,7 @@ Inflated inflate(std::string_view packed, std::span<std::byte> room) {
         libdeflate_alloc_decompressor(), &libdeflate_free_decompressor);
     if (!decompressor)
         throw std::bad_alloc();
-    std::byte nowhere{}; // room for nothing still needs a place
+    std::byte nowhere{}; // libdeflate needs a valid pointer, even if no byte is expected
     std::size_t read = 0;
     std::size_t written = 0;
     switch (libdeflate_deflate_decompress_ex(decompressor.get(), packed.data(), packed.size(),

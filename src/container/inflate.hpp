@@ -1,6 +1,7 @@
 #pragma once
 
-// Unpacking Deflate, and the checksums of zip and PNG files. What zlib does of it is in gzip.cpp.
+// Decompression of Deflate by libdeflate, and the checksums of zip and PNG files. gzip.cpp contains what
+// needs zlib.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,32 +11,32 @@
 
 namespace lamella {
 
-/// CRC-32 as zip and PNG files have it. O(n).
+/// Returns the CRC-32 that zip and PNG files use. O(n).
 [[nodiscard]] std::uint32_t crc32_of(std::string_view bytes) noexcept;
 
-/// Adler-32, which ends the pixels of a PNG file. O(n).
+/// Returns the Adler-32 that ends the pixels of a PNG file. O(n).
 [[nodiscard]] std::uint32_t adler32_of(std::string_view bytes) noexcept;
 
 enum class Inflated {
-    whole,     ///< exactly as many bytes as there was room for, and the packed bytes ended with them
-    too_short, ///< the stream ended before the room was full
-    too_long,  ///< the room was full before the stream ended
-    broken,    ///< no Deflate stream, cut off, or followed by something else
+    whole,     ///< the stream filled the buffer exactly and ended with the compressed bytes
+    too_short, ///< the stream ended before the buffer was full
+    too_long,  ///< the buffer was full before the stream ended
+    broken,    ///< not a Deflate stream, truncated, or followed by other data
 };
 
-/// No byte of a Deflate stream stands for more than this many.
+/// Largest ratio of decompressed to compressed size that Deflate can reach.
 inline constexpr std::uint64_t most_inflation = 1032;
 
-/// What a packed file may unpack to unless somebody says more: 64 times its size, or 64 MiB where that is
-/// more, which is more than meshes and layers do; but no more than `usual_memory`.
+/// Returns the default limit for the decompressed size of a file: 64 times its compressed size, at least 64
+/// MiB, which meshes and layers do not exceed, but at most `usual_memory`.
 [[nodiscard]] std::uint64_t usual_most_unpacked(std::uint64_t packed_bytes);
 
-/// Unpacks a raw Deflate stream into a room of exactly the size that it ought to have. Pages of the room that
-/// it does not reach are not touched.
+/// Decompresses a raw Deflate stream into a buffer of exactly the expected size. Pages of the buffer beyond
+/// the end of the stream are not touched.
 [[nodiscard]] Inflated inflate(std::string_view packed, std::span<std::byte> room);
 
-/// The first bytes of what a raw Deflate stream holds, `most` of them or all that there are: up to where it
-/// is broken, if it is.
+/// Returns the first `most` bytes of the contents of a raw Deflate stream; fewer if the stream ends or is
+/// damaged before.
 [[nodiscard]] std::string first_inflated(std::string_view packed, std::size_t most);
 
 } // namespace lamella

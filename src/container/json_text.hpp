@@ -1,6 +1,6 @@
 #pragma once
 
-// Walking through JSON text, value by value, without keeping it.
+// Reads JSON text value by value without storing it.
 
 #include <cstddef>
 #include <string>
@@ -8,14 +8,14 @@
 
 namespace lamella {
 
-/// A cursor. Values are taken in the order in which they stand; errors are Error{input} with the line.
+/// A cursor in a JSON text. Values are read in the order of the text. Errors are Error{input} with the line.
 class JsonText {
   public:
-    /// Of the bytes from `begin` on; places are counted from the first byte.
+    /// Reads the text from byte `begin` on; lines and `at` count from the first byte of the text.
     JsonText(std::string_view text, std::string name, std::size_t begin = 0)
         : text_(text), name_(std::move(name)), at_(begin) {}
 
-    /// Calls member(key) for each member of the object that is next; that takes its value.
+    /// Calls member(key) for each member of the next value, an object. `member` must read the member's value.
     template <class Member>
     void object(const Member& member) {
         open('{');
@@ -26,7 +26,7 @@ class JsonText {
         }
     }
 
-    /// Calls element() for each element of the array that is next; that takes it.
+    /// Calls element() for each element of the next value, an array. `element` must read the element.
     template <class Element>
     void array(const Element& element) {
         open('[');
@@ -34,25 +34,25 @@ class JsonText {
             element();
     }
 
-    /// The next value, which must be a string or a number.
+    /// Reads the next value, which must be a string or a number.
     std::string string();
     double number();
-    /// Whatever is next.
+    /// Skips the next value, of any type.
     void skip();
 
-    /// Nothing but blanks may be left.
+    /// Requires that only blanks remain.
     void end();
-    /// Bytes taken so far.
+    /// Returns the offset of the next byte.
     [[nodiscard]] std::size_t at() const noexcept { return at_; }
 
-    /// At the value that is next.
+    /// Throws Error{input} with the line of the next value.
     [[noreturn]] void fail(const std::string& found, const std::string& expected) const;
-    /// What stands here, for texts of errors.
+    /// Describes the text at the cursor, for error messages.
     [[nodiscard]] std::string here() const;
 
   private:
     void skip_blanks();
-    /// Behind blanks.
+    /// Skips blanks first.
     [[nodiscard]] bool is_next(char c);
     void open(char bracket);
     void expect(char c);

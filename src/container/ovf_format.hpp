@@ -1,14 +1,14 @@
 #pragma once
 
-// What writer and reader of the Open Vector Format share: the numbers that its schema gives to fields and
-// values, of those that they know. Messages are nested as the names are.
+// Field numbers and values of the schema of the Open Vector Format that the writer and the reader know.
+// Messages are nested as the names are.
 
 #include <cstdint>
 #include <string_view>
 
 namespace lamella::ovf {
 
-/// The file begins so; then comes where its last message lies.
+/// The magic at the beginning of the file. The offset of the file's last message follows it.
 inline constexpr std::string_view magic = "LVF!";
 
 namespace job {
@@ -63,14 +63,14 @@ namespace block {
 enum : std::uint32_t {
     line_sequence = 1,
     hatches = 2,
-    last_of_vectors = 12, ///< up to here other kinds of vectors
+    last_of_vectors = 12, ///< largest number of a kind of vectors; the numbers between are other kinds
     marking_params_key = 50,
     laser_index = 53,
     repeats = 54,
     meta_data = 100,
     lpbf_meta_data = 101
 };
-/// Of line sequences and hatches.
+/// Fields of line sequences and hatches.
 enum : std::uint32_t { points = 1 };
 namespace meta {
 enum : std::uint32_t { part_key = 3 };
@@ -83,7 +83,7 @@ enum : std::uint8_t { of_part = 0, of_support = 1 };
 } // namespace lpbf
 } // namespace block
 
-/// The tables of where messages lie: of the job, and of each work plane.
+/// Tables of the offsets of messages: those of the job, and those of each work plane.
 namespace table {
 enum : std::uint32_t { shell = 1, positions = 2 };
 } // namespace table

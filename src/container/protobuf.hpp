@@ -1,7 +1,7 @@
 #pragma once
 
-// The wire format of Protocol Buffers, as far as messages of numbers, texts and other messages need it:
-// fields are a number, a type, and a value of varying length, of 32 bits, of 64 bits, or of so many bytes.
+// The wire format of Protocol Buffers, for messages of numbers, texts and other messages. A field is a
+// number, a type and a value: a varint, 32 bits, 64 bits, or a length and that many bytes.
 
 #include <bit>
 #include <cstdint>
@@ -15,10 +15,10 @@ static_assert(std::endian::native == std::endian::little, "numbers are written a
 
 enum class ProtobufType : std::uint8_t { varying = 0, bits_64 = 1, bytes = 2, bits_32 = 5 };
 
-/// The longest integer of varying length.
+/// Largest size of a varint in bytes.
 inline constexpr std::size_t most_varint = 10;
 
-/// Writes an integer, seven bits a byte from the lowest up, and returns the end.
+/// Writes a varint, seven bits per byte from the lowest up, and returns the end.
 inline char* put_varint(char* out, std::uint64_t value) noexcept {
     for (; value >= 0x80; value >>= 7U)
         *out++ = static_cast<char>(value | 0x80U);
@@ -26,13 +26,13 @@ inline char* put_varint(char* out, std::uint64_t value) noexcept {
     return out;
 }
 
-/// What stands in front of a field's value.
+/// Returns the tag that precedes a field's value.
 [[nodiscard]] constexpr std::uint64_t protobuf_tag(std::uint32_t field, ProtobufType type) noexcept {
     return std::uint64_t{field} << 3U | static_cast<std::uint64_t>(type);
 }
 
-/// A message under construction. Fields of value 0 and empty texts are not written: that is what their
-/// absence means.
+/// A message under construction. Fields of value 0 and empty texts are omitted, as an absent field has this
+/// value.
 class ProtobufMessage {
   public:
     void integer(std::uint32_t field, std::int64_t value) {
@@ -53,16 +53,16 @@ class ProtobufMessage {
         if (!value.empty())
             bytes(field, value);
     }
-    /// Also an empty one: that it is there says something.
+    /// Writes an empty message, too, because its presence is significant.
     void message(std::uint32_t field, const ProtobufMessage& value) { bytes(field, value.bytes_); }
-    /// An entry of a map from integers to messages.
+    /// Writes an entry of a map from integers to messages.
     void entry(std::uint32_t field, std::int64_t key, const ProtobufMessage& value) {
         ProtobufMessage pair;
         pair.integer(1, key);
         pair.message(2, value);
         message(field, pair);
     }
-    /// A list of integers in one field.
+    /// Writes a list of integers as one field.
     template <class Integers>
     void integers(std::uint32_t field, const Integers& values) {
         ProtobufMessage list;
@@ -72,7 +72,7 @@ class ProtobufMessage {
     }
 
     [[nodiscard]] std::string_view view() const noexcept { return bytes_; }
-    /// The message with its length in front, as files have several one after the other.
+    /// Returns the message preceded by its length, as in files of several messages.
     [[nodiscard]] std::string delimited() const {
         ProtobufMessage length;
         length.append(bytes_.size());

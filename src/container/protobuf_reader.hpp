@@ -1,6 +1,6 @@
 #pragma once
 
-// Reading messages of Protocol Buffers that somebody may have made to do harm.
+// Reads untrusted messages of Protocol Buffers.
 
 #include "container/protobuf.hpp"
 
@@ -10,11 +10,11 @@
 
 namespace lamella {
 
-/// The fields of a message, one after the other. Throws Error{input} with the byte of the file. Values of a
-/// type that the caller does not ask for are passed over by the next call of `next`.
+/// Iterates over the fields of a message. `next` skips the value of a field if the caller did not read it.
+/// Errors are Error{input} with the offset in the file.
 class ProtobufReader {
   public:
-    /// Of `bytes`, which begin at byte `place` of a file called `name`.
+    /// Reads `bytes`, which begin at offset `place` of the file `name`.
     ProtobufReader(std::string_view bytes, std::uint64_t place, const std::string& name)
         : rest_(bytes), place_(place), name_(&name), field_place_(place) {}
 
@@ -23,13 +23,14 @@ class ProtobufReader {
     [[nodiscard]] std::uint32_t field() const noexcept { return field_; }
     [[nodiscard]] ProtobufType type() const noexcept { return type_; }
 
-    // The value, which must be of that type.
+    // Each returns the value, which must have this type.
     [[nodiscard]] std::int64_t integer() const;
     [[nodiscard]] float real() const;
     [[nodiscard]] std::string_view bytes() const;
     [[nodiscard]] ProtobufReader message() const { return {bytes(), value_place_, *name_}; }
 
-    /// Calls take(value) for a list of integers, or a part of it: one value, or several in one field.
+    /// Calls take(value) for each integer of the field: a single value, or several if the list is in one
+    /// field.
     template <class Take>
     void integers(const Take& take) const {
         if (type_ == ProtobufType::varying) {
@@ -41,10 +42,11 @@ class ProtobufReader {
             take(static_cast<std::int64_t>(list.take_varint()));
     }
 
-    /// Where the field begins in the file.
+    /// Returns the offset of the field in the file.
     [[nodiscard]] std::uint64_t place() const noexcept { return field_place_; }
 
-    /// The message that begins with its length at byte `place` of the file, which is moved behind it.
+    /// Returns the message whose length is at offset `place` of the file, and moves `place` behind the
+    /// message.
     [[nodiscard]] static ProtobufReader delimited(std::string_view file, std::uint64_t& place,
                                                   const std::string& name);
 

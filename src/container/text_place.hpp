@@ -1,6 +1,6 @@
 #pragma once
 
-// Naming a place in a text to a person: its line, and what stands there.
+// Describes a position in a text: its line, and the text there.
 
 #include "lamella/core/printable.hpp"
 
@@ -10,7 +10,8 @@
 
 namespace lamella {
 
-/// The line that holds byte `offset`, counted from 1. Lines end with LF, CRLF or a bare CR. O(offset).
+/// Returns the number of the line with byte `offset`, counted from 1. Lines end with LF, CRLF or a bare CR.
+/// O(offset).
 [[nodiscard]] std::uint64_t line_at(std::string_view text, std::size_t offset);
 
 } // namespace lamella

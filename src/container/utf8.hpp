@@ -1,13 +1,13 @@
 #pragma once
 
-// Characters as bytes.
+// UTF-8 encoding of characters.
 
 #include <cstdint>
 #include <string>
 
 namespace lamella {
 
-/// Appends the character of that number, below 2^21, in UTF-8.
+/// Appends the character with the number `c`, which must be below 2^21, in UTF-8.
 inline void append_utf8(std::string& to, std::uint32_t c) {
     if (c < 0x80) {
         to += static_cast<char>(c);

@@ -21,7 +21,7 @@ constexpr int deepest_element = 256;
 constexpr std::size_t most_attributes = 1000;
 constexpr std::size_t piece = std::size_t{4} << 20;
 constexpr std::size_t longest_token = std::size_t{64} << 20;
-constexpr char namespace_end = '\n'; // Expat puts it between namespace and name; no URI has one
+constexpr char namespace_end = '\n'; // Expat's separator between namespace and name; no URI contains it
 
 XmlName split(std::string_view written) noexcept {
     const std::size_t at = written.rfind(namespace_end);
@@ -29,8 +29,8 @@ XmlName split(std::string_view written) noexcept {
                                         : XmlName{written.substr(0, at), written.substr(at + 1)};
 }
 
-/// The state of one parse. Exceptions must not pass through the C library: they are kept and thrown behind
-/// it.
+/// The state of one parse. Exceptions must not pass through the C library: they are stored and rethrown after
+/// it returns.
 class Parse {
   public:
     Parse(std::string_view bytes, const std::string& name, const XmlHandlers& handlers, const XmlRules& rules)
@@ -59,7 +59,7 @@ class Parse {
     }
 
   private:
-    /// What Expat calls: call(parse), unless something was thrown before.
+    /// Callback of Expat: call(parse), unless a call has thrown before.
     template <class Call>
     static void guarded(void* data, const Call& call) {
         Parse& parse = *static_cast<Parse*>(data);
@@ -122,7 +122,7 @@ class Parse {
         guarded(data, [&](Parse& parse) {
             if (parse.rules_.no_document_type)
                 parse.fail("found a document type (<!DOCTYPE ...>), which files of this kind must not have");
-            // Drawing programs write a reference to the public definition of SVG, which is harmless as
+            // Drawing programs write a reference to the public definition of SVG. It is harmless, because
             // nothing is fetched.
             if (has_internal_subset != 0)
                 parse.fail("found a document type with definitions of its own; such files are not read");
@@ -141,13 +141,13 @@ class Parse {
         });
     }
 
-    /// Remembers where a tag ends, as long as skimming asks for it.
+    /// Stores where a tag ends if skimming is in use.
     void note_tag() {
         if (handlers_.skim)
             last_tag_end_ = XML_GetCurrentByteIndex(parser_.get()) + XML_GetCurrentByteCount(parser_.get());
     }
 
-    /// Gives the parser the bytes up to `end`, or somewhat more where `end` lies within a token.
+    /// Feeds the parser the bytes up to `end`, or somewhat more if `end` is within a token.
     void feed(std::size_t end, bool last) {
         do {
             const std::string_view part =
@@ -164,20 +164,20 @@ class Parse {
                     throw std::bad_alloc();
                 fail(fmt::format("the XML is broken: {}", XML_ErrorString(code)));
             }
-            parsed_ = std::max(parsed_, XML_GetCurrentByteIndex(parser_.get())); // -1 where it does not know
+            parsed_ = std::max(parsed_, XML_GetCurrentByteIndex(parser_.get())); // -1 if Expat does not know
             if (waiting() >= longest_token)
                 fail(fmt::format("found a tag, text or comment longer than {} MB", longest_token >> 20));
             tell_progress(at_);
         } while (at_ < end);
     }
 
-    /// How many bytes the parser holds of a token that is not whole.
+    /// Returns the number of bytes of an incomplete token that the parser holds.
     [[nodiscard]] std::size_t waiting() const { return static_cast<std::size_t>(fed_ - parsed_); }
 
-    /// How many bytes more of such a token to give the parser: at least as many again. Expat goes through the
-    /// token from its start each time; and newer ones (2.6, and older ones with its security patches) not
-    /// before they have twice as much of it. The steps end at exactly the longest token: what is not whole
-    /// then is too long, whichever Expat this is.
+    /// Returns how many more bytes of an incomplete token to feed: at least as many as it has. Expat scans
+    /// the token from its start each time; newer versions (2.6, and older ones with its security patches)
+    /// wait until they have twice as much of it. The steps end at exactly the longest token: a token that is
+    /// then incomplete is too long for any version of Expat.
     [[nodiscard]] std::size_t more_of_token() const {
         constexpr std::size_t first_step = std::size_t{1} << 16;
         std::size_t enough = longest_token;
@@ -193,10 +193,10 @@ class Parse {
         }
     }
 
-    /// Feeds everything up to the last run of elements that come in numbers, but for those runs.
+    /// Feeds everything up to the last run of skimmed elements, except these runs.
     void skim_through() {
         std::size_t from = 0;
-        // Asking in vain costs: the more often in vain, the later the next time.
+        // An unsuccessful request costs time, so each one doubles the distance to the next.
         std::size_t patience = std::size_t{1} << 16;
         while (const std::optional<std::size_t> tag = find_tag(from)) {
             std::size_t blanks = *tag;
@@ -204,7 +204,7 @@ class Parse {
                 --blanks;
             if (blanks > at_)
                 feed(blanks, false);
-            if (at_ > blanks) { // the tag is in a token that is longer
+            if (at_ > blanks) { // the tag is inside a longer token
                 from = at_;
                 continue;
             }
@@ -222,14 +222,14 @@ class Parse {
         }
     }
 
-    /// The first of the tags that come in numbers.
+    /// Returns the nearest tag of `many`.
     [[nodiscard]] std::optional<std::size_t> find_tag(std::size_t from) {
         next_tags_.resize(handlers_.many.size());
         std::size_t nearest = std::string_view::npos;
         for (std::size_t i = 0; i < next_tags_.size(); ++i) {
             const std::string_view tag = handlers_.many[i];
             std::size_t& next = next_tags_[i];
-            // What was found once is not searched for again. "<triangles" is no "<triangle".
+            // A tag that was found is not searched for again. "<triangle" must not match "<triangles".
             for (next = std::max(next, from); next < bytes_.size(); ++next) {
                 next = bytes_.find(tag, next);
                 if (next == std::string_view::npos || next + tag.size() == bytes_.size() ||
@@ -259,13 +259,14 @@ class Parse {
     std::unique_ptr<std::remove_pointer_t<XML_Parser>, decltype(&XML_ParserFree)> parser_;
     std::exception_ptr error_ = nullptr;
     int depth_ = 0;
-    std::size_t declared_ = 0;    ///< namespaces, of the element that comes
-    std::size_t at_ = 0;          ///< place in the document
-    XML_Index fed_ = 0;           ///< bytes that the parser was given
-    XML_Index parsed_ = 0;        ///< those of them that it is done with
-    XML_Index last_tag_end_ = -1; ///< in terms of these
+    std::size_t declared_ = 0;    ///< namespaces declared by the next element
+    std::size_t at_ = 0;          ///< offset in the document
+    XML_Index fed_ = 0;           ///< bytes fed to the parser
+    XML_Index parsed_ = 0;        ///< bytes fed that the parser has consumed
+    XML_Index last_tag_end_ = -1; ///< counts bytes fed
     std::size_t skimmed_lines_ = 0;
-    std::vector<std::size_t> next_tags_; ///< for each of `many`, the first place not before the last search
+    std::vector<std::size_t> next_tags_; ///< for each of `many`, its first offset that the last search had
+                                         ///< not passed
     std::size_t told_ = 0;
 };
 

@@ -1,35 +1,35 @@
 #pragma once
 
-// What the reader and the writer of zip archives both know of the format.
+// The format of zip archives, for the reader and the writer.
 
 #include <cstdint>
 #include <string>
 
 namespace lamella {
 
-/// The first four bytes of records.
+/// Signatures: the first four bytes of each kind of record.
 constexpr std::uint32_t zip_entry_mark = 0x04034b50;
 constexpr std::uint32_t zip_directory_mark = 0x02014b50;
 constexpr std::uint32_t zip_end_mark = 0x06054b50;
 constexpr std::uint32_t zip_end64_mark = 0x06064b50;
 constexpr std::uint32_t zip_end64_place_mark = 0x07064b50;
 
-/// A field that is full refers to the records of zip64.
+/// These values in a field mean that the actual value is in the zip64 records.
 constexpr std::uint64_t full16 = 0xFFFF;
 constexpr std::uint64_t full32 = 0xFFFFFFFF;
 
 constexpr std::uint16_t flag_sizes_behind = 1U << 3;
 
-/// Others exist.
+/// Supported methods; the format has others.
 enum class ZipMethod : std::uint16_t { stored = 0, deflated = 8 };
 
-/// What an archive says of an entry.
+/// Directory record of an entry.
 struct ZipEntry {
-    std::string name; ///< with `/` between folders and none in front
+    std::string name; ///< with `/` between folders and no leading one
     std::uint64_t size = 0;
     std::uint64_t packed_size = 0;
     std::uint64_t place =
-        0; ///< of the packed bytes in what is read; of the head before them in what is written
+        0; ///< in the reader, offset of the compressed bytes; in the writer, offset of the entry's header
     std::uint32_t crc = 0;
     ZipMethod method = ZipMethod::stored;
     std::uint16_t flags = 0;

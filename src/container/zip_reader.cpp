@@ -56,8 +56,8 @@ bool has_mark(std::string_view bytes, std::uint64_t at, std::uint32_t mark, std:
     return at <= bytes.size() && bytes.size() - at >= head && u32(bytes, at) == mark;
 }
 
-/// Puts the 64-bit forms in the place of values that say so. Values come in the order of the extra field.
-/// False when the field is missing or too short.
+/// Replaces the values that are full by their 64-bit forms, which have the same order in the extra field.
+/// Returns false if the field is missing or too short.
 bool widen(std::string_view extra, std::initializer_list<std::uint64_t*> values) {
     std::string_view large;
     while (extra.size() >= 4 && large.data() == nullptr) {
@@ -77,12 +77,12 @@ bool widen(std::string_view extra, std::initializer_list<std::uint64_t*> values)
     return true;
 }
 
-/// Where the directory is, and what it should hold.
+/// Position and extent of the directory.
 struct Directory {
     std::uint64_t place = 0;
     std::uint64_t size = 0;
     std::uint64_t entries = 0;
-    std::uint64_t trailing = 0; ///< bytes behind the end of the archive
+    std::uint64_t trailing = 0; ///< bytes after the end of the archive
 };
 
 class DirectoryFinder {
@@ -118,7 +118,7 @@ class DirectoryFinder {
         throw Error(ErrorKind::input, fmt::format("{}: {}", name_, what));
     }
 
-    /// The record at the end. A comment may follow it, and hold anything; so may what somebody appended.
+    /// Finds the end record. A comment or appended data of any content may follow it.
     std::size_t find_end() const {
         std::optional<std::size_t> before_others;
         if (bytes_.size() >= end_head) {
@@ -139,8 +139,8 @@ class DirectoryFinder {
         return *before_others;
     }
 
-    /// Of the archive whose classic record of the end stands at `end`. What that says must be true as well:
-    /// else two readers could find two directories.
+    /// Reads the zip64 records of the archive with the end record at `end`. The end record must agree with
+    /// them: otherwise two readers could find two directories.
     void read_end64(std::uint64_t at, std::size_t end, Directory& directory) const {
         constexpr std::size_t before_size_counts = 12;
         const bool is_there = has_mark(bytes_, at, zip_end64_mark, end64_head);
@@ -168,12 +168,12 @@ bool before_in_any_case(std::string_view a, std::string_view b) {
                                         [](char x, char y) { return lower_case(x) < lower_case(y); });
 }
 
-/// Names that differ in case only lie side by side.
+/// Order of names in which those that differ only in case are adjacent.
 bool comes_before(std::string_view a, std::string_view b) {
     return before_in_any_case(a, b) || (!before_in_any_case(b, a) && a < b);
 }
 
-/// Places of entries in the order of their names.
+/// Returns the indices of the entries in the order of their names.
 std::vector<std::size_t> order_of_names(const std::vector<ZipEntry>& entries) {
     std::vector<std::size_t> order(entries.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -238,8 +238,8 @@ void ZipReader::read_directory() {
     settle_names();
 }
 
-/// Reads the head in front of each entry's bytes, turns `place` into that of the bytes, and has it that no
-/// two entries share any.
+/// Reads the header of each entry, changes `place` to the offset of the compressed bytes, and checks that no
+/// two entries overlap.
 void ZipReader::settle_places(std::uint64_t directory_place) {
     const std::string_view bytes = source_.text();
     const auto fail = [&](const ZipEntry& entry, const std::string& what) {
@@ -287,7 +287,7 @@ void ZipReader::settle_places(std::uint64_t directory_place) {
                              printable(entries_[spans[i - 1].entry].name, longest_shown_name)));
 }
 
-/// Names with slashes between folders, each once; folders themselves are left out.
+/// Normalises slashes, removes folders and refuses duplicate names.
 void ZipReader::settle_names() {
     std::size_t backslashes = 0;
     std::size_t rooted = 0;
@@ -341,7 +341,7 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
     if (entry.method != ZipMethod::stored && entry.method != ZipMethod::deflated)
         fail(fmt::format("is packed by method {}, expected 0 (stored) or 8 (Deflate)",
                          static_cast<unsigned>(entry.method)));
-    // Before there is room for it: a few bytes must not reserve the memory of others.
+    // Checked before memory is allocated: a few bytes must not reserve memory that others need.
     if (entry.method == ZipMethod::deflated ? entry.size / most_inflation > entry.packed_size
                                             : entry.size != entry.packed_size)
         fail(

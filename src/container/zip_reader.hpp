@@ -1,6 +1,6 @@
 #pragma once
 
-// Reading zip archives that somebody may have made to do harm.
+// Reads untrusted zip archives.
 
 #include "container/zip_format.hpp"
 #include "core/byte_source.hpp"
@@ -14,44 +14,43 @@
 
 namespace lamella {
 
-/// Whether the bytes begin as a zip archive does.
+/// Returns whether the bytes begin with a signature of zip archives.
 [[nodiscard]] bool is_zip(std::string_view bytes) noexcept;
 
-/// The entries of a zip archive, zip64 included, sizes in front of the bytes or behind them. Nothing is
-/// unpacked before it is read, and nothing is allocated from what the archive claims: an entry gets room for
-/// its claimed size only where Deflate can reach that from the bytes that are there, and memory is taken as
-/// they fill it.
+/// The entries of a zip archive, including zip64; sizes may precede or follow the compressed bytes. An entry
+/// is decompressed only when it is read. Its claimed size is accepted only if Deflate can reach it from the
+/// available bytes, and pages of memory are used only as they are filled.
 ///
-/// Refused with Error{input}, as two readers might see two contents: several discs, entries that reach into
-/// one another or beyond the file, two entries of a name, a name or size that the directory and the entry
-/// itself tell differently. Entries that are encrypted or packed by other methods than Deflate are refused
-/// when they are read.
+/// Refuses, with Error{input}, archives that two readers could interpret differently: several discs, entries
+/// that overlap or exceed the file, duplicate names, and a name or size that differs between the directory
+/// and the entry. Encrypted entries and methods other than Deflate are refused when they are read.
 class ZipReader {
   public:
-    /// Reads the directory. At most `max_unpacked` bytes will be unpacked in all, stored ones included; 0
-    /// means `usual_most_unpacked`.
+    /// Reads the directory. At most `max_unpacked` bytes will be decompressed in total, including stored
+    /// ones; 0 means `usual_most_unpacked`.
     ZipReader(ByteSource source, std::uint64_t max_unpacked);
 
-    /// In the order of the directory; without folders.
+    /// Returns the entries in the order of the directory, without folders.
     [[nodiscard]] const std::vector<ZipEntry>& entries() const noexcept { return entries_; }
 
-    /// The entry of that name (without a slash in front), or else one that differs in the case of ASCII
-    /// letters only, of several the first in the order of their bytes; null when there is none.
+    /// Returns the entry with this name (without a leading slash). If there is none, returns the first, in
+    /// byte order, of those that differ only in the case of ASCII letters, or null.
     [[nodiscard]] const ZipEntry* find(std::string_view name) const noexcept;
 
-    /// The bytes of an entry, CRC checked; they may be none. Stored ones are a view of the archive. The name
-    /// tells archive and entry. May be called from several threads. Throws Error{input} when the entry is
-    /// damaged or not what it claims, and Error{limit} when the bytes are too many.
+    /// Returns the bytes of an entry, perhaps none, after verifying their CRC. The bytes of a stored entry
+    /// are a view of the archive. The name of the source names archive and entry. May be called from several
+    /// threads. Throws Error{input} if the entry is damaged or differs from its record, and Error{limit} if
+    /// the bytes exceed the limit.
     [[nodiscard]] ByteSource read(const ZipEntry& entry) const;
 
-    /// Up to `most` of the first bytes of an entry, to see what it is: no more are unpacked, nothing is
-    /// checked, and they do not count. None where the entry cannot be read.
+    /// Returns up to `most` of the first bytes of an entry, to detect its format. They are not verified and
+    /// do not count towards the limit. Returns none if the entry cannot be read.
     [[nodiscard]] std::string first_bytes(const ZipEntry& entry, std::size_t most) const;
 
-    /// What is odd about the archive, one line each.
+    /// Returns warnings about the archive, one line each.
     [[nodiscard]] const std::vector<std::string>& oddities() const noexcept { return oddities_; }
     [[nodiscard]] const std::string& name() const noexcept { return source_.name; }
-    /// Bytes that entries took when they were read.
+    /// Returns the number of bytes read from entries.
     [[nodiscard]] std::uint64_t unpacked() const noexcept { return unpacked_.load(); }
 
   private:
@@ -63,7 +62,7 @@ class ZipReader {
     std::uint64_t max_unpacked_;
     mutable std::atomic<std::uint64_t> unpacked_{0};
     std::vector<ZipEntry> entries_;
-    std::vector<std::size_t> by_name_; ///< entries in the order of their names
+    std::vector<std::size_t> by_name_; ///< indices of entries in the order of their names
     std::vector<std::string> oddities_;
 };
 

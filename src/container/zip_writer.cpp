@@ -16,7 +16,7 @@ namespace lamella {
 
 namespace {
 
-// What a reader has to understand: 2.0 is Deflate and folders, 4.5 is zip64.
+// Versions that a reader must support: 2.0 for Deflate and folders, 4.5 for zip64.
 constexpr unsigned version_plain = 20;
 constexpr unsigned version_zip64 = 45;
 
@@ -24,7 +24,7 @@ constexpr unsigned flag_utf8_name = 1U << 11;
 constexpr unsigned midnight = 0;
 constexpr unsigned first_of_january_1980 = (0U << 9) | (1U << 5) | 1U;
 
-// Little-endian numbers.
+// Little-endian encoder.
 class Record {
   public:
     Record& u16(std::uint64_t value) { return put(value, 2); }
@@ -50,7 +50,7 @@ std::uint64_t capped(std::uint64_t value) {
     return std::min(value, full32);
 }
 
-// The extra field for sizes of 64 bits; none without any.
+// Returns the extra field for 64-bit sizes; empty if there are none.
 Record zip64_extra(const Record& sizes) {
     Record extra;
     if (!sizes.view().empty())
@@ -58,7 +58,7 @@ Record zip64_extra(const Record& sizes) {
     return extra;
 }
 
-// What the head in front of an entry and its record in the directory have in common, after the version.
+// Writes the fields after the version that the entry's header and its directory record have in common.
 void put_common(const ZipEntry& entry, std::uint64_t packed_size, std::uint64_t size, const Record& extra,
                 Record& to) {
     to.u16(entry.flags)
@@ -72,8 +72,8 @@ bool is_large(const ZipEntry& entry) {
     return entry.size >= full32 || entry.packed_size >= full32;
 }
 
-// In front of an entry. A large one has its sizes in 64 bits; `room` is for those of one that is not known
-// yet, and is a growth hint of Open Packaging (0xA220) where they are not needed.
+// Returns the header of an entry. A large entry has 64-bit sizes. `room` reserves space for them if the size
+// is not known yet; if they are not needed, it becomes a growth hint of Open Packaging (0xA220).
 std::string head_of(const ZipEntry& entry, bool room = false) {
     const bool large = is_large(entry);
     Record sizes;
@@ -168,7 +168,7 @@ void ZipWriter::end(std::string_view head) {
 
 void ZipWriter::append_directory() {
     for (const ZipEntry& entry : entries_) {
-        // Only those that do not fit, in this order.
+        // Only the values that do not fit, in this order.
         Record large;
         for (const std::uint64_t value : {entry.size, entry.packed_size, entry.place})
             if (value >= full32)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Writing zip archives from front to back.
+// Writes zip archives sequentially.
 
 #include "container/zip_format.hpp"
 #include "core/atomic_file.hpp"
@@ -12,44 +12,43 @@
 
 namespace lamella {
 
-/// Bytes of an entry that were made ready beforehand, perhaps on another thread.
+/// Bytes of an entry that were prepared beforehand, perhaps by another thread.
 struct ZipPiece {
-    std::string_view bytes; ///< as they stand in the archive: of Deflater for deflated entries
-    std::uint64_t size = 0; ///< how many bytes they stand for
-    std::uint32_t crc = 0;  ///< of those (`crc32_of`)
+    std::string_view bytes; ///< the bytes in the archive: output of Deflater for deflated entries
+    std::uint64_t size = 0; ///< number of uncompressed bytes
+    std::uint32_t crc = 0;  ///< CRC of the uncompressed bytes (`crc32_of`)
 };
 
 /// A zip archive that appears whole or not at all, as AtomicFile. Equal contents give equal bytes: all
 /// entries have the time 1980-01-01 00:00.
 ///
-/// Entries follow one another in the order of the calls; their names are unique, relative and have `/`
-/// between folders, which the caller sees to. Sizes stand in front of entries, but behind those that are
-/// deflated piece by piece (a data descriptor): of stored ones nobody who reads from front to back could tell
-/// where they end. The 64-bit forms of sizes and places (zip64) are used where the 32-bit ones do not
-/// suffice, and nowhere else.
+/// Entries are in the order of the calls. The caller ensures that their names are unique, relative and have
+/// `/` between folders. Sizes precede the bytes of an entry. They follow them (as a data descriptor) only if
+/// the entry is deflated in chunks, because a sequential reader could not find the end of stored bytes.
+/// 64-bit sizes and offsets (zip64) are used only where 32 bits do not suffice.
 ///
-/// For one thread at a time, but for `bytes`. Failures are Error{output}.
+/// For one thread at a time, except `bytes`. Failures are Error{output}.
 class ZipWriter {
   public:
-    /// Without Overwriting::yes nothing is written twice: the bytes can go to a pipe as they come.
+    /// Without Overwriting::yes no byte is written twice, so the output can be a pipe.
     explicit ZipWriter(std::string path, Overwriting overwriting = Overwriting::no);
 
-    /// One entry, whole. Deflating happens here.
+    /// Adds a whole entry; compresses it here if it is deflated.
     void add(std::string_view name, std::string_view content, ZipMethod method = ZipMethod::stored);
-    /// One entry, whole, made ready beforehand. When deflated, `bytes` is a stream with its end.
+    /// Adds a whole entry that was prepared beforehand. If it is deflated, `bytes` is a stream with its end.
     void add_ready(std::string_view name, ZipMethod method, const ZipPiece& content);
 
-    /// Begins an entry that comes piece by piece, and ends it. A stored one goes with Overwriting::yes; its
-    /// first `head_size` bytes may be known at its end only.
+    /// Begin and end an entry that is written in chunks. A stored one requires Overwriting::yes; `end` may
+    /// then replace its first `head_size` bytes.
     void begin(std::string_view name, ZipMethod method, std::size_t head_size = 0);
     void append(const ZipPiece& piece);
     void append_stored(std::string_view content);
     void end(std::string_view head = {});
 
-    /// Writes the directory and gives the file its name. To be called once, after the last entry.
+    /// Writes the directory and publishes the file under its name. Must be called once, after the last entry.
     void finish();
 
-    /// Bytes written so far.
+    /// Returns the number of bytes written so far.
     [[nodiscard]] std::uint64_t bytes() const noexcept { return file_.bytes(); }
 
   private:
