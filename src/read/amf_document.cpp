@@ -24,21 +24,21 @@ namespace {
 
 constexpr std::size_t longest_label = 200;
 constexpr std::size_t longest_title = 1000;
-constexpr std::size_t longest_text = 1U << 16; ///< that anybody reads
+constexpr std::size_t longest_text = 1U << 16; ///< of elements that are read
 
 struct Unit {
     std::string_view name; ///< in lower case
     double mm;
 };
 
-/// The five of the standard, and what else has been seen.
+/// Units of the standard, and others that occur in files.
 constexpr std::array units = {Unit{"millimeter", 1}, Unit{"inch", 25.4},        Unit{"feet", 304.8},
                               Unit{"meter", 1000},   Unit{"micron", 0.001},     Unit{"millimeters", 1},
                               Unit{"mm", 1},         Unit{"inches", 25.4},      Unit{"foot", 304.8},
                               Unit{"meters", 1000},  Unit{"micrometer", 0.001}, Unit{"micrometers", 0.001},
                               Unit{"microns", 0.001}};
 
-/// Elements without attributes that hold a number or others of their kind.
+/// Elements without attributes that contain a number or elements of this kind.
 class PlainNumbers : public PlainTags {
   public:
     using PlainTags::PlainTags;
@@ -79,12 +79,12 @@ constexpr MeshTextForm text_form{
     {"<triangle", "</volume", 8,
      std::string_view("<triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle>").size(), read_triangles}};
 
-/// What a number of an instance may be called.
+/// Names of the numbers of an instance.
 constexpr std::array<std::string_view, 14> instance_numbers = {
     "deltax", "deltay", "deltaz", "rx",      "ry",      "rz",      "scale",
     "scalex", "scaley", "scalez", "mirrorx", "mirrory", "mirrorz", "printable"};
 
-/// What an element stands in.
+/// Element that contains the current one.
 enum class AmfPlace {
     outside,
     amf,
@@ -93,20 +93,20 @@ enum class AmfPlace {
     vertices,
     vertex,
     coordinates,
-    triangles, ///< a volume
+    triangles, ///< of a volume
     triangle,
     constellation,
     instance,
     number,   ///< of a vertex, triangle or instance
     metadata, ///< of the file, an object or a constellation
-    elsewhere ///< in something that is passed over
+    elsewhere ///< in an element that is skipped
 };
 
 struct AmfElement {
     std::string_view name;
     const XmlAttributes& attributes;
 
-    /// An attribute, without the blanks around it.
+    /// Returns an attribute without the blanks around it.
     std::string_view operator[](std::string_view attribute) const {
         return trimmed(attributes.find(attribute));
     }
@@ -211,7 +211,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
         return Where::triangles;
     }
 
-    /// Triangles or runs of them, as `AmfObject::volumes` counts.
+    /// Returns the number of triangles, or of skimmed sequences of triangles, as `AmfObject::volumes` counts.
     [[nodiscard]] std::uint64_t triangles_of_object() {
         return skim_ ? object().text.triangles.size() : object().mesh.triangles.size();
     }
@@ -236,7 +236,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
     }
 
     Where start_metadata(const AmfElement& element) {
-        // Only Slic3r and its descendants leave such words, and they write radians.
+        // Only Slic3r and its descendants write this word, and they write angles in radians.
         const std::string type = lower_case(element["type"]);
         document().radians = document().radians || type.starts_with("slic3r");
         begin_text(type);
@@ -362,9 +362,9 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
     static constexpr unsigned all_three = 7;
 
     bool skim_;
-    std::string kind_; ///< element of a number, or type of metadata
+    std::string kind_; ///< element of the current number, or type of the metadata
     std::string text_;
-    unsigned seen_ = 0; ///< which coordinates or corners
+    unsigned seen_ = 0; ///< coordinates or corners read so far
     std::array<double, 3> point_{};
     TriangleIndices corners_{};
 };

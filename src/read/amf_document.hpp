@@ -1,6 +1,6 @@
 #pragma once
 
-// An AMF document, as it stands there.
+// The contents of an AMF document as written.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
@@ -27,8 +27,8 @@ struct AmfObject {
     bool has_mesh = false;
     IndexedMesh mesh;
     MeshText text;
-    /// Where any of them is not a part: of the mesh, or of the runs of triangles in `text`, while these are
-    /// not read.
+    /// Volumes, if any of them is not a part. They index the mesh's triangles; in a skimmed document, the
+    /// sequences of triangles in `text`.
     std::vector<VolumeRange> volumes;
 };
 
@@ -56,18 +56,17 @@ struct AmfDocument {
     bool radians = false;
     std::vector<AmfObject> objects;
     std::vector<AmfConstellation> constellations;
-    Occurrences bent; ///< edges and normals
+    Occurrences bent; ///< curved edges and normals
 };
 
-/// Reads a document, which errors call `name`. `skim`: leave the vertices and triangles of meshes in `text`,
-/// unread, where they stand as plain runs; where others stand beside them that is Error{input}. Throws
-/// Error{input} with the line for what is no AMF, and Error{limit} for what is too much, as soon as it is;
-/// the limits count what is returned.
+/// Reads a document; errors call it `name`. If `skim` is true, vertices and triangles that form plain
+/// sequences are left unread in `text`; others are then Error{input}. Throws Error{input} with the line if
+/// the document is not AMF, and Error{limit} as soon as a limit is exceeded. The limits count the result.
 [[nodiscard]] AmfDocument read_amf_document(std::string_view document, const std::string& name, bool skim,
                                             ReadLimits& limits,
                                             const std::function<void(std::size_t)>& progress);
 
-/// How meshes are written in documents.
+/// Returns how AMF documents write meshes.
 [[nodiscard]] const MeshTextForm& amf_text_form() noexcept;
 
 } // namespace lamella

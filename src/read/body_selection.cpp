@@ -52,7 +52,7 @@ void BodySelection::report(Remarks& remarks) const {
 
 namespace {
 
-/// The triangles of ranges, with the vertices that they use.
+/// Returns the triangles of these ranges with the vertices that they use.
 IndexedMesh part_of(const IndexedMesh& mesh, std::span<const VolumeRange> ranges, MeshRole role,
                     ReadLimits& limits) {
     constexpr std::uint32_t unused = std::numeric_limits<std::uint32_t>::max();

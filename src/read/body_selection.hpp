@@ -1,7 +1,6 @@
 #pragma once
 
-// Bodies of a mesh file that are no parts: which were left out, and meshes whose triangles have several
-// roles.
+// Skips bodies of a mesh file that are not parts, and divides meshes whose triangles have several roles.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -19,33 +18,33 @@ namespace lamella {
 class ReadLimits;
 class Remarks;
 
-/// Decides which bodies are read, and collects those that are not.
+/// Decides which bodies are read, and collects the others.
 class BodySelection {
   public:
     explicit BodySelection(MeshRoles include) : include_(include) {}
 
-    /// Whether bodies of that role are read.
+    /// Returns whether bodies of this role are read.
     [[nodiscard]] bool takes(MeshRole role) const noexcept {
         return include_.contains(role) || !row_of(role).left_out;
     }
-    /// The role with which a body is read that has this one: what is included is a part, or a support.
+    /// Returns the role under which a body of this role is read. Included bodies are parts or supports.
     [[nodiscard]] MeshRole taken_as(MeshRole role) const noexcept {
         return role == MeshRole::support || (role == MeshRole::negative && !include_.contains(role))
                    ? role
                    : MeshRole::part;
     }
 
-    /// Counts a body that was left out.
+    /// Counts a body that is not read.
     void leave_out(MeshRole role, const std::string& name);
     [[nodiscard]] bool left_out_any() const noexcept;
-    /// "3 volumes are no material: ...": one note for all that was left out, which does not stop strict
-    /// callers.
+    /// Adds one note on all bodies that were not read ("3 volumes are no material: ..."). It does not stop
+    /// strict callers.
     void report(Remarks& remarks) const;
 
   private:
     struct Count {
         std::uint64_t bodies = 0;
-        std::vector<std::string> names; ///< of the first few that have one
+        std::vector<std::string> names; ///< of the first few bodies with a name
     };
 
     MeshRoles include_;
@@ -60,15 +59,15 @@ struct VolumeRange {
     std::string name = {};
 };
 
-/// Triangles of a mesh that have one role.
+/// Triangles of a mesh that have the same role.
 struct RoleMesh {
     MeshRole role = MeshRole::part; ///< as BodySelection::taken_as
     IndexedMesh mesh;
 };
 
-/// Divides a mesh by the roles of its volumes; triangles of no volume are parts. Adds what is not read to the
-/// selection, and all volumes to `bodies`, under the name of the object where they have none. A mesh of one
-/// role is passed through. The limits count what is added.
+/// Divides a mesh by the roles of its volumes; triangles of no volume are parts. Adds volumes that are not
+/// read to the selection, and all volumes to `bodies`; a volume without a name gets that of the object. A
+/// mesh of one role is passed through. The limits count new data.
 [[nodiscard]] std::vector<RoleMesh> divided_by_role(IndexedMesh mesh, std::span<const VolumeRange> volumes,
                                                     const std::string& object_name, BodySelection& selection,
                                                     std::vector<MeshBody>& bodies, ReadLimits& limits);

@@ -18,10 +18,10 @@ namespace lamella {
 
 namespace {
 
-/// Of millimetres, up to what a box in a header rounds them.
+/// Tolerance of heights in millimetres, for the rounding of the box in a header.
 constexpr double one_height = 1e-6;
 
-/// Of each part: contours, where it has some and no hatch line.
+/// Returns the kind of each part: contour if it has contours and no hatch line, otherwise hatch.
 std::vector<VectorKind> kinds_held(std::span<const RawLayer> layers, std::size_t parts) {
     std::vector<bool> contours(parts);
     std::vector<bool> hatches(parts);
@@ -52,7 +52,7 @@ std::string name_of(const BeamSettings& beam) {
     return name;
 }
 
-/// Gives a part the exposure that its label says, or else the one that settings make of it.
+/// Gives a part the exposure that its label specifies, or otherwise that of its settings.
 void expose(LayerPart& part, const CommonLayerPart& of, std::optional<Exposure> labelled) {
     part.exposure = std::move(labelled);
     if (!of.beam.any())
@@ -111,8 +111,8 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
         expose(file.parts[i], parts[i], exposure_of(file.parts[i].label, held[i]));
     sort_by_height(content.layers, file.warnings);
     const RawLayer& first = content.layers.front();
-    // The heights of a box tell where the part begins, unless they are those of the first and the last plane,
-    // which some programs write.
+    // The heights of a box specify where the part begins. Some programs write the heights of the first and
+    // the last plane instead; these do not.
     const auto lies_at = [&](std::size_t corner, double z) {
         return std::abs((*header.dimension)[corner] - z) <= one_height * std::max(1.0, std::abs(z));
     };
@@ -136,7 +136,7 @@ std::vector<double> bottoms_of(std::span<const CommonLayerContent> files, double
     const bool on_bottom = std::any_of(files.begin(), files.end(), [&](const CommonLayerContent& content) {
         return content.on_bottom && content.layers.front().z - heights.front() <= same;
     });
-    if (!on_bottom || heights.size() == 1) // a single one has no thickness that could be told
+    if (!on_bottom || heights.size() == 1) // one plane gives no thickness
         heights.clear();
     return heights;
 }
@@ -163,7 +163,7 @@ LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms,
     } else if (n > 1 && !layers.front().drawn) {
         layers = layers.subspan(1);
     } else {
-        // A single layer below the bottom of the part has no thickness that could be told.
+        // One layer below the bottom of the part gives no thickness.
         bottom -= n > 1 ? layers[1].z - first : std::max(0.0, first - content.lowest);
     }
     check_part_planes(file, layers.size(), content.bytes);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Common Layer Interface files whose layers are made later: the heights of all files of an archive are tops
-// of layers, or those of all are bottoms.
+// Reads Common Layer Interface files whose layers are made later: in an archive, the heights of all files are
+// tops of layers, or those of all are bottoms.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -20,26 +20,28 @@ namespace lamella {
 
 struct CommonLayerContent {
     LayerFile file;               ///< its parts have no layers yet
-    std::vector<RawLayer> layers; ///< ascending, one at least
+    std::vector<RawLayer> layers; ///< ascending, at least one
     std::uint64_t bytes = 0;
-    double lowest = 0;      ///< bottom of the part
-    bool on_bottom = false; ///< the first layer lies there and has contours
+    double lowest = 0;      ///< height of the bottom of the part
+    bool on_bottom = false; ///< the first layer is at `lowest` and has contours
 };
 
-/// What a part is of, by its label and by what it holds: contours and no hatch lines, or else.
+/// Returns the exposure of a part from its label and its kind: contour if it has contours and no hatch line,
+/// otherwise hatch.
 using ExposureOfPart = std::function<std::optional<Exposure>(std::string_view label, VectorKind held)>;
 
 [[nodiscard]] CommonLayerContent read_common_layer_content(std::string_view bytes, const std::string& name,
                                                            const ExposureOfPart& exposure_of,
                                                            ReadLimits& limits, const Execution& execution);
 
-/// Heights are tops of layers. Exports exist whose first layer lies on the bottom of the part and has
-/// contours: there they are bottoms, and those of all files are returned, ascending; such that are no further
-/// apart than `same` are one.
+/// Returns none if heights are tops of layers, as usual. If the first layer of a file is on the bottom of the
+/// part and has contours, as in some exports, heights are bottoms. Then the heights of all files are
+/// returned, ascending; heights at most `same` apart are merged.
 [[nodiscard]] std::vector<double> bottoms_of(std::span<const CommonLayerContent> files, double same,
                                              ReadLimits& limits);
 
-/// `bottoms` as above. Where there are none, an empty layer before the first one tells where that begins.
+/// Makes the layers; `bottoms` is the result of bottoms_of. If it is empty, an empty layer before the first
+/// other one specifies where that layer begins.
 [[nodiscard]] LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms,
                                   ReadLimits& limits);
 

@@ -15,7 +15,7 @@ namespace lamella {
 
 namespace {
 
-/// An integer parameter such as a direction, out of a number that may have a decimal point.
+/// Returns an integer parameter such as a direction; it may be written with a decimal point.
 std::int64_t integer(CommonLayerText& text, const char* what) {
     const double value = text.number(what);
     if (value != std::floor(value) || std::abs(value) > 9e15)
@@ -23,7 +23,7 @@ std::int64_t integer(CommonLayerText& text, const char* what) {
     return static_cast<std::int64_t>(value);
 }
 
-/// What "/100.0" says behind a command that is not of the standard; none where anything else stands there.
+/// Takes the number of a non-standard command, such as "/100.0". Returns none if anything else follows.
 std::optional<double> take_only_number(CommonLayerText& text) {
     double number = 0;
     if (!text.take("/") || !text.take_number(number))
@@ -54,7 +54,7 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());
     std::size_t reported = 0;
-    std::size_t layer_at = 0; // the last one begins there
+    std::size_t layer_at = 0; // offset of the last layer
     std::uint64_t layer_line = 1;
     for (;;) {
         text.skip_blanks();
@@ -94,7 +94,7 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
             const std::int64_t count =
                 integer(text, hatches ? "the number of hatches" : "the number of points");
             const std::int64_t points_each = hatches ? 2 : 1;
-            // Two characters at least for each number that must follow.
+            // Each number takes at least two characters.
             if (count < 0 || count > static_cast<std::int64_t>(text.rest().size()) / (4 * points_each) + 1)
                 text.fail(fmt::format("a count of {}", count),
                           fmt::format("{} bytes are left in the file", text.rest().size()));
@@ -120,7 +120,7 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
             else
                 geometry.end_polyline(part, direction, place);
         } else {
-            // Extensions such as $$POWER/100.0 stand between polylines.
+            // Extensions such as $$POWER/100.0 occur between polylines.
             const auto place = [&] {
                 return fmt::format("line {}", line_at(bytes, command_at));
             };

@@ -31,7 +31,7 @@ class Bytes {
     [[nodiscard]] std::size_t left() const { return bytes_.size() - at_; }
     [[nodiscard]] const char* data() const { return bytes_.data() + at_; }
 
-    /// Some writers put a line end or zeros behind the last command.
+    /// Returns whether only padding is left: some writers append a line end or zeros.
     [[nodiscard]] bool only_padding_left() const {
         return std::all_of(bytes_.begin() + static_cast<std::ptrdiff_t>(at_), bytes_.end(),
                            [](char c) { return c == '\n' || c == '\r' || c == '\0'; });
@@ -45,11 +45,11 @@ class Bytes {
         std::memcpy(&value, data(), sizeof value);
         at_ += sizeof value;
         if (aligned_ && sizeof value == 2)
-            at_ = std::min(at_ + 2, bytes_.size()); // every 16-bit number fills a word of 32
+            at_ = std::min(at_ + 2, bytes_.size()); // every 16-bit number fills a 32-bit word
         return value;
     }
 
-    /// Room for `count` records of `size` bytes, all of them in the file. Moves behind them.
+    /// Returns `count` records of `size` bytes and moves behind them. Fails if they exceed the file.
     const char* take_records(std::int64_t count, std::size_t size, const char* what) {
         if (count < 0 || static_cast<std::uint64_t>(count) > left() / size)
             fail(at_, fmt::format("a count of {} {}", count, what),
@@ -84,8 +84,8 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             begin += 1;
     }
     Bytes in(bytes, std::min(begin, bytes.size()), header.aligned, name);
-    // The standard says that 16-bit numbers are unsigned; exports exist that are signed, and only the
-    // header's box tells: unsigned where it is said to be non-negative.
+    // The standard specifies unsigned 16-bit numbers, but some exports have signed ones. Only the header's
+    // box distinguishes them: they are unsigned if it has no negative coordinate.
     const auto reaches_below = [&](std::size_t axis) {
         return header.dimension && (*header.dimension)[axis] < 0;
     };

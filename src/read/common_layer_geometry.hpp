@@ -1,6 +1,6 @@
 #pragma once
 
-// The layers of a Common Layer Interface file, as the commands of its geometry section say them.
+// Collects the layers of a Common Layer Interface file from the commands of its geometry section.
 
 #include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
@@ -34,31 +34,31 @@
 
 namespace lamella {
 
-/// The direction that a file states; none where no direction has that number.
+/// Returns the direction with this number, or none if there is no such direction.
 [[nodiscard]] constexpr std::optional<CommonLayerDirection> common_layer_direction(std::int64_t number) {
     if (number < 0 || number > 2)
         return std::nullopt;
     return static_cast<CommonLayerDirection>(number);
 }
 
-/// What is expected, for the error about such a number.
+/// Expected values, for the error about another number.
 inline constexpr const char* common_layer_directions =
     "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)";
 
-/// How many decimals numbers have at most.
+/// Largest number of decimals of the numbers noted.
 class Decimals {
   public:
     void note(double number) noexcept {
         while (places_ < steps.size() - 1 && !is_whole(number / steps[places_]))
             ++places_;
     }
-    /// 1, 0.1 and so on; 0 where there are more than rounding explains.
+    /// Returns 1, 0.1 and so on; 0 if there are more decimals than supported.
     [[nodiscard]] double step() const noexcept { return steps[places_]; }
 
   private:
     static constexpr std::array steps{1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5, 0.0};
 
-    /// But for what decimals lose as binary numbers. Of numbers beyond 2^51 it may say no.
+    /// Tolerates the binary rounding of decimal fractions. May return false for numbers beyond 2^51.
     static bool is_whole(double number) noexcept {
         constexpr double no_fractions = 0x1.8p52;
         return std::abs(number - ((number + no_fractions) - no_fractions)) <= 1e-5;
@@ -67,8 +67,8 @@ class Decimals {
     std::size_t places_ = 0;
 };
 
-/// What commands beyond the standard, as CLI+ has them, say of the vectors that follow. They hold until
-/// others come.
+/// Exposure settings of the commands beyond the standard that CLI+ has. They apply to the vectors that
+/// follow, until they are changed.
 struct BeamSettings {
     std::optional<double> power_w;
     std::optional<double> speed_mm_s;
@@ -81,12 +81,12 @@ struct BeamSettings {
     }
 };
 
-/// What of a part of the file becomes a part: all of it, or where the file says how vectors are exposed,
-/// those of one kind that are exposed alike.
+/// Key of a part of the result: a part of the file, or, if the file specifies exposures, its vectors of one
+/// kind with the same settings.
 struct CommonLayerPart {
     std::int64_t number = 0;
     BeamSettings beam = {};
-    VectorKind kind = VectorKind::contour; ///< of what has settings
+    VectorKind kind = VectorKind::contour; ///< of vectors with settings
 
     friend bool operator==(const CommonLayerPart&, const CommonLayerPart&) = default;
     friend bool operator<(const CommonLayerPart& a, const CommonLayerPart& b) noexcept {
@@ -94,14 +94,14 @@ struct CommonLayerPart {
     }
 };
 
-/// Collects what the geometry section says, however it is coded.
+/// Collects the contents of the geometry section, in either coding.
 class CommonLayerGeometry {
   public:
     CommonLayerGeometry(const CommonLayerHeader& header, const std::string& name, ReadLimits& limits)
         : units_(header.units_mm), name_(name), limits_(limits), parts_(limits) {}
 
-    /// A command beyond the standard, and its number, if it has one: those that say how vectors are exposed
-    /// that follow. Others are left out, and counted.
+    /// Takes a command beyond the standard, with its number if it has one. Commands that set the exposure
+    /// apply to the vectors that follow; others are skipped and counted.
     template <class Place>
     void take_setting(std::string_view command, std::optional<double> number, const Place& place) {
         const bool usable = number && !is_too_far(*number) && (*number >= 0 || command == "FOCUS");
@@ -126,7 +126,7 @@ class CommonLayerGeometry {
         layers_.back().place = std::move(place);
     }
     [[nodiscard]] bool in_layer() const { return !layers_.empty(); }
-    /// Makes room for ends of hatches, or else for points of a polyline, and says where to add them.
+    /// Reserves memory for ends of hatches, or for points of a polyline, and returns the list to add them to.
     template <class Place>
     std::vector<Point2>& expect_points(bool hatches, std::uint64_t count, const Place& place) {
         RawLayer& layer = layers_.back();
@@ -146,7 +146,7 @@ class CommonLayerGeometry {
         layers_.back().end_hatches(number_of(part, VectorKind::hatch, place), limits_, place);
     }
 
-    /// Ends a polyline of the direction given.
+    /// Ends a polyline with the given direction.
     template <class Place>
     void end_polyline(std::int64_t part, CommonLayerDirection direction, const Place& place) {
         RawLayer& layer = layers_.back();
@@ -164,7 +164,7 @@ class CommonLayerGeometry {
         }
         if (!returns)
             unclosed_.note(place);
-        // Where the points run the other way, the stated direction holds.
+        // If the points run in the opposite direction, the stated direction prevails.
         const std::span<Point2> ring = std::span(layer.points).subspan(begin);
         const double area = ring_area(ring);
         if (direction == CommonLayerDirection::counter_clockwise ? area < 0 : area > 0) {
@@ -173,8 +173,8 @@ class CommonLayerGeometry {
         }
     }
 
-    /// Puts the parts into `file` in the order of their numbers, with those that have a label only, and says
-    /// what of the file each of them is.
+    /// Puts the parts into `file` in the order of their numbers, including those that only have a label, and
+    /// returns their keys.
     std::vector<CommonLayerPart> number_parts(const CommonLayerHeader& header, LayerFile& file) {
         const auto at_end = [] {
             return std::string_view("the end");
@@ -198,8 +198,8 @@ class CommonLayerGeometry {
 
     [[nodiscard]] std::vector<RawLayer>& layers() { return layers_; }
 
-    /// How the coordinates are rounded: not every file keeps to whole units. In single precision all other
-    /// numbers have many decimals, which say nothing.
+    /// Returns the rounding of the coordinates; not every file uses whole units. In single precision other
+    /// numbers have many decimals without significance.
     [[nodiscard]] Rounding rounding(bool single_precision) const noexcept {
         const bool known = !single_precision || decimals_.step() == 1;
         return {known ? units_ * decimals_.step() : 0, single_precision};
@@ -233,7 +233,7 @@ class CommonLayerGeometry {
     ReadLimits& limits_;
     std::vector<RawLayer> layers_;
     Decimals decimals_;
-    BeamSettings beam_; ///< of what follows
+    BeamSettings beam_; ///< of the vectors that follow
     PartNumbers<CommonLayerPart> parts_;
     UnclosedContours unclosed_;
     ReturningChains returning_;
@@ -244,12 +244,12 @@ class CommonLayerGeometry {
                     "commands are unknown here, or have no numbers that they can have; they were left out"};
 };
 
-/// Reads the geometry behind the header of an ASCII file. Throws Error{input} naming the line, Error{limit},
+/// Reads the geometry after the header of an ASCII file. Throws Error{input} with the line, Error{limit},
 /// Error{cancelled}.
 void read_ascii_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
                          const Execution& execution, CommonLayerGeometry& geometry);
 
-/// Likewise of a binary file; errors name the byte.
+/// Reads the geometry of a binary file; errors state the offset.
 void read_binary_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
                           const Execution& execution, CommonLayerGeometry& geometry);
 

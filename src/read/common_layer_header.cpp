@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view end_command = "$$HEADEREND";
 
-/// The label that begins a line: up to its other quote, or else to the comment or command that may follow.
+/// Returns the label that begins a line: up to its closing quote, or else to a comment or command.
 std::string_view label_of(std::string_view line) {
     line = trimmed(line);
     if (line.starts_with('"') && line.find('"', 1) != std::string_view::npos)
@@ -27,7 +27,7 @@ std::string_view label_of(std::string_view line) {
     return trimmed(line.substr(0, line.find("$$")));
 }
 
-/// The part's number in "/1,name".
+/// Returns the part's number from "/1,name".
 std::optional<std::int64_t> label_number(std::string_view line) {
     if (!line.starts_with('/'))
         return std::nullopt;
@@ -38,8 +38,8 @@ std::optional<std::int64_t> label_number(std::string_view line) {
     return error == std::errc() ? std::optional(number) : std::nullopt;
 }
 
-/// The six numbers of $$DIMENSION. Nothing depends on it so much that a file with fewer, or with words, is
-/// refused.
+/// Reads the six numbers of $$DIMENSION. The box is not important enough to refuse a file in which numbers
+/// are missing or malformed.
 std::optional<std::array<double, 6>> take_dimension(CommonLayerText& text,
                                                     std::vector<std::string>& warnings) {
     const std::size_t begin = text.at();
@@ -71,7 +71,7 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
         if (text.take(end_command))
             break;
         if (!text.take("$$")) {
-            text.skip_to_command(); // the standard lets other characters be ignored
+            text.skip_to_command(); // the standard allows other characters, to be ignored
             continue;
         }
         const std::string_view command = text.take_command();
@@ -95,7 +95,7 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
             if (count >= 0 && count < 1e15)
                 header.layers = static_cast<std::uint64_t>(count);
         } else if (command == "LABEL") {
-            // Not to the end of whatever line there is: a file may be one line of many labels.
+            // The length is bounded because a file can be one line of many labels.
             constexpr std::size_t longest_line = std::size_t{1} << 13;
             std::string_view line = text.rest().substr(0, longest_line);
             line = line.substr(0, std::min(line.find('\n'), line.find('\r')));
@@ -109,7 +109,7 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
             }
             text.skip_to_command();
         } else if (command == "USERDATA") {
-            // $$USERDATA/uid,length,bytes: the bytes may hold anything.
+            // $$USERDATA/uid,length,bytes: the bytes can be anything.
             const std::size_t first = bytes.find(',', text.at());
             if (first == std::string_view::npos)
                 text.fail("user data without a length", "it must read $$USERDATA/uid,length,data");
@@ -121,7 +121,7 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
                           fmt::format("{} bytes are left in the file", bytes.size() - text.at()));
             text.move_to(text.at() + static_cast<std::size_t>(length));
         } else {
-            text.skip_to_command(); // VERSION, DATE and whatever else: nothing depends on it
+            text.skip_to_command(); // VERSION, DATE and others do not matter
         }
     }
     header.end = text.at();

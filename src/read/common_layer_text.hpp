@@ -15,7 +15,7 @@
 
 namespace lamella {
 
-/// A cursor over the text of a Common Layer Interface file, which reports places by line.
+/// A cursor over the text of a Common Layer Interface file. Errors state the line.
 class CommonLayerText {
   public:
     CommonLayerText(std::string_view text, std::size_t at, const std::string& name)
@@ -26,7 +26,7 @@ class CommonLayerText {
     void move_to(std::size_t at) { at_ = at; }
     [[nodiscard]] std::string_view rest() const { return text_.substr(at_); }
 
-    /// Blanks and // comments //.
+    /// Skips blanks and // comments //.
     void skip_blanks() {
         while (!done()) {
             if (is_blank(text_[at_])) {
@@ -42,7 +42,7 @@ class CommonLayerText {
         }
     }
 
-    /// To the next command on this line, else to the line's end. What comments hold is no command.
+    /// Skips to the next command on this line, or to its end. Comments contain no commands.
     void skip_to_command() {
         bool in_comment = false;
         for (; !done() && !is_line_end(text_[at_]); ++at_) {
@@ -62,7 +62,7 @@ class CommonLayerText {
         return true;
     }
 
-    /// The letters of a command after $$, with "$$" taken.
+    /// Takes the letters of a command; "$$" was taken before.
     std::string_view take_command() {
         const std::size_t begin = at_;
         while (!done() &&
@@ -83,7 +83,7 @@ class CommonLayerText {
         return value;
     }
 
-    /// Likewise where there may be none: then nothing is taken but the blanks before it.
+    /// Takes a number if there is one; otherwise skips only the blanks.
     bool take_number(double& value) {
         skip_spaces();
         const char* const to = read_decimal(text_.data() + at_, text_.data() + text_.size(), value);
@@ -94,8 +94,8 @@ class CommonLayerText {
         return true;
     }
 
-    /// One that nothing follows but a blank, a comment or a command: what comes behind "1,5" or "1.5abc"
-    /// would be passed over.
+    /// Takes a number that a blank, a comment or a command must follow: otherwise the rest of "1,5" or
+    /// "1.5abc" would be skipped.
     double last_number(const char* what) {
         const std::size_t before = at_;
         skip_blanks();
@@ -121,8 +121,8 @@ class CommonLayerText {
         ++at_;
     }
 
-    /// A list of numbers goes on over lines, but where a command follows, or nothing, the error is where the
-    /// list ends: behind what is `before` here.
+    /// Reports a number missing after offset `before`. Lists of numbers may continue on the next line, but if
+    /// a command follows there, the error is at `before`, where the list ends.
     [[noreturn]] void fail_behind(std::size_t before, std::string_view found, const std::string& expected) {
         const std::string_view blanks = text_.substr(before, at_ - before);
         if (done())
@@ -135,7 +135,7 @@ class CommonLayerText {
     }
 
     [[nodiscard]] std::uint64_t line(std::size_t at) const { return line_at(text_, at); }
-    /// "line 12", where the cursor is.
+    /// Returns "line 12" for the position of the cursor.
     [[nodiscard]] std::string line_text() const { return fmt::format("line {}", line(at_)); }
 
     [[noreturn]] void fail(const std::string& found, const std::string& expected) const {
@@ -144,7 +144,7 @@ class CommonLayerText {
     }
 
   private:
-    /// Blanks within the line.
+    /// Skips blanks within the line.
     void skip_spaces() {
         while (!done() && is_blank(text_[at_]) && !is_line_end(text_[at_]))
             ++at_;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Words of text files that are numbers: 1, -1.5, .5, 1., 2.5e-3. Never with the locale's comma.
+// Reads numbers in text files: 1, -1.5, .5, 1., 2.5e-3. The decimal separator never depends on the locale.
 
 #include "read/decimal_text.hpp"
 
@@ -19,7 +19,7 @@ namespace lamella {
     return c == '\n' || c == '\r';
 }
 
-/// The word that begins here: up to a blank or the end.
+/// Returns the word that begins here: up to a blank or the end.
 [[nodiscard]] inline std::string_view word_at(const char* at, const char* end) noexcept {
     const char* stop = at;
     while (stop != end && !is_blank(*stop))
@@ -29,8 +29,9 @@ namespace lamella {
 
 namespace coordinate_text {
 
-/// Whether rounding this double to a float is rounding what it was rounded from. It is not where the double
-/// lies half-way between two floats, so that which of them is nearer was lost.
+/// Returns whether rounding this double to a float gives the float nearest to the decimal number that the
+/// double was rounded from. If the double is half-way between two floats, the nearer one is not known any
+/// more.
 [[nodiscard]] inline bool rounds_once_more(double value) noexcept {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &value, sizeof bits);
@@ -38,15 +39,16 @@ namespace coordinate_text {
     return (bits & below_a_float) != std::uint64_t{1} << 28;
 }
 
-/// Whatever `parse_coordinate` cannot read at once: many digits, large exponents, NaN, infinity, no number.
+/// Reads numbers that `parse_coordinate` cannot read quickly: many digits, large exponents, NaN, infinity, or
+/// none.
 [[nodiscard]] const char* parse_unusual(const char* at, const char* end, double& value) noexcept;
 [[nodiscard]] const char* parse_unusual(const char* at, const char* end, float& value) noexcept;
 
 } // namespace coordinate_text
 
 /// Reads the word that begins at `at` (not blank, not the end) as a number, rounded once, to the nearest.
-/// Returns where the word ends, or null when it is no number. The many ways to write NaN give NaN, numbers
-/// beyond the range of T infinity. T is float or double.
+/// Returns the end of the word, or null if it is no number. All spellings of NaN give NaN, numbers beyond the
+/// range of T infinity. T is float or double.
 ///
 /// Most numbers are read by one division (see DecimalDigits), in half the time of std::from_chars, which
 /// reads the others.
@@ -67,7 +69,7 @@ template <class T>
     return number.end;
 }
 
-/// What to expect instead of a word that is no number.
+/// Returns what to expect instead of a word that is no number.
 [[nodiscard]] std::string_view expected_instead(std::string_view word) noexcept;
 
 } // namespace lamella

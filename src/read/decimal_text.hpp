@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers in texts, quickly: most of the bytes of a mesh in a text file are digits.
+// Reads decimal numbers quickly, because most bytes of a mesh in a text file are digits.
 
 #include "core/parse_number.hpp"
 
@@ -11,15 +11,15 @@
 
 namespace lamella {
 
-/// A number as it is written: mantissa * 10^exponent.
+/// A number as written: mantissa * 10^exponent.
 struct DecimalDigits {
-    std::uint64_t mantissa = 0; ///< has wrapped round where there are more than 19 digits
+    std::uint64_t mantissa = 0; ///< wrapped around if there are more than 19 digits
     std::int64_t exponent = 0;
-    std::ptrdiff_t count = 0;  ///< of the mantissa's digits
-    const char* end = nullptr; ///< where the number ends; null where its exponent has no digits
+    std::ptrdiff_t count = 0;  ///< number of digits of the mantissa
+    const char* end = nullptr; ///< end of the number; null if its exponent has no digits
 
-    /// Whether `magnitude` is right: mantissa and power of ten are exact doubles, so that their quotient or
-    /// product is rounded once. Most numbers of mesh files are like that.
+    /// Returns whether `magnitude` is correctly rounded: mantissa and power of ten are exact doubles, so
+    /// their quotient or product is rounded once. This holds for most numbers of mesh files.
     [[nodiscard]] bool exact() const noexcept {
         constexpr std::ptrdiff_t most_digits = 19;
         constexpr std::int64_t last_power = 22;
@@ -34,7 +34,7 @@ struct DecimalDigits {
     }
 };
 
-/// Takes the digits, the point and the exponent of a number behind its sign.
+/// Takes the digits, the point and the exponent of a number after its sign.
 inline DecimalDigits take_decimal(const char* at, const char* end) noexcept {
     DecimalDigits number;
     const auto take_digits = [&] {
@@ -69,10 +69,9 @@ inline DecimalDigits take_decimal(const char* at, const char* end) noexcept {
     return number;
 }
 
-/// Reads the decimal number that begins at `first`: a sign, digits, a point, an exponent, whatever the
-/// locale. Correctly rounded; what is too small for a double is 0, and there is no negative zero. Returns
-/// where the number ends, or null when none begins here (NaN and infinity are none) or it is too large for a
-/// double.
+/// Reads the decimal number that begins at `first`: a sign, digits, a point, an exponent, independent of the
+/// locale. It is rounded correctly; numbers too small for a double give 0, and -0 gives +0. Returns the end
+/// of the number, or null if there is no number (NaN and infinity are none) or it is too large for a double.
 inline const char* read_decimal(const char* first, const char* end, double& value) noexcept {
     const bool negative = first != end && *first == '-';
     const bool signed_number = negative || (first != end && *first == '+');
@@ -92,8 +91,8 @@ inline const char* read_decimal(const char* first, const char* end, double& valu
     return number.end;
 }
 
-/// Reads the digits that begin at `first` as an index. Returns where they end, or null when there are none or
-/// the number needs more than 32 bits.
+/// Reads the digits that begin at `first` as an index. Returns their end, or null if there are none or the
+/// number needs more than 32 bits.
 inline const char* read_index(const char* first, const char* end, std::uint32_t& value) noexcept {
     std::uint64_t number = 0;
     const char* at = first;

@@ -23,7 +23,7 @@ using Corners = std::array<std::uint32_t, 3>;
 constexpr std::uint64_t chunk = 50'000;
 
 bool finite(const Point3& p) {
-    // Anything times zero is zero, but for NaN and infinity; one comparison for all three.
+    // Anything times zero is zero, except NaN and infinity; one comparison checks all three.
     return (p.x * 0 + p.y * 0 + p.z * 0) == 0;
 }
 
@@ -35,7 +35,7 @@ void keep_least(std::atomic<std::uint64_t>& least, std::uint64_t value) {
 
 constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
 
-/// The first triangle for which `is_bad`, or none.
+/// Returns the first triangle for which `is_bad` returns true, or none.
 template <class IsBad>
 std::uint64_t first_triangle(const IndexedMesh& mesh, Executor& executor, IsBad is_bad) {
     std::atomic<std::uint64_t> first{none};
@@ -61,7 +61,7 @@ bool all_near(const std::vector<Point3>& vertices, Executor& executor) {
     return all;
 }
 
-/// Each fan gives way to the triangles of its polygon.
+/// Replaces each fan by the triangulation of its polygon.
 void cut_polygons(FaceMesh& faces, Executor& executor) {
     constexpr std::uint64_t some = 1'000;
     std::vector<PolygonTriangulator> triangulators(executor.workers());
@@ -96,7 +96,7 @@ std::uint64_t bytes_of(const FacePiece& piece) {
     return piece.vertices.size() * sizeof(Point3) + piece.triangles.size() * sizeof(Corners);
 }
 
-/// All pieces, in order. Empties them.
+/// Joins all chunks in order and empties them.
 FaceMesh join(std::vector<FacePiece>& pieces, const std::string& source_name, Executor& executor) {
     struct Begin {
         std::uint64_t vertex = 0;
@@ -125,7 +125,7 @@ FaceMesh join(std::vector<FacePiece>& pieces, const std::string& source_name, Ex
         FacePiece& piece = pieces[i];
         const Begin& begin = begins[i];
         for (const std::uint64_t corner : piece.relative) {
-            // One that lies before this piece has wrapped round, and wraps back.
+            // An index before this chunk has wrapped around; the addition wraps back.
             piece.triangles[corner / 3][corner % 3] += static_cast<std::uint32_t>(begin.vertex);
         }
         std::copy(piece.vertices.begin(), piece.vertices.end(),
@@ -220,7 +220,7 @@ MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned
             tell_nonfinite(remarks, where, file.nonfinite_triangles, file.stored_triangles);
         }
     }
-    // A file may have vertices that belong to no face, far away; the box of the part must not know them.
+    // Unused vertices can be far away and must not enlarge the bounding box of the part.
     drop_unused_vertices(mesh, executor);
     file.objects.push_back({{}, Mesh(std::move(mesh))});
     file.instances.push_back({});
@@ -232,7 +232,7 @@ MeshFile make_mesh_file(const ByteSource& source, const PieceParser<FacePiece>& 
                         Executor& executor) {
     Occurrences thin_faces;
     Occurrences free_form;
-    std::vector<std::uint64_t> ends; // of the pieces, in triangles
+    std::vector<std::uint64_t> ends; // of the chunks, in triangles
     for (const FacePiece& piece : pieces) {
         thin_faces.add(piece.thin_faces);
         free_form.add(piece.free_form);

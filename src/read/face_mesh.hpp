@@ -1,6 +1,6 @@
 #pragma once
 
-// Vertices and faces as OBJ, PLY and OFF files have them: gathered in pieces, joined, and made a mesh.
+// Vertices and faces of OBJ, PLY and OFF files: parsed in chunks, joined, and made into a mesh.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -22,39 +22,39 @@
 
 namespace lamella {
 
-/// A face of more than three corners. Until its real triangles are known it stands in the list of triangles
-/// as the fan from its first corner.
+/// A face of more than three corners. The list of triangles contains the fan from its first corner until it
+/// is triangulated.
 struct FaceFan {
     std::uint64_t first_triangle;
     std::uint32_t triangles;
 };
 
-/// Faces, and the vertices that stand among them.
+/// The faces and vertices of a chunk of text.
 struct FacePiece : TextPiece {
-    /// Names no vertex, as there are never so many.
+    /// Not the index of a vertex, because there are never this many.
     static constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
-    std::vector<Point3> vertices; ///< also such that are not finite
+    std::vector<Point3> vertices; ///< including those that are not finite
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<FaceFan> polygons;
-    /// Corners (3 t + k: corner k of triangle t) that count from the first vertex of this piece.
+    /// Corners (3 t + k: corner k of triangle t) with indices relative to the first vertex of this chunk.
     std::vector<std::uint64_t> relative;
-    Occurrences thin_faces;     ///< of fewer than three corners
-    Occurrences free_form;      ///< curves and surfaces that are not made of faces
-    std::size_t name = nowhere; ///< where that of the first object stands
-    std::size_t rest = nowhere; ///< where more follows the last row that was asked for
+    Occurrences thin_faces;     ///< with fewer than three corners
+    Occurrences free_form;      ///< curves and surfaces that do not consist of faces
+    std::size_t name = nowhere; ///< offset of the name of the first object
+    std::size_t rest = nowhere; ///< offset of text after the last row requested
 
-    /// Adds the corners of a face that begins at `offset`.
+    /// Adds a face that begins at `offset`, given its corners.
     void add_face(const std::vector<std::uint32_t>& corners, std::size_t offset);
 };
 
-/// Triangles that share two corners each with the one before.
+/// A strip of triangles, each of which shares two corners with the one before.
 class TriangleStrip {
   public:
     void restart() noexcept { corners_ = 0; }
-    /// The triangle that ends with this corner; none where the strip has just begun, and none that uses a
-    /// corner twice, as where strips are sewn together. Every second one is turned, so that all face the same
-    /// side.
+    /// Returns the triangle that ends with this corner; none at the beginning of the strip, and none that
+    /// uses a corner twice, as where strips are joined. Every second triangle is flipped, so that all have
+    /// the same orientation.
     [[nodiscard]] std::optional<std::array<std::uint32_t, 3>> add(std::uint32_t corner) noexcept;
 
   private:
@@ -68,27 +68,26 @@ struct FaceMesh {
     std::vector<FaceFan> polygons;
 };
 
-/// Counts a piece as soon as it is parsed, before the next ones are.
+/// Counts a chunk as soon as it is parsed, before the next ones.
 void count_piece(const FacePiece& piece, ReadLimits& limits);
-/// How many pieces are parsed ahead: some for each thread, however many there are.
+/// Returns the number of chunks to parse ahead: several for each thread, in any case enough.
 [[nodiscard]] inline std::size_t face_pieces_ahead(const Executor& executor) noexcept {
     return std::max<std::size_t>(32, std::size_t{8} * executor.workers());
 }
 
-/// Takes back that it was counted.
+/// Reverts count_piece.
 void give_back_piece(const FacePiece& piece, ReadLimits& limits);
 
-/// How a reader tells where triangle t came from, such as "line 7".
+/// Describes where triangle t is in the file, such as "line 7".
 using TrianglePlace = std::function<std::string(std::uint64_t triangle)>;
 
-/// Makes a mesh file of it: cuts the polygons into triangles, drops triangles with a corner that is not
-/// finite (with a remark) and vertices that no triangle uses. Throws Error{input} where a face names a vertex
-/// that is not there (`first_vertex` is the number of the first one in the file: 0 or 1), and where no
-/// triangle is left.
+/// Makes a mesh file: triangulates the polygons, drops triangles with a corner that is not finite (with a
+/// remark) and vertices that no triangle uses. `first_vertex` is the number of the file's first vertex: 0 or
+/// 1. Throws Error{input} if a face refers to a vertex that does not exist, or if no triangle is left.
 [[nodiscard]] MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned first_vertex,
                                       const TrianglePlace& place, Remarks& remarks, Executor& executor);
 
-/// Joins pieces, which it empties, and makes a mesh file of them.
+/// Joins chunks, which it empties, and makes them into a mesh file.
 [[nodiscard]] MeshFile make_mesh_file(const ByteSource& source, const PieceParser<FacePiece>& parser,
                                       std::vector<FacePiece>& pieces, unsigned first_vertex, Remarks& remarks,
                                       Executor& executor);

@@ -18,9 +18,9 @@ namespace lamella {
 
 namespace {
 
-/// How many rows there are, if each line is one for certain, as in most texts: none begins with a blank or
-/// ends with a CR alone, and there are no comments. Sixteen bytes at a time, which is many times faster than
-/// to look at what each line holds.
+/// Returns the number of rows if every line certainly is a row, as in most texts: no line begins with a blank
+/// or ends with a bare CR, and there are no comments. Checks sixteen bytes at a time, which is many times
+/// faster than parsing each line.
 std::optional<std::uint64_t> count_plain_rows(std::string_view text, char comment) {
     if (text.empty() || text[0] <= ' ' || text[0] == comment)
         return std::nullopt;
@@ -37,7 +37,7 @@ std::optional<std::uint64_t> count_plain_rows(std::string_view text, char commen
         Bytes line_feeds{};
         Bytes doubtful{};
         for (int i = 0; i < 127 && at + sizeof(Bytes) <= text.size();
-             ++i, at += sizeof(Bytes)) { // counts fit
+             ++i, at += sizeof(Bytes)) { // bounded, so that the counts fit into a byte
             const Bytes before = load(at - 1);
             const Bytes here = load(at);
             line_feeds -= here == '\n';
@@ -99,11 +99,11 @@ std::int64_t RowWords::integer() {
     const char* const digits = at;
     constexpr std::ptrdiff_t most_digits = 18;
     constexpr std::int64_t too_large = std::int64_t{1} << 40;
-    std::uint64_t whole = 0; // may wrap round, but not with so many digits
+    std::uint64_t whole = 0; // wraps around only for longer numbers
     for (; at != end_ && static_cast<unsigned char>(*at - '0') < 10; ++at)
         whole = whole * 10 + static_cast<unsigned char>(*at - '0');
     const std::int64_t value = at - digits <= most_digits ? static_cast<std::int64_t>(whole) : too_large;
-    if (at != digits && at != end_ && *at == '.') // some write them as real numbers: "4.0"
+    if (at != digits && at != end_ && *at == '.') // some programs write "4.0"
         for (++at; at != end_ && *at == '0';)
             ++at;
     if (at == digits || (at != end_ && !is_blank(*at)))
@@ -131,7 +131,7 @@ std::int64_t RowWords::count(std::string_view expected) {
     return value;
 }
 
-/// Takes "3 17 4 2", as nearly all rows of most files are: all short numbers with one blank between them.
+/// Takes a row such as "3 17 4 2": short numbers separated by single blanks, as in most rows of most files.
 bool RowWords::take_triangle(FacePiece& piece) {
     const char* at = at_;
     if (end_ - at < 2 || at[0] != '3' || at[1] != ' ')
@@ -143,7 +143,8 @@ bool RowWords::take_triangle(FacePiece& piece) {
             return false;
         const char* const digits = ++at;
         for (; at != end_ && static_cast<unsigned char>(*at - '0') < 10; ++at)
-            corner = corner * 10 + static_cast<unsigned char>(*at - '0'); // wraps round for long ones only
+            corner = corner * 10 + static_cast<unsigned char>(*at - '0'); // wraps around only for long
+                                                                          // numbers
         constexpr std::ptrdiff_t most_digits = 9;
         if (at == digits || at - digits > most_digits)
             return false;
@@ -232,7 +233,7 @@ class RowsReader {
   private:
     [[nodiscard]] std::uint64_t all_rows() const { return rows_.rows + rows_.more_rows; }
 
-    /// Reads all pieces anew, up to the first fault.
+    /// Reads all chunks again, up to the first fault.
     void read(RowLayout layout) {
         for (const FacePiece& piece : pieces_)
             give_back_piece(piece, limits_);
@@ -249,7 +250,7 @@ class RowsReader {
         format.guess = [this](std::vector<FacePiece>& pieces) {
             guess_rows(pieces);
         };
-        // Only where a row of words has ended is it known where the next one begins.
+        // The beginning of a row of words is known only when the row before it has been parsed.
         parser_.emplace(source_, rows_.begin, std::move(format), executor_, progress_,
                         words ? 1 : face_pieces_ahead(executor_));
         pieces_ = parser_->rest([&](const FacePiece& piece) { count_piece(piece, limits_); });
@@ -263,7 +264,7 @@ class RowsReader {
                       false};
     }
 
-    /// Reads the rows of a piece, which is about all of the text once there are as many as needed.
+    /// Reads the rows of a chunk. After the last row needed it skips to the end of the text.
     void parse(FacePiece& piece, RowLayout layout, std::uint64_t rows, std::uint64_t most_triangles) const {
         const char* const begin = text_.data();
         const char* const end = begin + text_.size();
@@ -299,8 +300,8 @@ class RowsReader {
         piece.end = static_cast<std::size_t>(at - begin);
     }
 
-    /// Tells of lines beyond all rows: whoever wrote the file has counted wrong, and they are lost. `begin`:
-    /// what follows the rows that are needed.
+    /// Reports lines after the last row: the counts in the file are wrong, and these lines are lost. `begin`
+    /// is the offset after the rows that are needed.
     void tell_rest(std::size_t begin) {
         const char* const end = text_.data() + text_.size();
         const char* at = text_.data() + begin;
@@ -315,7 +316,7 @@ class RowsReader {
                                      rows_.counted_where));
     }
 
-    /// A line that begins in a piece is a row of it.
+    /// Counts the lines of each chunk to guess the number of its first row.
     void guess_rows(std::vector<FacePiece>& pieces) {
         std::vector<std::uint64_t> counts(pieces.size());
         executor_.for_chunks(pieces.size() - 1, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {

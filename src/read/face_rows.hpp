@@ -1,6 +1,6 @@
 #pragma once
 
-// Texts of rows: first the vertices, then the faces, as ASCII PLY and OFF have them.
+// Texts of rows, first the vertices, then the faces, as in ASCII PLY and OFF files.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -20,14 +20,14 @@
 
 namespace lamella {
 
-/// What ends a row.
+/// Specifies where a row ends.
 enum class RowLayout {
-    lines,       ///< the line, whatever else it holds
-    exact_lines, ///< the line, which holds nothing else
-    words        ///< its last word: line ends are blanks like others
+    lines,       ///< at the end of its line, which may contain more words
+    exact_lines, ///< at the end of its line, which contains nothing else
+    words        ///< after its last word; line ends count as blanks
 };
 
-/// The words of one row. Each function throws TextFault where the row has no such word.
+/// The words of one row. Each function throws TextFault if the row has no such word.
 class RowWords : Words {
   public:
     RowWords(std::string_view text, std::size_t from, RowLayout layout)
@@ -39,15 +39,14 @@ class RowWords : Words {
     [[nodiscard]] double coordinate();
     [[nodiscard]] std::int64_t integer();
     void skip_word();
-    /// Skips a count and as many words.
+    /// Skips a count and this many words.
     void skip_list();
-    /// Adds a face to the piece: so many corners, then the number of a vertex for each, from 0 on.
+    /// Adds a face to the chunk: a count, then this many vertex indices from 0.
     void add_face(FacePiece& piece);
-    /// Takes a count and as many numbers of vertices: strips of triangles with a negative number between
-    /// them.
+    /// Takes a count and this many vertex indices: strips of triangles, separated by a negative number.
     void add_strips(FacePiece& piece);
 
-    /// Ends the row. Returns where the next one may begin.
+    /// Ends the row. Returns the earliest beginning of the next one.
     [[nodiscard]] const char* end_row();
 
   private:
@@ -60,23 +59,23 @@ class RowWords : Words {
 };
 
 struct FaceRows {
-    std::size_t begin = 0;       ///< where the first row begins
-    std::uint64_t rows = 0;      ///< how many are needed
-    std::uint64_t more_rows = 0; ///< how many ought to follow
-    char comment = '\0';         ///< lines that begin with it are no rows
-    /// Whether rows may lie in any way across lines. `read_row` then takes all words of its row.
+    std::size_t begin = 0;       ///< offset of the first row
+    std::uint64_t rows = 0;      ///< number of rows needed
+    std::uint64_t more_rows = 0; ///< number of rows expected after those
+    char comment = '\0';         ///< lines that begin with it are not rows
+    /// Rows may be divided among lines in any way. `read_row` then takes all words of its row.
     bool any_lines = false;
-    std::string counted_where; ///< where the numbers of rows stand, for errors: "the head"
-    /// Reads row number `row` into the piece.
+    std::string counted_where; ///< where the file states the numbers of rows, for errors: "the head"
+    /// Reads row number `row` into the chunk.
     std::function<void(std::uint64_t row, RowWords& words, FacePiece& piece)> read_row;
 };
 
-/// Reads the rows and makes a mesh file of them. Lines without a word are no rows.
+/// Reads the rows and makes them into a mesh file. Lines without a word are not rows.
 ///
-/// Where each row has a line to itself, as in nearly all files, they are read in parallel, and lines beyond
-/// those that were counted are left out with a remark. Where `any_lines` allows it, other texts are read word
-/// by word on one thread, up to the end of the file; and if that fails, although there are as many lines as
-/// rows, what a line has beyond its row is left out with a remark. Throws Error{input} naming the line.
+/// If each row is on its own line, as in nearly all files, rows are read in parallel, and lines beyond the
+/// stated number are skipped with a remark. Otherwise, if `any_lines` is true, the text is read word by word
+/// on one thread up to its end; if that fails although there are as many lines as rows, excess words of a
+/// line are skipped with a remark. Throws Error{input} with the line.
 [[nodiscard]] MeshFile read_face_rows(const ByteSource& source, const FaceRows& rows, Remarks& remarks,
                                       ReadLimits& limits, const Execution& execution);
 

@@ -1,5 +1,5 @@
-// The list of parameters names the files of the archive. Each is read as any Common Layer Interface file is;
-// then all get the planes of all.
+// The list of parameters names the files of the archive. Each is read as a Common Layer Interface file; then
+// all of them get the union of their planes.
 
 #include "lamella/core/error.hpp"
 
@@ -31,12 +31,12 @@ namespace lamella {
 
 namespace {
 
-/// What the list says of one file.
+/// Entry of the list for one file.
 struct Section {
     std::string name;
     std::size_t line;
     ParameterSet parameters = unknown_parameters();
-    bool pulsed = false; ///< the beam; read to be told of
+    bool pulsed = false; ///< the beam is pulsed; read only to warn
     bool has_speed = false;
     bool has_power = false;
 };
@@ -50,10 +50,10 @@ constexpr IltUnit powers[] = {{"w", 1}, {"watt", 1}, {"watts", 1}, {"kw", 1000}}
 constexpr IltUnit lengths[] = {
     {"mm", 1}, {"um", 1e-3}, {"\xb5m", 1e-3}, {"\xc2\xb5m", 1e-3}, {"\xce\xbcm", 1e-3}};
 
-/// What the list may say of a file.
+/// A parameter that the list may give for a file.
 struct Parameter {
     std::string_view key;
-    double ParameterSet::*to; ///< null for what is only told of
+    double ParameterSet::*to; ///< null if it only causes a warning
     std::span<const IltUnit> units;
     bool may_be_negative;
     const char* form;
@@ -65,7 +65,7 @@ constexpr Parameter known_parameters[] = {
     {"PointDistance", nullptr, {}, true, "with any unit"},
     {"ExposureTime", nullptr, {}, true, "with any unit"}};
 
-/// A number, alone or with one of these units behind a blank, such as "200.0 watt".
+/// Reads a number, alone or followed by a blank and one of these units, such as "200.0 watt".
 std::optional<double> number_with_unit(std::string_view text, const Parameter& parameter) {
     double number = 0;
     const char* const end = text.data() + text.size();
@@ -81,7 +81,7 @@ std::optional<double> number_with_unit(std::string_view text, const Parameter& p
     return std::nullopt;
 }
 
-/// Lines such as "[file.cli]" and, for that file, "LaserPower = 200.0 watt". Other lines say nothing here.
+/// Reads lines such as "[file.cli]" and, for this file, "LaserPower = 200.0 watt". Skips other lines.
 std::vector<Section> read_parameters(std::string_view text, const std::string& name, ReadLimits& limits) {
     std::vector<Section> sections;
     std::size_t line = 1;
@@ -124,7 +124,7 @@ std::vector<Section> read_parameters(std::string_view text, const std::string& n
     return sections;
 }
 
-/// Files that the list does not name have no parameters; what they hold is not read.
+/// Warns of files that are not in the list: they have no parameters and are not read.
 void tell_unlisted(const ZipReader& zip, const std::set<const ZipEntry*>& listed,
                    std::vector<std::string>& warnings) {
     Oddity unlisted("Common Layer Interface file is not in the list of parameters; it was left out",
@@ -135,12 +135,12 @@ void tell_unlisted(const ZipReader& zip, const std::set<const ZipEntry*>& listed
     unlisted.say(warnings);
 }
 
-/// What a word in the name of a file says of its vectors.
+/// A word in the name of a file, and the vectors that it denotes.
 struct NameWord {
     std::string_view word; ///< in lower case
     std::optional<ScanRegion> region = {};
     std::optional<VectorKind> kind = {};
-    std::uint32_t contour = 1; ///< of contours, that of the outermost ones
+    std::uint32_t contour = 1; ///< number of the contour; 1 is the outermost
 };
 
 /// Initials of German words: v (Volumen) core, u (unten) downskin, s (Schraffur) hatch, k (Kontur) contour;
@@ -151,13 +151,13 @@ constexpr NameWord codes[] = {
     {"uk", ScanRegion::downskin, VectorKind::contour}, {"kvu", ScanRegion::downskin, VectorKind::contour, 2},
     {"sx", ScanRegion::support, VectorKind::hatch},    {"skin", ScanRegion::upskin, VectorKind::hatch}};
 
-/// Regions as 3DXpert calls them: of hatches alone, of contours behind their number, as in "c1md".
+/// Regions as named by 3DXpert: alone for hatches, after the number of a contour as in "c1md".
 constexpr NameWord short_regions[] = {{"md", ScanRegion::core},
                                       {"up", ScanRegion::upskin},
                                       {"dn", ScanRegion::downskin},
                                       {"sp", ScanRegion::support}};
 
-/// Words as people use them, and netfabb, which calls files as they call stacks of slices.
+/// Common words, and those of netfabb, which names files like stacks of slices.
 constexpr NameWord plain_words[] = {
     {"hatch", {}, VectorKind::hatch},      {"hatches", {}, VectorKind::hatch},
     {"hatching", {}, VectorKind::hatch},   {"hatchings", {}, VectorKind::hatch},
@@ -180,14 +180,14 @@ bool is_number(std::string_view word) {
     return !word.empty() && word.find_first_not_of("0123456789") == std::string_view::npos;
 }
 
-/// Walks over the words of a name from its end.
+/// Takes the words of a name from its end.
 class NameWords {
   public:
     explicit NameWords(std::string name) : rest_(std::move(name)) {}
 
     [[nodiscard]] std::string_view last() const {
         const std::string_view rest = rest_;
-        return rest.substr(rest.find_last_of(separators) + 1); // or all of it
+        return rest.substr(rest.find_last_of(separators) + 1); // the whole name if there is no separator
     }
     void drop_last() {
         const std::size_t at = rest_.find_last_of(separators);
@@ -200,9 +200,8 @@ class NameWords {
     std::string rest_;
 };
 
-/// What the name of a file, such as "modelsection_001_s1_vs.cli", says of its vectors. Where it says nothing,
-/// or not of what kind they are, that is told by what the file holds; `known` says whether there was
-/// anything.
+/// Returns the exposure that the name of a file denotes, such as "modelsection_001_s1_vs.cli". If the name
+/// gives no kind of vectors, it is `held`. Sets `known` to whether the name contains a known word.
 Exposure named_exposure(std::string_view file, VectorKind held, bool& known) {
     const std::string_view name = file.substr(0, file.rfind('.'));
     NameWords words(lower_case(std::string(name)));
@@ -232,7 +231,7 @@ Exposure named_exposure(std::string_view file, VectorKind held, bool& known) {
         if (area == "st")
             exposure.region = ScanRegion::support;
         if (has_area && code->word == "skin")
-            exposure.kind = held; // the one name for both
+            exposure.kind = held; // "skin" is used for both kinds
     }
     if (!contour) {
         const std::string last(words.last());
@@ -259,8 +258,8 @@ Exposure named_exposure(std::string_view file, VectorKind held, bool& known) {
     return exposure;
 }
 
-/// Of the parts of a file in the archive. What neither has a speed nor is called scan vectors is none;
-/// `unknown` notes names that say nothing.
+/// Returns the exposure of a part of a file in the archive. Returns none if the file has no speed and its
+/// label does not specify scan vectors. `unknown` notes names without a known word.
 std::optional<Exposure> exposure_of(const Section& section, std::string_view label, VectorKind held,
                                     Oddity& unknown) {
     std::optional<Exposure> exposure = labelled_exposure(label);
@@ -279,7 +278,7 @@ bool same_height(double a, double b) {
     return std::abs(a - b) <= ilt_one_plane_mm;
 }
 
-/// The planes of all files, as empty layers.
+/// Returns the planes of all files as empty layers.
 LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
     LayerStack all;
     for (const LayerFile& file : files) {
@@ -298,7 +297,7 @@ LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         Layer& plane = all[i];
         plane.index = i;
-        // A file that leaves layers out takes those beside them for thicker than they are.
+        // If a file omits layers, their neighbours seem thicker than they are.
         if (i > 0 && plane.bottom < all[i - 1].top) {
             plane.bottom = all[i - 1].top;
             plane.z = plane.bottom + (plane.top - plane.bottom) / 2;
@@ -307,7 +306,7 @@ LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
     return all;
 }
 
-/// Layers of a part of `file` on all planes: empty where it has none.
+/// Returns the layers of a part of `file` on all planes; empty on planes that it does not have.
 LayerStack on_planes(LayerStack layers, const LayerStack& planes, const std::string& file) {
     LayerStack result = planes;
     std::size_t next = 0;
@@ -385,7 +384,7 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     if (contents.empty())
         throw Error(ErrorKind::input,
                     fmt::format("{}: found parameters of no file; there must be one at least", list.name));
-    // The files tell together whether heights are tops or bottoms of layers.
+    // The heights of all files together decide whether they are tops or bottoms of layers.
     const std::vector<double> bottoms = bottoms_of(contents, ilt_one_plane_mm, limits);
     std::vector<LayerFile> files;
     for (std::size_t i = 0; i < contents.size(); ++i) {

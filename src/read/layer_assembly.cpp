@@ -15,8 +15,8 @@ namespace lamella {
 
 namespace {
 
-/// Whether scan vectors lie in the file as a layer has them: part after part, and of each part rings, then
-/// chains, then hatches. The contours of other parts have no order.
+/// Returns whether scan vectors in the file have the order of a layer: by part, and in each part rings,
+/// chains, hatches. Contours of parts without an exposure have no order.
 bool is_in_order(const RawLayer& raw, const LayerFile& file) {
     enum : std::uint8_t { ring, chain, hatch };
     std::tuple<std::uint32_t, std::uint8_t> last{};
@@ -43,7 +43,7 @@ bool is_in_order(const RawLayer& raw, const LayerFile& file) {
     return ascends;
 }
 
-/// The order in which a machine executes vectors is of consequence, and a part has its layers to itself.
+/// Warns if the order of vectors changes, because machines execute them in this order.
 void tell_changed_order(std::span<const RawLayer> layers, LayerFile& file) {
     std::size_t changed = 0;
     double lowest = 0;
@@ -67,7 +67,7 @@ std::string_view negative_parameter(const ParameterSet& set) {
 }
 
 std::string ReadLabels::of(std::string_view label) {
-    constexpr std::size_t longest = 4096; // what writers keep of one
+    constexpr std::size_t longest = 4096; // longest label that writers keep
     std::string text = printable(label, longest);
     if (text != label && changed_++ == 0)
         first_ = text;
@@ -140,7 +140,7 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
         if (!hatches[part].empty())
             layer.hatches = PointArray(std::move(hatches[part]));
     }
-    // Those that come after need the height.
+    // Layers that follow still need the height, so `raw` itself stays.
     let_go(raw.points);
     let_go(raw.ends);
     let_go(raw.hatches);
@@ -166,8 +166,8 @@ void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double t
 }
 
 void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_t bytes) {
-    // Some two thousand small parts stacked on one another, in a file of 200 KB. So many take a gigabyte,
-    // which counts for the limit of memory.
+    // This many layers are those of about two thousand small stacked parts in a file of 200 KB. They take a
+    // gigabyte, which counts towards the memory limit.
     constexpr std::uint64_t never_too_many = std::uint64_t{1} << 22;
     const std::uint64_t most = std::max(never_too_many, bytes);
     if (file.parts.size() > most / std::max<std::uint64_t>(planes, 1))

@@ -1,6 +1,6 @@
 #pragma once
 
-// From contours at heights, as slice files hold them, to the layers of parts.
+// Makes layers of parts from contours at heights, as slice files contain them.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -24,19 +24,19 @@
 
 namespace lamella {
 
-/// Counts of one kind of oddity, said once for the whole file.
+/// Counts one kind of irregularity and warns once for the whole file.
 class Oddity {
   public:
-    /// What is said of one, and of several.
+    /// Takes the warning for one occurrence, and for several.
     Oddity(const char* one, const char* many) : one_(one), many_(many) {}
 
-    /// `place` is only made for the first one.
+    /// `place` is called only for the first one.
     template <class Place>
     void note(const Place& place) {
         if (count_++ == 0)
             first_ = place();
     }
-    /// "3 contours were not closed; they were closed (first at byte 120)"
+    /// Adds a warning such as "3 contours were not closed; they were closed (first at byte 120)".
     void say(std::vector<std::string>& warnings) const;
 
   private:
@@ -46,7 +46,7 @@ class Oddity {
     std::string first_;
 };
 
-/// What files of all formats can have.
+/// Irregularities of all formats.
 struct DroppedContours : Oddity {
     DroppedContours()
         : Oddity("contour had too few different points; it was dropped",
@@ -63,53 +63,53 @@ struct ReturningChains : Oddity {
                  "open contours end where they began; they are taken for closed ones") {}
 };
 
-/// Labels of parts, as a file has them, made fit for messages and other files.
+/// Makes labels of parts in a file fit for messages and other files.
 class ReadLabels {
   public:
-    /// As printable() makes it, and no longer than any label is meant to be.
+    /// Returns the label made printable (see printable()) and cut to the largest length of a label.
     [[nodiscard]] std::string of(std::string_view label);
     /// Warns of labels that were changed.
     void say(std::vector<std::string>& warnings) const;
 
   private:
     std::uint64_t changed_ = 0;
-    std::string first_; ///< of those, as it is now
+    std::string first_; ///< first changed label, after the change
 };
 
-/// The contours of one height of the file, in millimetres.
+/// The contours and hatches at one height of the file, mm.
 struct RawLayer {
     struct Contour {
-        std::size_t end; ///< in `points`
+        std::size_t end; ///< index in `points`
         bool closed;
-        std::uint32_t part; ///< in LayerFile::parts
+        std::uint32_t part; ///< index in LayerFile::parts
     };
     struct Hatches {
-        std::size_t end; ///< in `hatches`
+        std::size_t end; ///< index in `hatches`
         std::uint32_t part;
-        std::size_t behind; ///< so many contours
+        std::size_t behind; ///< number of contours before these hatches
     };
 
-    double z = 0;      ///< as the file has it
-    std::string place; ///< for error texts
+    double z = 0;      ///< as in the file
+    std::string place; ///< for error messages
     std::vector<Point2> points;
     std::vector<Contour> ends;
     std::vector<Point2> hatches; ///< two points each
     std::vector<Hatches> hatch_ends;
-    bool drawn = false; ///< points came for it, be it of a contour that was dropped (Common Layer Interface)
+    bool drawn = false; ///< the file has points for it, perhaps of a dropped contour (Common Layer Interface)
 
-    /// Where the contour under construction begins, in `points`.
+    /// Returns the index in `points` of the first point of the contour under construction.
     [[nodiscard]] std::size_t contour_begin() const { return ends.empty() ? 0 : ends.back().end; }
-    /// Whether its last point so far repeats its first one.
+    /// Returns whether its last point so far repeats the first one.
     [[nodiscard]] bool returns() const {
         return points.size() > contour_begin() && points.back() == points[contour_begin()];
     }
 
-    /// Whether it may be a ring, although the file calls it open.
+    /// Returns whether the contour may be a ring although the file calls it open.
     [[nodiscard]] bool is_returning_chain() const { return returns() && points.size() - contour_begin() > 3; }
 
-    /// Ends it. Points equal to the one before are dropped, and so is a ring's last point that repeats its
-    /// first one. False when fewer than three points (of a chain: two) were left: then none is kept, and
-    /// `dropped` notes it.
+    /// Ends the contour. Drops points equal to the one before, and the last point of a ring if it repeats the
+    /// first one. If fewer than three points (of a chain: two) are left, drops the contour, notes it in
+    /// `dropped` and returns false.
     template <class Place>
     bool end_contour(bool closed, std::uint32_t part, ReadLimits& limits, const Place& where,
                      DroppedContours& dropped) {
@@ -126,22 +126,22 @@ struct RawLayer {
         hatch_ends.push_back({hatches.size(), part, ends.size()});
     }
 
-    /// Puts contours and hatches of a layer of the same height behind its own.
+    /// Appends the contours and hatches of another layer of the same height.
     void append(const RawLayer& other);
 
   private:
     bool keep_contour(bool closed, std::uint32_t part);
 };
 
-/// The parts that contours and hatches are of, where each has a key in the file: numbered as they are met,
-/// and put into the file in the order of their keys.
+/// Numbers the parts of contours and hatches by their keys in order of appearance, and puts the parts into
+/// the file in the order of their keys.
 template <class Key>
 class PartNumbers {
   public:
     explicit PartNumbers(ReadLimits& limits) : limits_(limits) {}
 
     [[nodiscard]] bool empty() const noexcept { return numbers_.empty(); }
-    /// The first key that is not below this one; null for none.
+    /// Returns the first key that is not less than this one, or null.
     [[nodiscard]] const Key* first_from(const Key& key) const {
         const auto found = numbers_.lower_bound(key);
         return found == numbers_.end() ? nullptr : &found->first;
@@ -152,14 +152,14 @@ class PartNumbers {
         if (last_ == numbers_.end() || last_->first != key)
             last_ = numbers_.find(key);
         if (last_ == numbers_.end()) {
-            // The part, and what is made of it for a while.
+            // The part and temporary data for it.
             limits_.add_bytes_at(node_bytes + sizeof key + 2 * sizeof(LayerPart), place);
             last_ = numbers_.emplace(key, static_cast<std::uint32_t>(numbers_.size())).first;
         }
         return last_->second;
     }
 
-    /// `part_of(key)` makes a part; contours and hatches get the numbers that parts have in the file.
+    /// Makes parts by `part_of(key)`; contours and hatches get the numbers that the parts have in the file.
     template <class PartOf>
     void put(LayerFile& file, std::span<RawLayer> layers, const PartOf& part_of) const {
         std::vector<std::uint32_t> places(numbers_.size());
@@ -181,33 +181,33 @@ class PartNumbers {
     typename std::map<Key, std::uint32_t>::iterator last_ = numbers_.end();
 };
 
-/// Which of the parameters of scan vectors is below 0 and must not be; empty where none is.
+/// Returns the name of the first parameter of scan vectors that is negative and must not be; empty if there
+/// is none.
 [[nodiscard]] std::string_view negative_parameter(const ParameterSet& set);
 
 /// Warns of names of parts that were changed.
 void say(const DistinctNames& names, std::vector<std::string>& warnings);
 
-/// What a layer takes besides itself, even where it is empty: the list of offsets, and what owns the points.
+/// Bytes that even an empty layer takes besides itself: the list of offsets, and the owner of the points.
 inline constexpr std::uint64_t of_empty_layer = 128;
 
-/// Appends a layer to each part, in normal form unless the part has an exposure; `raw` loses its contours and
-/// hatches, the room of which was counted: these of the layers take their place.
+/// Appends a layer to each part, in normal form unless the part has an exposure. Frees the contours and
+/// hatches of `raw`, which the limits have counted; the layers replace them.
 void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,
                ReadLimits& limits);
 
-/// Adds layers whose heights are their tops: each reaches down to the one before, the first to `bottom`, and
-/// is cut half-way up. Warns of layers whose scan vectors change their order.
+/// Adds layers whose heights are their tops. Each extends down to the one before, the first to `bottom`, and
+/// is cut half-way up. Warns of layers in which the order of scan vectors changes.
 void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits);
-/// Likewise of heights that are bottoms, where the last one reaches up to `top`.
+/// Adds layers whose heights are their bottoms in the same way; the last one extends up to `top`.
 void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits);
 
-/// Throws Error{input} when so many parts on so many planes cannot be meant in a file of so many bytes:
-/// layers take memory even where they are empty. Some millions are taken in a file of any size, since a stack
-/// of small parts is such.
+/// Throws Error{input} if parts times planes is implausible for the size of the file: even empty layers take
+/// memory. Some millions are accepted in a file of any size, because a stack of small parts can have them.
 void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_t bytes);
 
-/// Puts heights in ascending order and joins layers that are the same, such as those of equal heights; warns
-/// when it had to. `T` is a RawLayer with what else the file says of it.
+/// Sorts layers by height and merges layers that are `same`, such as those of equal heights; warns if it
+/// changed anything. `T` is a RawLayer with further data of the file.
 template <class T, class Same>
 void sort_by_height(std::vector<T>& layers, std::vector<std::string>& warnings, const Same& same) {
     const auto below = [](const T& a, const T& b) {

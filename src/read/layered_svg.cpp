@@ -22,7 +22,7 @@ namespace lamella {
 
 namespace {
 
-/// Numbers out of an attribute.
+/// A cursor over the numbers of an attribute.
 class Numbers {
   public:
     Numbers(std::string_view text, const std::string& name, std::size_t line)
@@ -32,7 +32,7 @@ class Numbers {
         skip_separators();
         return text_.empty();
     }
-    /// A letter, when one is next: a command of path data.
+    /// Takes a letter if it is next: a command of path data.
     [[nodiscard]] std::optional<char> letter() {
         skip_separators();
         const char c = text_.empty() ? '\0' : text_.front();
@@ -65,17 +65,18 @@ class Numbers {
     std::size_t line_;
 };
 
-/// One <g> of the file. Its own z is as the file has it.
+/// One <g> of the file. RawLayer::z is the value in the file.
 struct Group : RawLayer {
     std::optional<double> slice_z;
     std::optional<double> height;
-    double cut = 0; ///< where its layer lies
+    double cut = 0; ///< height of the cut
     double bottom = 0;
     double top = 0;
 };
 
-/// Finds where layers lie and puts them in ascending order of cuts, which need not lie as the tops do. Slic3r
-/// 1.x writes the cut in its scaled units, a millionth of the millimetres; later ones the top in millimetres.
+/// Computes the heights of layers and sorts them by cut, which may differ from the order of tops. Slic3r 1.x
+/// writes the cut in its scaled units, a millionth of the value in millimetres; later versions write the top
+/// in millimetres.
 void place_groups(std::vector<Group>& groups, std::vector<std::string>& warnings) {
     double highest = 0;
     bool has_slice_z = false;
@@ -86,7 +87,7 @@ void place_groups(std::vector<Group>& groups, std::vector<std::string>& warnings
     const bool legacy = !has_slice_z && highest < 0.01;
     for (Group& group : groups)
         group.z *= legacy ? 1e6 : 1;
-    // Layers that are cut at different heights are not one, though their tops be rounded to one.
+    // Layers with different cuts are distinct, even if their tops are rounded to the same value.
     sort_by_height(groups, warnings,
                    [](const Group& a, const Group& b) { return a.z == b.z && a.slice_z == b.slice_z; });
     const std::size_t n = groups.size();
@@ -105,14 +106,14 @@ void place_groups(std::vector<Group>& groups, std::vector<std::string>& warnings
         group.bottom = group.top - thickness;
         const double middle = group.bottom + thickness / 2;
         group.cut = legacy ? group.z : group.slice_z.value_or(middle);
-        // Heights are rounded each by itself, or somebody else's: a layer is cut within its thickness.
+        // Heights are rounded separately or come from other programs: the cut must be within the layer.
         group.bottom = std::min(group.bottom, group.cut);
         group.top = std::max(group.top, group.cut);
     }
     std::stable_sort(groups.begin(), groups.end(),
                      [](const Group& a, const Group& b) { return a.cut < b.cut; });
-    // Heights and thicknesses were rounded each by itself: what is no farther from the layer below than that
-    // lies on it.
+    // Heights and thicknesses are rounded separately: a layer within this distance of the one below adjoins
+    // it.
     constexpr double rounding = 1e-3;
     for (std::size_t i = 1; i < n; ++i) {
         const double top_below = groups[i - 1].top;
@@ -134,7 +135,7 @@ class SvgReader {
             if (local(element) != "svg")
                 fail(line, fmt::format("found <{}>; the document must be <svg>", printable(element, 40)));
             if (const std::string_view height = attributes.find("height"); height.data() != nullptr)
-                // A unit may follow, also one that begins like an exponent (em, ex).
+                // A unit may follow, even one that begins like an exponent (em, ex).
                 height_ =
                     Numbers(height.substr(0, height.find_last_of("0123456789.") + 1), name_, line).next();
             if (const std::string_view origin = attributes.find("data-lamella-origin");
@@ -227,7 +228,7 @@ class SvgReader {
     void start_layer(const XmlAttributes& attributes, std::size_t line) {
         const auto z = number(attributes, "slic3r:z", line);
         if (!z)
-            return; // a group of something else, such as a legend
+            return; // a group without z, such as a legend
         in_layer_ = true;
         Group group;
         group.z = *z;
@@ -240,7 +241,7 @@ class SvgReader {
         groups_.push_back(std::move(group));
     }
 
-    /// Our own files put each of several parts into a group, numbered from 1.
+    /// Lamella's own files put each of several parts into a group, numbered from 1.
     void start_part(const XmlAttributes& attributes, std::size_t line) {
         const auto part = depth_ == 3 ? number(attributes, "data-lamella-part", line) : std::nullopt;
         if (!part)
@@ -270,7 +271,7 @@ class SvgReader {
         end_contour(closed, line);
     }
 
-    /// Straight outlines: M, L, H, V and Z in both cases. Slic3r turns y upside down in paths.
+    /// Reads straight outlines: M, L, H, V and Z in both cases. Slic3r inverts the y axis in paths.
     void add_path(const XmlAttributes& attributes, std::size_t line) {
         if (const std::string_view type = attributes.find("slic3r:type");
             type == "infill" || type == "perimeter")
@@ -278,7 +279,7 @@ class SvgReader {
         RawLayer& layer = groups_.back();
         Numbers numbers(attributes.find("d"), name_, line);
         Point2 at;
-        std::optional<Point2> first; // of the contour: closing it returns there
+        std::optional<Point2> first; // of the contour; Z returns to it
         const auto add = [&](const Point2& p) {
             make_room(layer.points, line);
             layer.points.push_back({p.x + origin_.x, height_ - p.y + origin_.y});
@@ -296,7 +297,7 @@ class SvgReader {
             const bool relative = command >= 'a';
             const bool moves = command == 'M' || command == 'm';
             if (!moves && first && layer.points.size() == layer.contour_begin())
-                add(*first); // right behind Z the next contour begins where the last one did
+                add(*first); // after Z the next contour begins where the last one began
             switch (command) {
             case 'M':
             case 'm':
@@ -324,14 +325,14 @@ class SvgReader {
             }
             if (moves) {
                 first = at;
-                command = relative ? 'l' : 'L'; // further pairs are lines
+                command = relative ? 'l' : 'L'; // further pairs are the ends of lines
             }
             add(at);
         }
         end_contour(false, line);
     }
 
-    /// Where one is under construction.
+    /// Ends the contour under construction, if there is one.
     void end_contour(bool closed, std::size_t line) {
         RawLayer& layer = groups_.back();
         if (layer.points.size() == layer.contour_begin())
@@ -346,7 +347,7 @@ class SvgReader {
             open_.note(at_line(line));
     }
 
-    /// For one more.
+    /// Makes room for one more item.
     template <class T>
     void make_room(std::vector<T>& items, std::size_t line) {
         limits_.make_room(items, 1, at_line(line));
@@ -360,7 +361,8 @@ class SvgReader {
     int depth_ = 0;
     bool in_layer_ = false;
     double height_ = 0;
-    Point2 origin_; ///< of the part, where our own files tell it; else coordinates are relative to its corner
+    Point2 origin_; ///< origin of the part in Lamella's own files; else coordinates are relative to a corner
+                    ///< of the part
     std::vector<Group> groups_;
     Oddity open_{"contour is open", "contours are open"};
     Oddity outside_{"outline lies outside of the groups with slic3r:z; it was left out",

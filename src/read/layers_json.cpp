@@ -81,7 +81,7 @@ class LayersJsonReader {
         file_.rule = *rule;
     }
 
-    // In front of the layers: all parts have the same planes.
+    // Parts precede the layers, because all have the same planes.
     void read_parts() {
         if (!file_.parts.empty())
             text_.fail("\"parts\" a second time", "they must come once, before the layers");
@@ -181,13 +181,13 @@ class LayersJsonReader {
         raw.end_hatches(part, limits_, at_byte(text_.at()));
     }
 
-    /// For one more.
+    /// Makes room for one more item.
     template <class T>
     void make_room(std::vector<T>& items) {
         limits_.make_room(items, 1, at_byte(text_.at()));
     }
 
-    // x and y in turn.
+    // Reads x and y alternately.
     void read_points(std::vector<Point2>& to) {
         bool half = false;
         text_.array([&] {

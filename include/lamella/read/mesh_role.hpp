@@ -1,6 +1,6 @@
 #pragma once
 
-// What a file marks an object or a volume as.
+// Roles that a file gives to its objects and volumes.
 
 #include "lamella/core/api.hpp"
 
@@ -14,25 +14,25 @@ namespace lamella {
 
 enum class MeshRole : std::uint8_t {
     part,     ///< material
-    support,  ///< holds parts while they are made
+    support,  ///< supports parts while they are built
     negative, ///< is subtracted from the parts of its object
     modifier, ///< changes settings where it overlaps parts
     support_blocker,
     support_enforcer,
-    surface, ///< bounds no solid
-    other,   ///< is not to be made
+    surface, ///< encloses no solid
+    other,   ///< is not to be built
 };
 
-/// How a role is named, and what readers do with a body that has it, unless they are asked to include it.
+/// Names of a role, and whether readers skip bodies that have it.
 struct MeshRoleRow {
     MeshRole role;
-    std::string_view name; ///< of one, such as "support blocker"
+    std::string_view name; ///< singular, such as "support blocker"
     std::string_view many;
-    std::string_view word; ///< for options: "support-blocker"
+    std::string_view word; ///< for options, such as "support-blocker"
     bool left_out;
 };
 
-/// One row for each role, in the order of the roles.
+/// Returns one row for each role, in the order of the roles.
 [[nodiscard]] std::span<const MeshRoleRow> mesh_roles() noexcept;
 [[nodiscard]] const MeshRoleRow& row_of(MeshRole role) noexcept;
 
@@ -55,8 +55,8 @@ class MeshRoles {
     std::uint32_t bits_ = 0;
 };
 
-/// The roles of a list of their words, such as "modifier,support-blocker"; none for "". Throws Error{usage}
-/// that lists the words where one is not known, and for "part", which is always included.
+/// Returns the roles in a list of words, such as "modifier,support-blocker"; none for "". Throws Error{usage}
+/// listing the words if a word is unknown or is "part", which is always included.
 [[nodiscard]] MeshRoles roles_named(std::string_view words);
 
 } // namespace lamella
