@@ -18,7 +18,7 @@ namespace lamella {
 /// beyond it in an anonymous file (see SpillFile). For one thread.
 class ByteStore {
   public:
-    /// Keeps about `most_in_memory` bytes in memory, in whole blocks of 8 MiB, and one more block.
+    /// Keeps about `most_in_memory` bytes in memory, in whole chunks of 8 MiB, and one more chunk.
     explicit ByteStore(std::uint64_t most_in_memory = std::uint64_t{32} << 20)
         : most_blocks_(most_in_memory / block_bytes) {}
 
@@ -33,10 +33,10 @@ class ByteStore {
 
   private:
     std::size_t most_blocks_;
-    std::vector<std::string> blocks_; ///< full blocks at the beginning
-    std::optional<SpillFile> file_;   ///< full blocks that follow those in memory
+    std::vector<std::string> blocks_; ///< full chunks at the beginning
+    std::optional<SpillFile> file_;   ///< full chunks that follow those in memory
     std::uint64_t spilled_ = 0;
-    std::string last_; ///< the last bytes, less than a block
+    std::string last_; ///< the last bytes, less than a chunk
     std::uint64_t size_ = 0;
 };
 

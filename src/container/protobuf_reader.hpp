@@ -45,7 +45,7 @@ class ProtobufReader {
     /// Returns the offset of the field in the file.
     [[nodiscard]] std::uint64_t place() const noexcept { return field_place_; }
 
-    /// Returns the message whose length is at offset `place` of the file, and moves `place` behind the
+    /// Returns the message whose length is at offset `place` of the file, and moves `place` after the
     /// message.
     [[nodiscard]] static ProtobufReader delimited(std::string_view file, std::uint64_t& place,
                                                   const std::string& name);

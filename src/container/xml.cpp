@@ -193,7 +193,7 @@ class Parse {
         }
     }
 
-    /// Feeds everything up to the last run of skimmed elements, except these runs.
+    /// Feeds everything up to the last sequence of skimmed elements, except these sequences.
     void skim_through() {
         std::size_t from = 0;
         // An unsuccessful request costs time, so each one doubles the distance to the next.

@@ -49,7 +49,7 @@ class Bytes {
         return value;
     }
 
-    /// Returns `count` records of `size` bytes and moves behind them. Fails if they exceed the file.
+    /// Returns `count` records of `size` bytes and moves after them. Fails if they exceed the file.
     const char* take_records(std::int64_t count, std::size_t size, const char* what) {
         if (count < 0 || static_cast<std::uint64_t>(count) > left() / size)
             fail(at_, fmt::format("a count of {} {}", count, what),

@@ -65,7 +65,7 @@ struct FaceRows {
     char comment = '\0';         ///< lines that begin with it are not rows
     /// Rows may be divided among lines in any way. `read_row` then takes all words of its row.
     bool any_lines = false;
-    std::string counted_where; ///< where the file states the numbers of rows, for errors: "the head"
+    std::string counted_where; ///< where the file states the numbers of rows, for errors
     /// Reads row number `row` into the chunk.
     std::function<void(std::uint64_t row, RowWords& words, FacePiece& piece)> read_row;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// XML documents with meshes, element by element. Runs of vertices and triangles may be left to
+// Reads XML documents with meshes, element by element. Sequences of vertices and triangles may be left to
 // `read/mesh_text`.
 
 #include "lamella/core/error.hpp"
@@ -22,8 +22,8 @@
 
 namespace lamella {
 
-/// Which elements have business where, and the step to take for each: it says what the element is, so that
-/// those in it are taken for what they are.
+/// The step to take for an element in a certain parent. The step returns the kind of the element, for the
+/// elements in it.
 template <class Where, class Step>
 struct ElementRule {
     Where in;
@@ -31,7 +31,7 @@ struct ElementRule {
     Step step;
 };
 
-/// Null where the element has no business.
+/// Returns the step, or null if the element has no meaning in this parent.
 template <class Where, class Step, std::size_t count>
 [[nodiscard]] Step step_for(const std::array<ElementRule<Where, Step>, count>& rules, Where in,
                             std::string_view element) {
@@ -41,27 +41,27 @@ template <class Where, class Step, std::size_t count>
     return nullptr;
 }
 
-/// Reads a document, whose `objects` have a `mesh` and a `text` each. `Where` says in what an element stands:
-/// `outside` of the root element, in the `vertices` or `triangles` of the last object, ...
+/// Reads a document; its `objects` have a `mesh` and a `text` each. A `Where` is the parent of an element:
+/// `outside` of the root element, the `vertices` or `triangles` of the last object, ...
 template <class Document, class Where>
 class MeshDocumentReader {
   public:
     MeshDocumentReader(const MeshDocumentReader&) = delete;
     MeshDocumentReader& operator=(const MeshDocumentReader&) = delete;
-    /// Gives back what was counted, unless it was taken.
+    /// Subtracts the document from the limits unless it was taken.
     virtual ~MeshDocumentReader() { limits_.give_back(triangles_, bytes_); }
 
   protected:
-    /// `name` is what errors call the document; places in it are lines, with `part` before them. `skim`:
-    /// leave runs of vertices and triangles in `text`, unread.
+    /// `name` is the document's name in errors; positions in it are lines, preceded by `part`. If `skim` is
+    /// true, sequences of vertices and triangles are left unread in `text`.
     MeshDocumentReader(const std::string& name, const std::string& part, bool skim, ReadLimits& limits)
         : name_(name), part_(part), skim_(skim), limits_(limits) {}
 
-    /// Says what an element is.
+    /// Returns the kind of the element.
     virtual Where start(XmlName name, const XmlAttributes& attributes) = 0;
     virtual void end(Where ended) = 0;
 
-    /// `handlers` lack what is done here.
+    /// Parses the text; sets the handlers that `handlers` lacks.
     void parse(std::string_view text, const MeshTextForm& form, XmlHandlers handlers,
                const XmlRules& rules = {}) {
         handlers.start = [this](XmlName name, const XmlAttributes& attributes, std::size_t line) {
@@ -82,7 +82,7 @@ class MeshDocumentReader {
         parse_xml(text, name_, handlers, rules);
     }
 
-    /// What was read, and is kept.
+    /// Returns the document; the limits continue to count it.
     [[nodiscard]] Document take() {
         count_open();
         triangles_ = bytes_ = 0;
@@ -100,7 +100,8 @@ class MeshDocumentReader {
 
     [[nodiscard]] std::string here() const { return fmt::format("{}line {}", part_, line_); }
 
-    /// To be called before memory is taken. Threads share the limits, which are asked stretch by stretch.
+    /// Counts memory; must be called before it is allocated. Threads share the limits, so they are asked once
+    /// for several elements.
     void count(std::uint64_t bytes, std::uint64_t triangles = 0) {
         constexpr std::uint64_t stretch = 1 << 16;
         open_triangles_ += triangles;
@@ -131,7 +132,7 @@ class MeshDocumentReader {
                         : take_run(document, place, form.triangle.end_of_list, text.triangles);
     }
 
-    /// Where runs are skimmed no vertex may come past the parser: their order would be lost.
+    /// In a skimmed document the parser must not read a vertex: the order of vertices would be lost.
     void require_all_by_parser() const {
         if (skim_)
             fail("found a mesh that is not written plainly");
@@ -148,7 +149,7 @@ class MeshDocumentReader {
     const std::string part_;
     const bool skim_;
     ReadLimits& limits_;
-    std::uint64_t open_triangles_ = 0; ///< not yet counted
+    std::uint64_t open_triangles_ = 0; ///< not yet counted in the limits
     std::uint64_t open_bytes_ = 0;
     std::uint64_t triangles_ = 0;
     std::uint64_t bytes_ = 0;
@@ -157,8 +158,8 @@ class MeshDocumentReader {
     std::vector<Where> where_{Where::outside};
 };
 
-/// What `read(true)` gives, which skims, or else `read(false)`: the document may be at fault, or only be
-/// written in a way that is no good for skimming.
+/// Returns `read(true)`, which skims, or `read(false)` if that fails: the document may be invalid, or only
+/// written in a form that cannot be skimmed.
 template <class Read>
 [[nodiscard]] auto skimmed_or_parsed(const Read& read) {
     try {

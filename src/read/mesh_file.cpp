@@ -30,7 +30,7 @@ MeshFile read_unpacked_mesh(const ByteSource& source, const MeshReadOptions& opt
     const MeshFormatRow& format = mesh_format_of(source, options);
     MeshFile file = format.read(source, options, execution);
     check_length(source);
-    if (file.format.empty()) // STL says which of its two forms it has
+    if (file.format.empty()) // STL sets which of its two forms the file has
         file.format = format.extension;
     return file;
 }

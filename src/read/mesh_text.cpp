@@ -12,7 +12,7 @@ namespace lamella {
 
 namespace {
 
-/// A part of a run that one thread reads.
+/// A chunk of elements that one thread reads.
 struct ElementRun {
     std::string_view text;
     std::size_t mesh;
@@ -21,7 +21,7 @@ struct ElementRun {
     bool plain = true;
 };
 
-/// One kind of element of all meshes.
+/// The elements of one kind in all meshes.
 template <class Item>
 class Elements {
   public:
@@ -33,7 +33,7 @@ class Elements {
                 cut(run, i);
     }
 
-    /// Counts the elements of each piece, if all are plain, and numbers those of each mesh.
+    /// Counts the elements of each chunk if all are plain, and numbers those of each mesh.
     void count(Executor& executor) {
         executor.for_chunks(pieces_.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
             ElementRun& piece = pieces_[i];
@@ -54,10 +54,10 @@ class Elements {
         }
     }
 
-    /// None where a piece is not plain.
+    /// Returns the number of elements, or none if a chunk is not plain.
     [[nodiscard]] const std::optional<std::size_t>& count_of(std::size_t mesh) const { return counts_[mesh]; }
 
-    /// Reads into `items_of(mesh)`, and hands each piece that was read to `done`.
+    /// Reads into `items_of(mesh)` and calls `done` with each chunk that was read.
     template <class ItemsOf, class Done>
     void read(Executor& executor, const std::vector<bool>& wanted, const ItemsOf& items_of,
               const Done& done) {
@@ -77,7 +77,7 @@ class Elements {
     }
 
   private:
-    /// Cuts a run where elements begin.
+    /// Divides a sequence between elements.
     void cut(std::string_view run, std::size_t mesh) {
         while (run.size() > text_piece_bytes) {
             const std::size_t cut = run.find(kind_.tag, text_piece_bytes);

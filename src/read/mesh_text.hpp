@@ -1,7 +1,7 @@
 #pragma once
 
-// Vertices and triangles that stand in XML files as long runs of small elements: read without an XML parser,
-// in parallel. What is not quite plain is left to the parser.
+// Reads long sequences of small elements in XML files, the vertices and triangles, in parallel and without an
+// XML parser. Elements that are not plain are left to the parser.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
@@ -22,32 +22,34 @@ namespace lamella {
 class Executor;
 class ReadLimits;
 
-/// The runs of one mesh, in their order. Behind each there is another byte, and it is '<'.
+/// The sequences of elements of one mesh, in order. Each is followed by another byte of the text, which is
+/// '<'.
 struct MeshText {
     std::vector<std::string_view> vertices;
     std::vector<std::string_view> triangles;
     /// Prefixes of namespaces that attributes may have.
     std::span<const std::string> prefixes;
-    std::string place; ///< as errors call it
+    std::string place; ///< for error messages
 };
 
-/// Takes down the run that begins at `place` of a document and goes up to `end_tag`, and says how long it is;
-/// 0 when there is no such end.
+/// Appends the sequence from offset `place` of a document up to `end_tag` to `runs` and returns its length; 0
+/// if this tag is missing.
 [[nodiscard]] std::size_t take_run(std::string_view document, std::size_t place, std::string_view end_tag,
                                    std::vector<std::string_view>& runs);
 
-/// How a kind of element is written.
+/// The written form of a kind of element.
 template <class Item>
 struct MeshTextKind {
-    std::string_view tag;         ///< with which each begins, such as "<vertex"
-    std::string_view end_of_list; ///< such as "</vertices"
-    std::size_t marks;            ///< how many '<' there are in each
-    std::size_t least;            ///< bytes of the shortest one
-    /// Reads a run of exactly these many elements, blanks between them; false when it is not plain.
+    std::string_view tag;         ///< beginning of each element, such as "<vertex"
+    std::string_view end_of_list; ///< for example "</vertices"
+    std::size_t marks;            ///< number of '<' in each element
+    std::size_t least;            ///< bytes of the shortest element
+    /// Reads a sequence of exactly this many elements with blanks between them. Returns false if it is not
+    /// plain.
     bool (*read)(std::string_view run, const MeshText& text, std::span<Item> items);
 };
 
-/// How many elements a run of plain ones has.
+/// Returns the number of elements in a sequence of plain ones.
 template <class Item>
 [[nodiscard]] std::uint64_t elements_in(std::string_view run, const MeshTextKind<Item>& kind) {
     return static_cast<std::uint64_t>(std::count(run.begin(), run.end(), '<')) / kind.marks;
@@ -60,27 +62,27 @@ struct MeshTextForm {
     MeshTextKind<TriangleIndices> triangle;
 };
 
-/// Where no coordinate is: further away, squares and volumes would overflow.
+/// Bound of coordinates: beyond it, squares and volumes would overflow.
 inline constexpr double farthest_coordinate = 1e38;
 
-/// The meshes, each empty where it is not plain: some element has another form, or an index is out of range.
-/// Memory is taken for elements that the text has room for only, and after the limits agreed; they count what
-/// is returned.
+/// Reads the meshes; returns none for a mesh that is not plain: an element has another form, or an index is
+/// out of range. Memory is allocated only for elements that the text can contain and that the limits allow.
+/// The limits count the result.
 [[nodiscard]] std::vector<std::optional<IndexedMesh>> read_mesh_texts(std::span<const MeshText> texts,
                                                                       const MeshTextForm& form,
                                                                       ReadLimits& limits, Executor& executor);
 
-/// Gives back what the limits counted of a mesh.
+/// Subtracts a mesh from the limits.
 void give_back(const IndexedMesh& mesh, ReadLimits& limits);
 
-/// Reads the texts of all objects of documents that were skimmed into their meshes. False for a document with
-/// one that is not plain, which a parser has to read as a whole: the limits no longer count its meshes.
+/// Reads the texts of all objects of skimmed documents into their meshes. Returns false for a document with a
+/// mesh that is not plain: a parser must read the whole document, and the limits no longer count its meshes.
 template <class Document>
 [[nodiscard]] std::vector<bool> read_skimmed_meshes(std::span<Document* const> documents,
                                                     const MeshTextForm& form, ReadLimits& limits,
                                                     Executor& executor) {
     std::vector<MeshText> texts;
-    std::vector<std::pair<std::size_t, IndexedMesh*>> owners; // document and mesh of each
+    std::vector<std::pair<std::size_t, IndexedMesh*>> owners; // document and mesh of each text
     for (std::size_t i = 0; i < documents.size(); ++i)
         for (auto& object : documents[i]->objects)
             if (!object.text.vertices.empty() || !object.text.triangles.empty()) {
@@ -102,7 +104,7 @@ template <class Document>
     return plain;
 }
 
-/// Triangles that use a vertex twice.
+/// Returns the number of triangles that use a vertex twice.
 [[nodiscard]] std::size_t degenerate_triangles(const IndexedMesh& mesh);
 
 } // namespace lamella

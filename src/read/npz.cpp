@@ -45,7 +45,7 @@ class Array {
 
     [[nodiscard]] bool is_single_precision() const { return type_ == "<f4"; }
 
-    /// A length in millimetres. `i` counts all numbers of the array.
+    /// Returns a length in millimetres. `i` is an index among all numbers of the array.
     [[nodiscard]] double length(std::uint64_t i) const {
         double value = 0;
         if (type_ == "<f8")
@@ -60,11 +60,11 @@ class Array {
         return value + 0.0;
     }
 
-    /// A whole number of at most `most`.
+    /// Returns an integer between 0 and `most`.
     [[nodiscard]] std::uint64_t whole(std::uint64_t i, std::uint64_t most) const {
         std::uint64_t value = 0;
         if (type_ == "<i8" || type_ == "<u8")
-            value = at<std::uint64_t>(i); // one below zero is above any `most`
+            value = at<std::uint64_t>(i); // a negative one exceeds any `most`
         else if (type_ == "<i4")
             value = static_cast<std::uint64_t>(std::int64_t{at<std::int32_t>(i)});
         else if (type_ == "<u4")
@@ -80,7 +80,7 @@ class Array {
         return value;
     }
 
-    /// A string of fixed width, its zeros at the end left out, as UTF-8.
+    /// Returns a string of fixed width as UTF-8, without the zeros at its end.
     [[nodiscard]] std::string text(std::uint64_t i) const {
         if (!type_.starts_with("<U"))
             fail(fmt::format("elements of type '{}'", excerpt(type_)), "strings are '<U...'");
@@ -105,7 +105,8 @@ class Array {
         return value;
     }
 
-    // "\x93NUMPY", a version, the length of the dictionary (16 bits in version 1, then 32), the dictionary.
+    // The header: "\x93NUMPY", a version, the length of the dictionary (16 bits in version 1, then 32), the
+    // dictionary.
     void read_head() {
         constexpr std::string_view magic = "\x93NUMPY";
         if (!bytes_.starts_with(magic) || bytes_.size() < 12)
@@ -123,7 +124,7 @@ class Array {
         if (value(dictionary, "fortran_order").starts_with("True") && shape_.size() > 1)
             fail("an array in Fortran's order", "the last index must run fastest");
         element_ = element_size();
-        // Elements without a byte could be as many as the first number says.
+        // If elements were empty, the first number could claim any number of them.
         if (std::find(shape_.begin() + 1, shape_.end(), 0U) != shape_.end())
             fail("a shape with a 0 behind its first number", "elements must not be empty");
         std::uint64_t numbers = 1;
@@ -269,13 +270,13 @@ class NpzReader {
         limits_.add_bytes_at(zip_.unpacked() - unpacked, [&] { return fmt::format("array '{}'", name); });
         return result;
     }
-    /// An array of a single dimension.
+    /// Returns an array of one dimension.
     [[nodiscard]] Array list(const std::string& name) const {
         Array result = array(name);
         result.expect_shape({}, "it must be a list");
         return result;
     }
-    /// One that has an element for each of something.
+    /// Returns an array with one element for each of `of`.
     [[nodiscard]] Array list(const std::string& name, std::uint64_t size, std::string_view of) const {
         Array result = list(name);
         if (size != result.size())

@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-/// Parses a piece line by line.
+/// Parses a chunk line by line.
 class ObjLines : Words {
   public:
     ObjLines(std::string_view text, FacePiece& piece, std::uint64_t most_triangles)
@@ -39,7 +39,7 @@ class ObjLines : Words {
         skip_blanks();
         if (at_ == end_ || offset() >= piece_.limit)
             return false;
-        if (begins_with_keyword("f") || begins_with_keyword("fo")) // its old name
+        if (begins_with_keyword("f") || begins_with_keyword("fo")) // former name of "f"
             return face();
         if (begins_with_keyword("v")) {
             vertex();
@@ -47,8 +47,8 @@ class ObjLines : Words {
             return true;
         }
         other();
-        // Neither a comment nor the name of a folder goes on after a backslash. What else does, such as the
-        // numbers of a curve, begins no line that counts.
+        // A backslash does not continue a comment or a folder name. The second line of other statements, such
+        // as the numbers of a curve, begins with no keyword that matters.
         at_ = skip_to_line_end(at_, end_);
         return true;
     }
@@ -58,7 +58,7 @@ class ObjLines : Words {
         return left >= keyword.size() && std::equal(keyword.begin(), keyword.end(), at_) &&
                (left == keyword.size() || is_blank(at_[keyword.size()]) || goes_on(at_ + keyword.size()));
     }
-    /// A backslash at the end of a line.
+    /// Returns whether a backslash ends the line here.
     [[nodiscard]] bool goes_on(const char* at) const {
         return *at == '\\' && at + 1 != end_ && is_line_end(at[1]);
     }
@@ -75,7 +75,7 @@ class ObjLines : Words {
         piece_.vertices.push_back({p[0], p[1], p[2]});
     }
 
-    /// A line may go on right behind a number.
+    /// Takes a coordinate. A backslash may follow it without a blank.
     double coordinate() {
         double value = 0;
         const char* stop = parse_coordinate(at_, end_, value);
@@ -84,7 +84,7 @@ class ObjLines : Words {
             stop = goes_on(last) ? parse_coordinate(at_, last, value) : nullptr;
         }
         if (stop == nullptr)
-            return take_coordinate(); // says what is wrong
+            return take_coordinate(); // throws the error
         at_ = stop;
         return value + 0.0; // turns -0 into +0
     }
@@ -108,7 +108,7 @@ class ObjLines : Words {
         return true;
     }
 
-    /// V, V/VT, V//VN or V/VT/VN.
+    /// Takes V, V/VT, V//VN or V/VT/VN.
     std::uint32_t corner(bool& relative) {
         const char* const word = at_;
         const auto fail = [&]() -> std::uint32_t {
@@ -132,8 +132,8 @@ class ObjLines : Words {
         if (!backwards)
             return number - 1 < FacePiece::no_vertex ? static_cast<std::uint32_t>(number - 1)
                                                      : FacePiece::no_vertex;
-        // From the vertices so far, in this piece or before it. In a file of more than 2^31 vertices none can
-        // be counted back further than that.
+        // Relative to the vertices so far, in this chunk or before it. In a file of more than 2^31 vertices
+        // none further back can be addressed.
         relative = true;
         constexpr std::uint64_t furthest = std::uint64_t{1} << 31;
         relative_.resize(corners_.size() + 1, false);
@@ -143,7 +143,7 @@ class ObjLines : Words {
         return static_cast<std::uint32_t>(piece_.vertices.size() - number);
     }
 
-    /// Notes which corners of the face just added count from this piece's first vertex.
+    /// Notes which corners of the last face are relative to the first vertex of this chunk.
     void note_relative(std::uint64_t first_triangle) {
         relative_.resize(corners_.size(), false);
         for (std::uint64_t t = first_triangle; t < piece_.triangles.size(); ++t) {
@@ -164,7 +164,7 @@ class ObjLines : Words {
 
     static bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
 
-    /// Skips blanks in the line, also across a backslash at its end.
+    /// Skips blanks within the line, and a backslash at its end.
     void to_word() {
         for (;;) {
             at_ = skip_spaces(at_, end_);
@@ -174,7 +174,7 @@ class ObjLines : Words {
         }
     }
 
-    /// What is left of a vertex or a face, and the comment behind it.
+    /// Skips the rest of a vertex or a face, and the comment after it.
     void skip_line() {
         for (;;) {
             const char* const from = at_;
@@ -188,7 +188,7 @@ class ObjLines : Words {
     FacePiece& piece_;
     std::uint64_t most_triangles_;
     std::vector<std::uint32_t> corners_;
-    std::vector<bool> relative_; ///< which of them count from this piece's first vertex
+    std::vector<bool> relative_; ///< the corners that are relative to the first vertex of this chunk
 };
 
 std::string first_line(std::string_view text, std::size_t offset) {

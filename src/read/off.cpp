@@ -11,10 +11,10 @@ namespace lamella {
 
 namespace {
 
-/// What the first word says: [ST][C][N][4][n]OFF.
+/// Contents of the first word: [ST][C][N][4][n]OFF.
 struct OffKind {
     bool homogeneous = false;   ///< each vertex has a fourth coordinate
-    bool any_dimension = false; ///< the number of coordinates is given before the counts
+    bool any_dimension = false; ///< the number of coordinates precedes the counts
     std::size_t word_size = 0;
 };
 
@@ -41,12 +41,12 @@ std::optional<OffKind> kind_of(std::string_view word) {
     return kind;
 }
 
-/// Walks over the words before the rows.
+/// A cursor over the words before the rows.
 class OffHead : public Words {
   public:
     explicit OffHead(std::string_view text) : Words(text, after_byte_order_mark(text)) {}
 
-    /// The next word, across lines and comments; empty at the end.
+    /// Returns the next word, across lines and comments; empty at the end.
     std::string_view peek() {
         skip_comments();
         return Words::peek();
@@ -68,10 +68,10 @@ class OffHead : public Words {
         return value;
     }
 
-    /// Whether there is another word in this line.
+    /// Returns whether there is another word on this line.
     [[nodiscard]] bool line_goes_on() { return skip_blanks_in_line() && *position() != '#'; }
 
-    /// Whether the next line that is no comment holds one word. No row does.
+    /// Returns whether the next line without a comment contains one word. A row never does.
     [[nodiscard]] bool next_line_is_one_word() const {
         OffHead ahead = *this;
         ahead.skip_line();
@@ -103,7 +103,7 @@ OffCounts read_head(std::string_view text) {
     }
     counts.vertices = head.count("the numbers of vertices, faces and edges");
     counts.faces = head.count("the number of faces");
-    // The number of edges, which nobody needs and some leave out.
+    // The number of edges is not needed, and some files omit it.
     if (head.line_goes_on() || head.next_line_is_one_word())
         static_cast<void>(head.count("the number of edges"));
     head.skip_line();

@@ -13,13 +13,13 @@ namespace lamella {
 
 namespace {
 
-/// More than this say nothing that a reader could want; each takes memory.
+/// A package with more relationships is refused, because each takes memory.
 constexpr std::size_t most_relationships = std::size_t{1} << 20;
 
 constexpr std::string_view relationships_space =
     "http://schemas.openxmlformats.org/package/2006/relationships";
 
-/// Where the relationships of a part are listed.
+/// Returns the name of the part that lists the relationships of `part`.
 std::string list_of(std::string_view part) {
     const std::size_t slash = part.rfind('/');
     const std::size_t folder = slash == std::string_view::npos ? 0 : slash + 1;
@@ -36,7 +36,7 @@ std::optional<int> hex_digit(char c) {
     return std::nullopt;
 }
 
-/// Without %20 and the like.
+/// Decodes %20 and the like.
 std::string decoded(std::string_view reference) {
     std::string text;
     for (std::size_t i = 0; i < reference.size(); ++i) {
@@ -54,7 +54,7 @@ std::string decoded(std::string_view reference) {
     return text;
 }
 
-/// The name of a part that a reference stands for. `part`: where it stands.
+/// Returns the name of the part that a reference in `part` refers to.
 std::string resolved(std::string_view part, std::string_view reference) {
     std::string path(reference);
     if (!path.starts_with('/')) {
@@ -62,7 +62,7 @@ std::string resolved(std::string_view part, std::string_view reference) {
         if (slash != std::string_view::npos)
             path.insert(0, part.substr(0, slash + 1));
     }
-    // Folder by folder, for "." and "..".
+    // Resolves "." and "..".
     std::vector<std::string_view> steps;
     const std::string_view view = path;
     for (std::size_t at = 0; at <= view.size();) {

@@ -1,6 +1,6 @@
-// A table at the end tells where the job and its work planes lie, and a table of each work plane where its
-// blocks of vectors do. Blocks that have part, parameters, region and kind in common are the layers of one
-// part of what is read.
+// A table at the end contains the offsets of the job and its work planes, and a table of each work plane
+// those of its blocks of vectors. Blocks of the same part, parameters, region and kind become the layers of
+// one part of the result.
 
 #include "lamella/core/error.hpp"
 
@@ -28,7 +28,7 @@ namespace lamella {
 
 namespace {
 
-/// What the blocks of one part of the result have in common.
+/// Properties that all blocks of one part of the result share.
 struct BlockKind {
     std::int64_t part = 0;
     std::int64_t parameters = 0;
@@ -39,7 +39,7 @@ struct BlockKind {
     friend auto operator<=>(const BlockKind&, const BlockKind&) = default;
 };
 
-/// Where messages lie.
+/// Offsets of messages.
 struct Table {
     std::uint64_t shell = 0;
     std::vector<std::uint64_t> positions;
@@ -54,7 +54,7 @@ double finite_real(const ProtobufReader& field) {
     return static_cast<double>(value);
 }
 
-/// What the job says of all its blocks: parameters, and the parts that they belong to.
+/// Properties of the job for all of its blocks: parameters, and parts.
 class JobShell {
   public:
     JobShell(const std::string& name, ReadLimits& limits) : name_(name), limits_(limits) {}
@@ -75,18 +75,18 @@ class JobShell {
         }
     }
 
-    // 0 where it says nothing.
+    // Returns 0 if the job does not specify it.
     [[nodiscard]] std::int64_t planes() const noexcept { return planes_; }
     [[nodiscard]] double layer_thickness() const noexcept { return layer_thickness_; }
-    /// The key of a part, for blocks that name none.
+    /// Returns the key of the part for blocks that name none.
     [[nodiscard]] std::int64_t first_part() const { return labels_.empty() ? 0 : labels_.begin()->first; }
     [[nodiscard]] std::string label(std::int64_t part) const {
         const auto label = labels_.find(part);
         return label == labels_.end() ? std::string() : label->second;
     }
-    /// The key may name none.
+    /// Returns whether there are parameters with this key.
     [[nodiscard]] bool has_parameters(std::int64_t key) const { return parameters_.count(key) != 0; }
-    /// Of blocks of a kind, where it has parameters.
+    /// Returns the exposure of blocks of this kind, or none if they have no parameters.
     [[nodiscard]] std::optional<Exposure> exposure(const BlockKind& kind) const {
         const auto parameters = parameters_.find(kind.parameters);
         if (parameters == parameters_.end())
@@ -109,7 +109,7 @@ class JobShell {
     }
 
   private:
-    /// The number of a contour further inwards stands behind the name of its parameters.
+    /// Takes the number of an inner contour, which follows the name of its parameters.
     static std::uint32_t take_number(std::string& name) {
         constexpr std::uint32_t second = 2;
         const std::size_t blank = name.rfind(' ');
@@ -124,7 +124,7 @@ class JobShell {
         return number;
     }
 
-    /// An entry of a map. What is absent is 0, or an empty message.
+    /// Reads an entry of a map. An absent key is 0, an absent value an empty message.
     template <class Take>
     void read_entry(const ProtobufReader& map, const Take& take) {
         std::int64_t key = 0;
@@ -164,7 +164,7 @@ class JobShell {
         return set;
     }
 
-    /// Its label.
+    /// Returns the label of the part.
     std::string read_part(ProtobufReader fields) {
         std::string label;
         while (fields.next()) {
@@ -190,7 +190,7 @@ class JobShell {
     double layer_thickness_ = 0;
 };
 
-/// Where the messages of a file lie, each of which may be read once.
+/// The messages of a file, by their offsets. Each may be read once.
 class OvfMessages {
   public:
     OvfMessages(std::string_view bytes, const std::string& name, ReadLimits& limits, ProgressMeter& progress)
@@ -201,7 +201,7 @@ class OvfMessages {
                     fmt::format("{}, byte {}: found {}; {}", name_, place, found, expected));
     }
 
-    /// The number of 64 bits that says where something lies.
+    /// Returns the 64-bit offset that is stored at `place`.
     std::uint64_t position_at(std::uint64_t place) const {
         std::int64_t position = 0;
         if (place > bytes_.size() || bytes_.size() - place < sizeof position)
@@ -213,8 +213,8 @@ class OvfMessages {
         return static_cast<std::uint64_t>(position);
     }
 
-    /// The message at `place`. Any number of tables may name the same one: were it read again each time, a
-    /// small file would take long.
+    /// Returns the message at `place`. Many tables can refer to the same message; if it were read again each
+    /// time, a small file could take long.
     ProtobufReader at(std::uint64_t place) {
         std::uint64_t end = place;
         ProtobufReader fields = ProtobufReader::delimited(bytes_, end, name_);
@@ -258,7 +258,7 @@ class OvfMessages {
     const std::string& name_;
     ReadLimits& limits_;
     ProgressMeter& progress_;
-    std::map<std::uint64_t, std::uint64_t> taken_; ///< from where to where
+    std::map<std::uint64_t, std::uint64_t> taken_; ///< begin and end of the messages read
 };
 
 class OvfReader {
@@ -297,7 +297,7 @@ class OvfReader {
         limits_.make_room(layers_, 1, at_byte(begin));
         RawLayer& raw = layers_.emplace_back();
         raw.place = fmt::format("byte {}", begin);
-        std::int64_t blocks = 0; // that the plane announces
+        std::int64_t blocks = 0; // as stated by the plane
         std::uint64_t number = 0;
         ProtobufReader shell = messages_.at(table.shell);
         while (shell.next()) {
@@ -317,7 +317,7 @@ class OvfReader {
         }
         if (blocks != 0 && blocks != static_cast<std::int64_t>(table.positions.size()))
             other_blocks_.note(at_byte(begin));
-        // Where planes have no numbers, all are 0.
+        // If planes have no numbers, all are 0.
         if (number != 0 && number != last_number_ + 1)
             other_numbers_.note(at_byte(begin));
         last_number_ = number;
@@ -356,9 +356,9 @@ class OvfReader {
             messages_.fail(begin, fmt::format("a block with parameters of the key {}", kind.parameters),
                            "the job must have them");
         if (!has_parameters)
-            kind = {.part = kind.part}; // all that it has are of one part
+            kind = {.part = kind.part}; // all blocks without parameters belong to one part
         else if (!says_kind && lines)
-            kind.area = ovf::block::lpbf::contour; // without metadata the vectors tell
+            kind.area = ovf::block::lpbf::contour; // without metadata the type of vectors decides
         if (lines)
             add_line_sequence(*lines, begin, parts_.number_of(kind, at_byte(begin)), raw);
         if (hatches)
@@ -382,7 +382,7 @@ class OvfReader {
         }
     }
 
-    /// x and y in turn: so many numbers at a time make one item.
+    /// Adds points from pairs of x and y; `numbers` is the number of floats in an item.
     void add_points(ProtobufReader fields, std::uint64_t begin, std::size_t numbers,
                     std::vector<Point2>& to) {
         std::string_view list;
@@ -419,12 +419,12 @@ class OvfReader {
         raw.end_hatches(part, limits_, at_byte(begin));
     }
 
-    /// Parts by their keys, and exposures of each by those of their parameters.
+    /// Numbers parts by their keys, and exposures of a part by those of their parameters.
     void number_parts() {
         if (parts_.empty())
             parts_.number_of({.part = job_.first_part()}, at_byte(bytes_.size()));
         ReadLabels read_labels;
-        std::map<std::int64_t, std::string> labels; // of parts that have vectors
+        std::map<std::int64_t, std::string> labels; // of parts with vectors
         parts_.put(file_, layers_, [&](const BlockKind& kind) {
             const auto [label, is_new] = labels.try_emplace(kind.part);
             if (is_new)
@@ -439,7 +439,7 @@ class OvfReader {
         read_labels.say(file_.warnings);
     }
 
-    /// Heights are tops of layers.
+    /// Makes layers; the heights are their tops.
     void make_layers() {
         sort_by_height(layers_, file_.warnings);
         check_part_planes(file_, layers_.size(), bytes_.size());
@@ -460,7 +460,7 @@ class OvfReader {
     JobShell job_;
     std::vector<RawLayer> layers_;
     PartNumbers<BlockKind> parts_;
-    std::uint64_t last_number_ = 0; ///< of a work plane
+    std::uint64_t last_number_ = 0; ///< of the last work plane
     Oddity other_blocks_{"work plane announces another number of blocks than the file has",
                          "work planes announce another number of blocks than the file has"};
     Oddity other_numbers_{

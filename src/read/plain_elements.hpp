@@ -1,7 +1,7 @@
 #pragma once
 
-// Runs of small empty elements, such as <vertex x="1" y="2" z="3"/>: a part of XML so plain that it needs no
-// parser. What is accepted here is well-formed, and a parser would say the same of it.
+// Sequences of small empty elements, such as <vertex x="1" y="2" z="3"/>: a subset of XML that needs no
+// parser. Everything accepted here is well-formed, and a parser would read it in the same way.
 
 #include <algorithm>
 #include <array>
@@ -14,34 +14,35 @@
 
 namespace lamella {
 
-/// Walks over a run of tags with blanks between them. Behind the run there is another byte, and it is '<'.
+/// A cursor over a sequence of tags with blanks between them. The sequence is followed by another byte of the
+/// text, which is '<'.
 class PlainTags {
   public:
     explicit PlainTags(std::string_view run) : at_(run.data()), end_(run.data() + run.size()) {}
 
     [[nodiscard]] const char* end() const noexcept { return end_; }
 
-    /// Takes a tag, or the beginning of one, when it is next.
+    /// Takes a tag, or the beginning of one, if it is next.
     bool take(std::string_view tag) {
         const char* const at = next();
         return static_cast<std::size_t>(end_ - at) >= tag.size() &&
                std::memcmp(at, tag.data(), tag.size()) == 0 && move(at + tag.size());
     }
 
-    /// Nothing but blanks is left.
+    /// Returns whether only blanks are left.
     bool done() { return next() == end_; }
 
   protected:
     static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
-    /// What comes behind blanks.
+    /// Skips blanks and returns the position.
     const char* next() {
         while (is_blank(*at_))
             ++at_;
         return at_;
     }
 
-    /// Goes on behind what was read; false where it is null.
+    /// Moves to this position; returns false if it is null.
     bool move(const char* to) {
         at_ = to == nullptr ? at_ : to;
         return to != nullptr;
@@ -53,21 +54,22 @@ class PlainTags {
     const char* end_;
 };
 
-/// What a reader makes of an attribute.
+/// The result of reading an attribute.
 struct PlainValue {
-    int index = -1;            ///< which of the ones that it wants; -1 for another one, which is passed over
-    const char* end = nullptr; ///< where the value ends, null when it is not what was wanted
+    int index = -1;            ///< index among the wanted attributes; -1 for others, which are skipped
+    const char* end = nullptr; ///< end of the value; null if the value is invalid
 };
 
-/// Walks over a run of elements.
+/// A cursor over a sequence of elements.
 class PlainElements : public PlainTags {
   public:
-    /// `prefixes`: those that attributes may have, ascending.
+    /// `prefixes` are those that attributes may have, ascending.
     PlainElements(std::string_view run, std::span<const std::string> prefixes)
         : PlainTags(run), prefixes_(prefixes) {}
 
-    /// Reads the next element, which begins with `tag`, and of it each of `wanted` attributes once:
-    /// read(name, length of the name, value) gives a PlainValue. False when it is not plain, or lacks one.
+    /// Reads the next element, which begins with `tag`, and each of its `wanted` attributes once: read(name,
+    /// length of the name, value) returns a PlainValue. Returns false if the element is not plain or lacks
+    /// one of them.
     template <class Read>
     bool take(std::string_view tag, int wanted, const Read& read) {
         if (!PlainTags::take(tag))
@@ -83,7 +85,7 @@ class PlainElements : public PlainTags {
                 return at[1] == '>' && seen == (1U << wanted) - 1;
             }
             if (at == at_)
-                return false; // glued to what is before it
+                return false; // no blank before the attribute
             const char* const name = at;
             while (is_name(*at))
                 ++at;
@@ -113,7 +115,7 @@ class PlainElements : public PlainTags {
         return is_letter(c) || (c >= '0' && c <= '9') || c == ':' || c == '-' || c == '.';
     }
 
-    /// Whether an attribute of another meaning has a name that may stand here once more.
+    /// Returns whether an unwanted attribute may have this name here, and notes the name.
     bool is_new(std::string_view name, std::size_t& others) {
         if (!is_letter(name.front()) || name.starts_with("xmlns") || others == others_.size())
             return false;
@@ -130,16 +132,16 @@ class PlainElements : public PlainTags {
         return true;
     }
 
-    /// The quote that ends a value of printable ASCII without references.
+    /// Returns the quote that ends a value of printable ASCII without references.
     static const char* end_of_value(const char* at, char quote) {
         for (; *at != quote; ++at)
-            if (*at == '<' || *at == '&' || *at < ' ' || *at > '~') // char has a sign on some processors only
+            if (*at == '<' || *at == '&' || *at < ' ' || *at > '~') // char is signed on some processors only
                 return nullptr;
         return at;
     }
 
     std::span<const std::string> prefixes_;
-    std::array<std::string_view, 16> others_; ///< names of attributes that were passed over in this element
+    std::array<std::string_view, 16> others_; ///< names of unwanted attributes in this element
 };
 
 } // namespace lamella

@@ -101,7 +101,7 @@ struct Rows {
     [[nodiscard]] bool hold(std::uint64_t row) const { return row >= begin && row < end; }
 };
 
-/// The rows of each element. What has no properties has no words, and so no rows.
+/// Returns the rows of each element. An element without properties has no words, and so no rows.
 std::vector<Rows> rows_of(const PlyHeader& header) {
     std::vector<Rows> rows;
     std::uint64_t begin = 0;

@@ -30,7 +30,7 @@ using Corners = std::array<std::uint32_t, 3>;
 
 constexpr std::uint64_t chunk_rows = 16'384;
 
-/// A value at any address, in either order of bytes.
+/// Returns a value at any address, in either byte order.
 template <class T, bool swapped>
 T value_at(const std::byte* at) {
     std::array<std::byte, sizeof(T)> bytes;
@@ -73,14 +73,14 @@ bool is_real(PlyType type) {
     return type == PlyType::float32 || type == PlyType::float64;
 }
 
-/// How long a list is, or the number of a vertex. What no list or vertex can have becomes the largest number.
+/// Returns the length of a list or the index of a vertex. An impossible value becomes the largest number.
 template <bool swapped>
 std::uint64_t whole_number_at(const std::byte* at, PlyType type) {
     constexpr std::uint64_t impossible = std::numeric_limits<std::uint64_t>::max();
     if (type == PlyType::uint64)
         return value_at<std::uint64_t, swapped>(at);
     if (is_real(type)) {
-        // Odd, but some write numbers of vertices so; 2^53 and more are not whole numbers any longer.
+        // Some programs write indices as real numbers; from 2^53 on they are not exact.
         const double value = number_at<double, swapped>(at, type);
         return value >= 0 && value < 0x1p53 && value == std::floor(value) ? static_cast<std::uint64_t>(value)
                                                                           : impossible;
@@ -93,7 +93,7 @@ std::uint32_t as_vertex(std::uint64_t number) {
     return static_cast<std::uint32_t>(std::min<std::uint64_t>(number, FacePiece::no_vertex));
 }
 
-/// Some values of fixed size that follow one another, or a list.
+/// Consecutive values of fixed size, or a list.
 struct Step {
     std::size_t bytes = 0;
     std::optional<PlyType> list_length = {};
@@ -114,7 +114,7 @@ std::vector<Step> steps_of(const PlyElement& element, std::size_t first, std::si
     return steps;
 }
 
-/// Where the values after these begin; null where the file ends before.
+/// Returns the position after these values; null if the file ends before.
 template <bool swapped>
 const std::byte* walk(const std::vector<Step>& steps, const std::byte* at, const std::byte* end) {
     for (const Step& step : steps) {
@@ -146,7 +146,7 @@ const std::byte* walk(const std::vector<Step>& steps, const std::byte* at, const
                     source.name, source.bytes.size(), row + 1, element.rows, element.name));
 }
 
-/// The rows of faces or strips: each has a list of corners, and perhaps other values.
+/// Rows of faces or strips: each has a list of corners, and perhaps other values.
 template <bool swapped>
 class CornerRows {
   public:
@@ -156,12 +156,12 @@ class CornerRows {
           length_type_(*element.properties[corners].list_length),
           item_type_(element.properties[corners].type), list_{{0, length_type_, item_type_}} {}
 
-    /// The corners in a row.
+    /// The list of corners in a row.
     struct List {
         const std::byte* begin;
         const std::byte* end;
         std::uint64_t length;
-        const std::byte* row_end; ///< null where the file ends before
+        const std::byte* row_end; ///< null if the file ends before
     };
     [[nodiscard]] List at(const std::byte* row) const {
         const std::byte* const end = source_.bytes.data() + source_.bytes.size();
@@ -172,7 +172,7 @@ class CornerRows {
         return {list + ply_bytes(length_type_), list_end, whole_number_at<swapped>(list, length_type_),
                 walk<swapped>(after_, list_end, end)};
     }
-    /// The same of row `number`, which must be there.
+    /// Returns the list of row `number`; throws if the row is cut off.
     [[nodiscard]] List at(const std::byte* row, std::uint64_t number) const {
         const List list = at(row);
         if (list.row_end == nullptr)
@@ -190,7 +190,7 @@ class CornerRows {
     [[nodiscard]] bool has_items_of_32_bits() const {
         return item_type_ == PlyType::int32 || item_type_ == PlyType::uint32;
     }
-    /// The bytes of a row before its list and after it, where these are the same in all rows.
+    /// Returns the bytes of a row before and after its list, if these are the same in all rows.
     [[nodiscard]] std::optional<std::pair<std::size_t, std::size_t>> bytes_around_list() const {
         const auto fixed = [](const std::vector<Step>& steps) {
             return steps.empty() || (steps.size() == 1 && !steps[0].list_length);
@@ -205,18 +205,18 @@ class CornerRows {
   private:
     const ByteSource& source_;
     const PlyElement& element_;
-    std::vector<Step> before_; ///< the list, in a row
+    std::vector<Step> before_; ///< steps of a row before the list
     std::vector<Step> after_;
     PlyType length_type_;
     PlyType item_type_;
     std::vector<Step> list_;
 };
 
-/// Faces, each of any number of corners.
+/// Faces with any number of corners.
 template <bool swapped>
 class FaceRows {
   public:
-    /// `at`: where they begin.
+    /// `at` is the beginning of the rows.
     FaceRows(const CornerRows<swapped>& rows, const std::byte* at, Executor& executor)
         : rows_(rows), executor_(executor) {
         if (!plan_even_rows(at))
@@ -226,10 +226,10 @@ class FaceRows {
     [[nodiscard]] std::uint64_t triangles() const { return runs_.back().triangles; }
     [[nodiscard]] std::uint64_t polygons() const { return runs_.back().polygons; }
     [[nodiscard]] const std::byte* end() const { return runs_.back().at; }
-    /// Those of too few corners, by the bytes at which they begin.
+    /// Returns the faces of fewer than three corners, by their offsets.
     [[nodiscard]] const Occurrences& thin() const { return thin_; }
 
-    /// To arrays that have room for all. In parallel.
+    /// Writes all faces, in parallel, to arrays of sufficient size.
     void put(FaceMesh& faces, ProgressMeter& progress) {
         executor_.for_chunks(runs_.size() - 1, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
             if (even_ && corners_ == 3 && rows_.has_items_of_32_bits())
@@ -240,7 +240,7 @@ class FaceRows {
         });
     }
 
-    /// Where the face of a triangle begins.
+    /// Returns the beginning of the face that the triangle is part of.
     [[nodiscard]] const std::byte* place(std::uint64_t triangle) const {
         auto run = std::upper_bound(runs_.begin(), runs_.end(), triangle,
                                     [](auto value, const Run& one) { return value < one.triangles; });
@@ -257,7 +257,7 @@ class FaceRows {
     }
 
   private:
-    /// Where a run of faces begins, and how many triangles and polygons there are before it.
+    /// The beginning of a chunk of faces, and the numbers of triangles and polygons before it.
     struct Run {
         const std::byte* at;
         std::uint64_t row;
@@ -265,9 +265,8 @@ class FaceRows {
         std::uint64_t polygons;
     };
 
-    /// Most files have triangles only, so all rows are of one size; whether they are can be seen in all rows
-    /// at the same time: where every length is that of the first row, each row begins where it was looked
-    /// for.
+    /// Prepares for rows of equal size, as in most files, which contain only triangles. All rows are checked
+    /// in parallel: if every length equals that of the first row, each row begins where it was expected.
     bool plan_even_rows(const std::byte* first) {
         const auto around = rows_.bytes_around_list();
         if (!around)
@@ -306,7 +305,7 @@ class FaceRows {
         }
     }
 
-    /// Goes from row to row.
+    /// Finds the rows one after the other.
     void plan_rows(const std::byte* at) {
         std::uint64_t triangles = 0;
         std::uint64_t polygons = 0;
@@ -328,8 +327,8 @@ class FaceRows {
         runs_.push_back({at, rows, triangles, polygons});
     }
 
-    /// Even rows of triangles whose corners are 32-bit numbers: twelve bytes from each row. Negative numbers
-    /// become large ones, which name no vertex.
+    /// Copies equal rows of triangles with 32-bit indices: twelve bytes from each row. Negative numbers
+    /// become large ones, which are not the index of a vertex.
     void put_triangles(const Run& run, const Run& next, FaceMesh& faces) const {
         const std::byte* at = run.at + index_offset_;
         Corners* out = faces.mesh.triangles.data() + run.triangles;
@@ -359,15 +358,15 @@ class FaceRows {
     const CornerRows<swapped>& rows_;
     Executor& executor_;
     std::vector<Run> runs_; ///< and the end of the last one
-    bool even_ = false;     ///< all rows have this form:
+    bool even_ = false;     ///< all rows have the form described below
     std::uint64_t corners_ = 0;
     std::uint64_t row_bytes_ = 0;
     std::size_t index_offset_ = 0;
     Occurrences thin_;
 };
 
-/// Calls visit(corners, row) for the triangles of all strips, the first of which begins at `at`, with where
-/// `row` begins. Returns the end.
+/// Calls visit(corners, row) for the triangles of all strips; the first strip begins at `at`, and `row` is
+/// the beginning of the triangle's strip. Returns the end.
 template <bool swapped, class Visit>
 const std::byte* for_each_in_strips(const CornerRows<swapped>& rows, const std::byte* at,
                                     const Visit& visit) {
@@ -419,8 +418,8 @@ class BinaryReader {
     }
 
   private:
-    /// Tells of bytes beyond the rows of all elements: whoever wrote the file has counted wrong, and they are
-    /// lost. Of the elements from `first` on nothing is needed, so they may be cut off.
+    /// Reports bytes after the rows of all elements: the counts in the file are wrong, and these bytes are
+    /// lost. The elements from `first` on are not needed, so they may be cut off.
     void tell_rest(std::size_t first) {
         for (std::size_t i = first; i < header_.elements.size(); ++i) {
             const PlyElement& element = header_.elements[i];
@@ -450,7 +449,7 @@ class BinaryReader {
 
     [[nodiscard]] std::uint64_t left() const { return static_cast<std::uint64_t>(end_ - at_); }
 
-    /// The rows of an element without lists have equal sizes; the file must have room for all of them.
+    /// Throws if the file is too short for all rows of an element without lists; such rows have equal sizes.
     void check_room(const PlyElement& element, std::size_t row_bytes) const {
         if (row_bytes != 0 && element.rows > left() / row_bytes)
             fail_cut_off(source_, element, left() / row_bytes);
@@ -502,7 +501,7 @@ class BinaryReader {
                                  [&](std::uint64_t begin, std::uint64_t end, unsigned) {
                                      const std::byte* row = at_ + begin * *row_bytes;
                                      for (std::uint64_t i = begin; i < end; ++i, row += *row_bytes)
-                                         // Adding zero turns -0 into +0, as everywhere.
+                                         // Adding zero turns -0 into +0.
                                          vertices[i] = {number(row + offsets[0], types[0]) + 0.0,
                                                         number(row + offsets[1], types[1]) + 0.0,
                                                         number(row + offsets[2], types[2]) + 0.0};
@@ -516,7 +515,7 @@ class BinaryReader {
         at_ += element.rows * *row_bytes;
     }
 
-    /// Rows with lists in them, one after the other.
+    /// Reads rows that contain lists, one after the other.
     void read_uneven_vertices(const PlyElement& element) {
         const std::vector<Step> row_steps = steps_of(element, 0, element.properties.size());
         std::array<std::vector<Step>, 3> steps;
@@ -591,7 +590,7 @@ class BinaryReader {
     FaceMesh faces_;
     CornerRows<swapped> rows_;
     std::optional<FaceRows<swapped>> face_rows_;
-    const std::byte* strips_ = nullptr; ///< where their rows begin
+    const std::byte* strips_ = nullptr; ///< beginning of their rows
 };
 
 } // namespace

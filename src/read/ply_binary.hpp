@@ -1,6 +1,6 @@
 #pragma once
 
-// The rows of a binary PLY file.
+// Reads the rows of a binary PLY file.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -14,7 +14,7 @@
 
 namespace lamella {
 
-/// What of the rows is wanted: indices of elements and of their properties.
+/// The rows to read: indices of elements and of their properties.
 struct PlyPlaces {
     std::size_t vertex = 0;
     std::array<std::size_t, 3> coordinates{};

@@ -43,7 +43,7 @@ std::vector<std::string_view> words_of(std::string_view line) {
     return words;
 }
 
-/// Walks over the lines of a head.
+/// Reads the lines of a header.
 class HeaderReader {
   public:
     HeaderReader(const ByteSource& source, Remarks& remarks)
@@ -90,8 +90,8 @@ class HeaderReader {
                                 source_.name, line_number_, printable(line_, 40), expected));
     }
 
-    /// Lines of the head end as the first one does, but some programs write LF and one CRLF at the end; where
-    /// the rows are binary they begin at once after it, perhaps with a byte that looks like a line end.
+    /// Reads the next line. Lines end as the first one does, but some programs write LF and end the header
+    /// with CRLF. Binary rows begin immediately after it, perhaps with a byte that looks like a line end.
     bool next_line() {
         if (at_ == text_.size()) {
             line_ = {};
@@ -177,7 +177,7 @@ class HeaderReader {
     PlyHeader header_;
     std::size_t at_;
     std::uint64_t line_number_ = 0;
-    std::size_t line_end_ = 0; ///< bytes of the first one, where it begins with CR
+    std::size_t line_end_ = 0; ///< length of the first line end, if it begins with CR
     std::string_view line_;
     std::vector<std::string_view> words_;
 };

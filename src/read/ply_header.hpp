@@ -1,6 +1,6 @@
 #pragma once
 
-// The head of a PLY file: what its rows hold.
+// The header of a PLY file, which describes the rows.
 
 #include "core/byte_source.hpp"
 #include "read/remarks.hpp"
@@ -20,7 +20,7 @@ enum class PlyType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, f
 struct PlyProperty {
     std::string name;
     PlyType type = PlyType::float32;         ///< of the value, or of each value of the list
-    std::optional<PlyType> list_length = {}; ///< the type of the length, where it is a list
+    std::optional<PlyType> list_length = {}; ///< type of the length, if the property is a list
 };
 
 struct PlyElement {
@@ -28,7 +28,7 @@ struct PlyElement {
     std::uint64_t rows = 0; ///< as the file claims
     std::vector<PlyProperty> properties;
 
-    /// Bytes of a row in a binary file; none where rows have lists.
+    /// Returns the bytes of a row in a binary file; none if rows contain lists.
     [[nodiscard]] std::optional<std::size_t> row_bytes() const;
     [[nodiscard]] std::optional<std::size_t> find(std::string_view property) const;
 };
@@ -38,10 +38,10 @@ enum class PlyForm { ascii, little_endian, big_endian };
 struct PlyHeader {
     PlyForm form = PlyForm::ascii;
     std::vector<PlyElement> elements;
-    std::size_t end = 0; ///< where the rows begin
+    std::size_t end = 0; ///< offset of the rows
 };
 
-/// Reads the head. Lines end with LF, CRLF or CR, the last one as the first. Throws Error{input} naming the
+/// Reads the header. Lines end with LF, CRLF or CR, the last one as the first. Throws Error{input} with the
 /// line.
 [[nodiscard]] PlyHeader read_ply_header(const ByteSource& source, Remarks& remarks);
 

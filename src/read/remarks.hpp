@@ -1,6 +1,6 @@
 #pragma once
 
-// What is odd about a file, and that strict callers will not have it.
+// Collects warnings about a file, which are errors for strict callers.
 
 #include "lamella/core/error.hpp"
 
@@ -17,7 +17,7 @@
 
 namespace lamella {
 
-/// How often something odd occurs in a file, and where first.
+/// The number of occurrences of an irregularity in a file, and the first one.
 struct Occurrences {
     std::uint64_t count = 0;
     std::size_t first = 0; ///< byte or line
@@ -26,28 +26,28 @@ struct Occurrences {
         if (count++ == 0)
             first = place;
     }
-    /// What was counted in a later part of the file.
+    /// Adds the occurrences of a later part of the file.
     void add(const Occurrences& later) {
         first = count == 0 ? later.first : first;
         count += later.count;
     }
 };
 
-/// Collects warnings, one line each; for a strict caller the first one is an error instead.
+/// Collects warnings, one line each. For a strict caller the first one is an error.
 class Remarks {
   public:
     Remarks(std::string file_name, bool strict) : file_name_(std::move(file_name)), strict_(strict) {}
 
     [[nodiscard]] const std::string& file_name() const noexcept { return file_name_; }
 
-    /// Throws Error{defect} when strict.
+    /// Adds a warning; throws Error{defect} if strict.
     void add(std::string text) {
         if (strict_)
             throw Error(ErrorKind::defect, file_name_ + ": " + text);
         texts_.push_back(std::move(text));
     }
 
-    /// What does not stop strict callers; it is told after the remarks.
+    /// Adds a note. Notes follow the warnings and do not stop strict callers.
     void note(std::string text) { notes_.push_back(std::move(text)); }
 
     [[nodiscard]] std::vector<std::string> take() {
@@ -63,8 +63,8 @@ class Remarks {
     std::vector<std::string> notes_;
 };
 
-/// Tells that `count` of `stored` triangles, not 0, were left out, the first of them at `place`. Throws
-/// Error{input} where no triangle is left.
+/// Warns that `count` of `stored` triangles (`count` is not 0) were skipped, the first at `place`. Throws
+/// Error{input} if no triangle is left.
 inline void tell_nonfinite(Remarks& remarks, std::string_view place, std::uint64_t count,
                            std::uint64_t stored) {
     if (count == stored)
@@ -77,7 +77,7 @@ inline void tell_nonfinite(Remarks& remarks, std::string_view place, std::uint64
                             place, count, stored));
 }
 
-/// Tells that so many faces were left out, not 0, the first of them at `place`.
+/// Warns that `count` faces (not 0) were skipped, the first at `place`.
 inline void tell_thin_faces(Remarks& remarks, std::string_view place, std::uint64_t count) {
     remarks.add(fmt::format("{}: left out {} of fewer than three corners (this is the first)", place,
                             counted(count, "face")));

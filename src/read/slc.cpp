@@ -1,6 +1,6 @@
-// The header is text of at most 2048 bytes that ends with 0D 0A 1A, or at least with 1A; 256 reserved bytes
-// and the sampling table follow, then layers: z of the bottom, contours. A layer of 2^32 - 1 contours is the
-// end, and its z the top of the part.
+// The header is text of at most 2048 bytes that ends with 0D 0A 1A, or at least with 1A. 256 reserved bytes,
+// the sampling table and the layers follow. A layer is the z of its bottom and its contours. A layer of 2^32
+// - 1 contours ends the file; its z is the top of the part.
 
 #include "lamella/core/error.hpp"
 
@@ -40,8 +40,8 @@ std::string_view header_of(std::string_view bytes) {
     return end == std::string_view::npos ? std::string_view() : begin.substr(0, end);
 }
 
-/// What stands behind a keyword, which is in lower case, up to the next one. Some writers leave out the
-/// blanks before and behind.
+/// Returns the text between a keyword, given in lower case, and the next keyword. Some writers omit the
+/// blanks around it.
 std::optional<std::string_view> value_of(std::string_view header, std::string_view keyword) {
     const std::string lower = lower_case(header);
     const std::size_t at = lower.find(keyword);
@@ -196,8 +196,8 @@ class SlcReader {
             unclosed_.note(place);
     }
 
-    /// A layer reaches to the next one: the format lets layers be left out that are like the one below. The
-    /// last one reaches to the top of the part.
+    /// Makes the layers. A layer extends to the next one, because the format allows a layer to be omitted if
+    /// it equals the one below. The last one extends to the top of the part.
     void place_layers() {
         sort_by_height(raw_, file_.warnings);
         add_layers_by_bottoms(file_, raw_, last_top(), limits_);
@@ -229,7 +229,7 @@ class SlcReader {
     LayerFile& file_;
     ReadLimits& limits_;
     std::size_t at_ = 0;
-    bool open_ = false; ///< contours may be
+    bool open_ = false; ///< contours may be open
     std::vector<Sampling> table_;
     std::vector<RawLayer> raw_;
     std::optional<double> top_;

@@ -45,7 +45,7 @@ bool is_config(const ZipEntry& entry) {
            (name.ends_with("_model.config") || name == "metadata/model_settings.config");
 }
 
-/// One of these parts. Numbers that are none name nothing.
+/// Reads one of these parts. Malformed ids are ignored.
 class ConfigReader {
   public:
     ConfigReader(SlicerConfig& config, ReadLimits& limits, Occurrences& unknown, std::string& first_unknown)

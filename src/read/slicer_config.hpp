@@ -1,7 +1,7 @@
 #pragma once
 
-// What PrusaSlicer, SuperSlicer, OrcaSlicer, Bambu Studio and their relatives write beside the models of a
-// 3MF package: what each volume of an object is for.
+// Reads the parts of a 3MF package in which PrusaSlicer, SuperSlicer, OrcaSlicer, Bambu Studio and their
+// relatives store the role of each volume of an object.
 
 #include "container/zip_reader.hpp"
 #include "read/body_selection.hpp"
@@ -31,7 +31,7 @@ struct SlicerObject {
     std::vector<SlicerPart> parts;    ///< its components: OrcaSlicer and its relatives
 };
 
-/// By the ids of objects of the root model.
+/// Objects by their ids in the root model.
 using SlicerConfig = std::map<std::uint32_t, SlicerObject>;
 
 /// Reads Metadata/Slic3r_PE_model.config and the like, and Metadata/model_settings.config:
@@ -40,11 +40,13 @@ using SlicerConfig = std::map<std::uint32_t, SlicerObject>;
 ///       <metadata type="volume" key="volume_type" value="NegativeVolume"/></volume></object></config>
 ///     <config><object id="3"><part id="2" subtype="negative_part"/></object></config>
 ///
-/// Empty where the package has none. A part that cannot be read, and types that are not known, are remarks.
+/// Returns an empty map if the package has no such part. A part that cannot be read and unknown types are
+/// remarks.
 [[nodiscard]] SlicerConfig read_slicer_config(const ZipReader& package, Remarks& remarks, ReadLimits& limits,
                                               Executor& executor);
 
-/// The role that slicers mean by "NegativeVolume", "negative_part" and the like; nothing for other words.
+/// Returns the role that slicers denote by "NegativeVolume", "negative_part" and the like; none for other
+/// words.
 [[nodiscard]] std::optional<MeshRole> slicer_role(std::string_view word);
 
 } // namespace lamella

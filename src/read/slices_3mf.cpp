@@ -1,5 +1,5 @@
-// Slice stacks stand in the root model or, by reference, in other model parts; objects use stacks, components
-// and build items put objects somewhere. Coordinates of slices are those of their object.
+// Slice stacks are in the root model or, by reference, in other model parts. Objects use stacks; components
+// and build items place objects. Slices have the coordinates of their object.
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/transform.hpp"
@@ -32,7 +32,7 @@ namespace lamella {
 
 namespace {
 
-/// One slice, in the unit of its object, with the contours as they stand there.
+/// One slice, in the unit of its object, with the contours as written.
 struct Slice {
     double top = 0;
     RawLayer raw;
@@ -50,15 +50,15 @@ struct Object {
     ThreeMfObjectType type = ThreeMfObjectType::model;
 };
 
-/// What a copy of the contours takes.
+/// Returns the bytes that a copy of the contours takes.
 std::uint64_t contour_bytes(const RawLayer& raw) {
     return raw.points.size() * sizeof(Point2) + raw.ends.size() * sizeof(RawLayer::Contour);
 }
 
-/// One model part.
+/// Reads one model part.
 class SliceModelReader {
   public:
-    /// The stack that a <sliceref> is for.
+    /// Returns the stack that a <sliceref> refers to.
     using FindStack = std::function<std::shared_ptr<const Stack>(const ThreeMfElement& reference)>;
 
     SliceModelReader(FindStack find, ReadLimits& limits) : find_(std::move(find)), limits_(limits) {}
@@ -83,7 +83,7 @@ class SliceModelReader {
     [[nodiscard]] double unit() const { return unit_; }
     [[nodiscard]] const std::map<std::uint32_t, Object>& objects() const { return objects_; }
     [[nodiscard]] const std::vector<ThreeMfUse>& items() const { return items_; }
-    /// Parts that items and components refer to, as written.
+    /// Returns the parts that items and components refer to, as written.
     [[nodiscard]] std::vector<std::string> used_parts() const {
         std::vector<std::string> parts;
         const auto add = [&](const std::vector<ThreeMfUse>& uses) {
@@ -106,7 +106,7 @@ class SliceModelReader {
     }
 
   private:
-    /// Where the parser is, as errors call it.
+    /// Returns the position of the parser, for errors.
     auto place() const { return at_line(line_); }
 
     void start_core_element(const ThreeMfElement& element) {
@@ -193,8 +193,8 @@ class SliceModelReader {
         start_.reset();
     }
 
-    /// Stacks that are put on one another: where they do not meet, the upper one begins where the lower one
-    /// ends.
+    /// Puts a stack on this one. All tops of its slices must be above this stack; its first slice begins
+    /// where this stack ends.
     void append(const Stack& other, const ThreeMfElement& element) {
         for (const Slice& slice : other.slices) {
             if (!(slice.top > top_of_stack()))
@@ -222,7 +222,7 @@ class SliceModelReader {
     std::vector<ThreeMfUse> items_;
     std::shared_ptr<Stack> stack_; ///< under construction
     std::vector<Point2> vertices_;
-    std::optional<std::uint32_t> start_; ///< of the polygon under construction
+    std::optional<std::uint32_t> start_; ///< first vertex of the polygon under construction
     std::uint32_t last_ = 0;
     Object* object_ = nullptr;
     Oddity open_{"contour is open", "contours are open"};
@@ -230,11 +230,11 @@ class SliceModelReader {
     DroppedContours dropped_;
 };
 
-/// A stack where a build item puts it.
+/// A stack as placed by a build item.
 struct Placed {
     std::string label;
     std::shared_ptr<const Stack> stack;
-    Transform placement; ///< of millimetres
+    Transform placement; ///< applies to millimetres
     double scale = 1;    ///< millimetres per unit of the stack
     double shift = 0;
     bool support = false;
@@ -252,7 +252,7 @@ class PackageReader {
             throw NoLayers(fmt::format("{}: found no part '{}'; a 3MF file of layers has its model there",
                                        zip_.name(), printable(root_, 100)));
         const Model& model = model_of(root_);
-        // The build of a package of meshes alone may say more than is understood here.
+        // The build of a package that contains only meshes may use features that are not supported here.
         if (has_slices(model))
             for (const ThreeMfUse& item : model.reader->items())
                 place(model, item, {}, false, 0);
@@ -295,7 +295,7 @@ class PackageReader {
         return model;
     }
 
-    /// A part whose objects are placed. Read when it is asked for.
+    /// Returns a part whose objects are placed; reads it on first use.
     const Model& model_of(const std::string& part) {
         Model& model = models_[part];
         if (!model.reader) {
@@ -307,7 +307,7 @@ class PackageReader {
         return model;
     }
 
-    /// Whether the root has slice stacks, or a part whose objects it uses; that would have to name the
+    /// Returns whether the root, or a part whose objects it uses, has slice stacks. Such a part must name the
     /// extension.
     bool has_slices(const Model& root) {
         if (!root.reader->stacks().empty())
@@ -317,7 +317,7 @@ class PackageReader {
             parts.insert(opc_resolved(zip_, root_, reference));
         return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
             if (zip_.find(part) == nullptr)
-                return false; // which is told where meshes are read
+                return false; // reading the meshes reports this
             ByteSource source = unpack(part);
             const bool found = source.text().find(three_mf::slices) != std::string_view::npos;
             let_go(source);
@@ -325,8 +325,8 @@ class PackageReader {
         });
     }
 
-    /// A stack in another part, which may not refer to a third one. Its lengths are taken to be in the unit
-    /// of the part that refers to it, as other readers take them.
+    /// Returns a stack in another part, which must not refer to a third one. As in other readers, its lengths
+    /// are in the unit of the part that refers to it.
     std::shared_ptr<const Stack> referred(const ThreeMfElement& reference, const std::string& from) {
         const std::string part = opc_resolved(zip_, from, reference["slicepath"].text);
         const std::uint32_t id = reference["slicestackid"].index();
@@ -376,7 +376,7 @@ class PackageReader {
         const Transform placement = compose(outer, use.placement);
         const bool support =
             in_support || type == ThreeMfObjectType::support || type == ThreeMfObjectType::solid_support;
-        if (!object->second.stack) { // a stack above its components counts, not theirs
+        if (!object->second.stack) { // a stack replaces those of its components
             if (object->second.components.empty())
                 without_slices_.note(at_line(use.line));
             for (const ThreeMfUse& component : object->second.components)
@@ -410,15 +410,15 @@ class PackageReader {
                                                       zip_.name(), farthest_mm));
     }
 
-    /// A part of the file, counted as in the build, for errors.
+    /// Describes a part by its number in the build, for errors.
     static auto place_of(std::size_t part) {
         return [part] {
             return fmt::format("part {} of the build", part + 1);
         };
     }
 
-    /// All parts get the same planes: where their slices end at different heights, slices are divided, which
-    /// changes nothing about the material.
+    /// Makes layers. All parts get the same planes: if their slices end at different heights, slices are
+    /// divided, which does not change the material.
     void make_layers() {
         std::vector<double> heights;
         std::uint64_t points = 0;
@@ -434,7 +434,7 @@ class PackageReader {
             }
         }
         std::sort(heights.begin(), heights.end());
-        // Heights that differ by rounding alone are one.
+        // Heights that differ only by rounding are equal.
         constexpr double same = 1e-9;
         heights.erase(
             std::unique(heights.begin(), heights.end(),
@@ -478,7 +478,7 @@ class PackageReader {
             const bool inside = next < slices.size() && z > part.height(part.stack->bottom);
             Layer layer;
             if (inside && next == last_slice) {
-                layer = *last; // points are shared
+                layer = *last; // shares the points
             } else if (inside) {
                 const std::uint64_t size = slices[next].raw.points.size();
                 if (size > left)
@@ -510,7 +510,7 @@ class PackageReader {
         std::size_t begin = 0;
         for (const RawLayer::Contour& contour : raw.ends) {
             for (std::size_t i = begin; i < contour.end; ++i) {
-                // A mirrored ring would run the wrong way round.
+                // Mirroring reverses the direction of a ring.
                 const Point2& p = raw.points[mirrors ? contour.end - 1 - (i - begin) : i];
                 const Point3 at = part.placement(Point3{p.x * part.scale, p.y * part.scale, 0});
                 check_reach(at);
@@ -527,8 +527,8 @@ class PackageReader {
     LayerFile& file_;
     ReadLimits& limits_;
     Executor executor_;
-    std::map<std::string, Model> models_;                            ///< with objects
-    std::map<std::string, std::unique_ptr<SliceModelReader>> parts_; ///< with slices that are referred to
+    std::map<std::string, Model> models_;                            ///< parts with objects
+    std::map<std::string, std::unique_ptr<SliceModelReader>> parts_; ///< referenced parts
     std::vector<Placed> placed_;
     std::size_t uses_ = 0;
     Oddity without_slices_{"object of the build has no slices; it was left out",

@@ -25,7 +25,7 @@ namespace lamella {
 
 namespace {
 
-/// A number, NaN or infinity may begin with it. The words of a facet that are not numbers never do.
+/// Returns whether the word may begin a number, NaN or infinity. The keywords of a facet never do.
 bool begins_like_number(std::string_view word) {
     return !word.empty() && (std::string_view("+-.0123456789").find(word[0]) != std::string_view::npos ||
                              begins_with_keyword(word, "nan") || begins_with_keyword(word, "inf"));
@@ -34,13 +34,13 @@ bool begins_like_number(std::string_view word) {
 constexpr std::array<std::string_view, 9> keywords = {"outer", "loop",     "vertex", "endloop", "endfacet",
                                                       "facet", "endsolid", "solid",  "end"};
 
-/// Whether a word of a facet or a solid has to stand here, and none of a normal.
+/// Returns whether the word is a keyword of a facet or a solid, and so not part of a normal.
 bool begins_next_part(std::string_view word) {
     return std::any_of(keywords.begin(), keywords.end(),
                        [&](std::string_view keyword) { return matches(word, keyword); });
 }
 
-/// Some programs write comments: from one of these up to the end of the line.
+/// Returns whether a comment begins here: some programs write them, up to the end of the line.
 bool begins_comment(const Words& words) {
     if (words.at_end())
         return false;
@@ -55,7 +55,7 @@ void to_next_word(Words& words) {
         words.skip_line();
 }
 
-/// Takes the end of a loop, facet or solid that is written as two words: "end facet".
+/// Takes the end of a loop, facet or solid if it is written as two words, such as "end facet".
 bool take_two_words(Words& words, std::string_view of) {
     Words ahead = words;
     if (!ahead.take("end"))
@@ -67,7 +67,7 @@ bool take_two_words(Words& words, std::string_view of) {
     return true;
 }
 
-/// Whether the word "facet" that begins here begins a facet, rather than being part of a name.
+/// Returns whether the word "facet" that begins here begins a facet; otherwise it is part of a name.
 bool facet_begins(Words words) {
     if (!words.take("facet"))
         return false;
@@ -77,7 +77,7 @@ bool facet_begins(Words words) {
     words.skip_blanks();
     if (begins_like_number(words.peek()))
         return true;
-    constexpr int most_words = 8; // of what is no normal
+    constexpr int most_words = 8; // of a malformed normal
     for (int i = 0; i < most_words && !begins_next_part(words.peek()); ++i) {
         words.skip_word();
         words.skip_blanks();
@@ -97,27 +97,27 @@ std::string_view take_name(Words& words) {
     return {first, static_cast<std::size_t>(last - first)};
 }
 
-/// The text ended within a facet.
+/// Thrown if the text ends within a facet.
 struct CutOff {};
 
-/// A run of facets, and of solids that begin and end between them. What is to be known before it is whether
-/// it begins in a solid.
+/// A chunk of facets, and of solids that begin and end between them. `before` is whether the chunk begins in
+/// a solid.
 struct FacetPiece : TextPiece {
     std::vector<Triangle3f> triangles;
-    std::uint64_t stored = 0; ///< facets, including those with a corner that is not finite
+    std::uint64_t stored = 0; ///< number of facets, including those with a corner that is not finite
     Occurrences nonfinite;
-    Occurrences odd_normals; ///< that are not numbers, or more than three
+    Occurrences odd_normals; ///< not numbers, or more than three
     Occurrences two_words;   ///< "end facet" and the like
-    Occurrences extra_words; ///< lines with words behind "endfacet" and the like
-    Occurrences unended;     ///< a "solid" while another one has not ended
+    Occurrences extra_words; ///< lines with words after "endfacet" and the like
+    Occurrences unended;     ///< a "solid" before the previous one has ended
     Occurrences cut_off;     ///< the facet in which the text ended
-    Occurrences garbage;     ///< what follows the last "endsolid"
+    Occurrences garbage;     ///< text after the last "endsolid"
 };
 
-/// Parses one piece.
+/// Parses one chunk.
 class FacetParser {
   public:
-    /// Stops before the facet that would be one more than `most`.
+    /// Stops before a facet that would exceed `most`.
     FacetParser(std::string_view text, FacetPiece& piece, std::uint64_t most)
         : words_(text, piece.begin), piece_(piece), most_(most), in_solid_(piece.before != 0) {}
 
@@ -136,7 +136,7 @@ class FacetParser {
     }
 
   private:
-    /// One facet, or the begin or the end of a solid. False when the piece is done.
+    /// Takes one facet, or the beginning or the end of a solid. Returns false if the chunk is done.
     bool next() {
         to_next_word(words_);
         if (words_.at_end() || words_.offset() >= piece_.limit)
@@ -162,13 +162,13 @@ class FacetParser {
         return true;
     }
 
-    /// After the last solid anything may follow, but no more facets: they would be lost.
+    /// Skips the text after the last solid. It may be anything but more facets: they would be lost.
     bool skip_rest() {
         const std::size_t here = words_.offset();
         if (in_solid_) {
             if (ends_in("facet") || ends_in("endsolid") || ends_in_two_words("solid")) {
                 words_.move_to(words_.text_end());
-                return false; // the text was cut off in this word; the solid has not ended
+                return false; // the text was cut off in this word, and the solid has not ended
             }
             throw TextFault{here, "'facet' or 'endsolid'"};
         }
@@ -213,7 +213,7 @@ class FacetParser {
         }
     }
 
-    /// Three numbers, or fewer, or whatever else stands there on one line: nobody needs them.
+    /// Skips the normal: three numbers, or fewer, or other words on one line. It is not needed.
     void skip_normal() {
         bool odd = false;
         for (int i = 0;; ++i) {
@@ -233,7 +233,7 @@ class FacetParser {
             piece_.odd_normals.note(facet_);
     }
 
-    /// "endloop" or "end loop", and what may stand behind it on its line.
+    /// Takes "endloop" or "end loop", and skips other words on its line.
     void expect_end(std::string_view of, std::string_view keyword) {
         to_next_word(words_);
         if (!words_.take(keyword) && !take_end(of)) {
@@ -253,7 +253,7 @@ class FacetParser {
         return true;
     }
 
-    /// Words on the same line that have no business there.
+    /// Skips words on the same line that do not belong there.
     void skip_extra_words() {
         const auto is_extra = [&] {
             if (!words_.skip_blanks_in_line() || begins_comment(words_))
@@ -280,13 +280,13 @@ class FacetParser {
         throw TextFault{words_.offset(), fmt::format("'{}'", keyword)};
     }
 
-    /// Whether the text ends here or with the first letters of this keyword.
+    /// Returns whether the text ends here or within this keyword.
     [[nodiscard]] bool ends_in(std::string_view keyword) const {
         const auto left = static_cast<std::size_t>(words_.text_end() - words_.position());
         return left < keyword.size() && matches({words_.position(), left}, keyword.substr(0, left));
     }
 
-    /// Whether the text ends within "end facet" and the like.
+    /// Returns whether the text ends within "end facet" and the like.
     [[nodiscard]] bool ends_in_two_words(std::string_view of) const {
         Words ahead = words_;
         if (!ahead.take("end"))
@@ -296,7 +296,7 @@ class FacetParser {
         return left < of.size() && matches({ahead.position(), left}, of.substr(0, left));
     }
 
-    /// Whether the text ends with this word: who knows how it would have gone on?
+    /// Returns whether the text ends with this word, which may then be cut off.
     [[nodiscard]] bool is_last(std::string_view word) const {
         return words_.position() + word.size() == words_.text_end();
     }
@@ -313,7 +313,7 @@ class FacetParser {
         }
         const std::string_view word = words_.peek();
         if (is_last(word))
-            throw CutOff{}; // also after a number: who knows how it would have gone on?
+            throw CutOff{}; // also after a number, which may be cut off
         throw TextFault{words_.offset(), std::string(expected_instead(word))};
     }
 
@@ -330,11 +330,11 @@ class FacetParser {
     std::size_t facet_ = nowhere;
 };
 
-/// The first place at or after `from`, and before `limit`, where "endfacet" is followed by "facet"; that of
-/// "facet". It is a guess: both words may belong to a name.
+/// Returns the offset of the first "facet" that follows an "endfacet" in [from, limit). This is a guess: both
+/// words may belong to a name.
 std::size_t find_cut(std::string_view text, std::size_t from, std::size_t limit) {
     Words words(text.substr(0, limit), from);
-    words.skip_word(); // it may have begun before
+    words.skip_word(); // it may have begun before `from`
     while (words.skip_blanks(), !words.at_end()) {
         if (!words.take("endfacet")) {
             words.skip_word();
@@ -378,7 +378,7 @@ TriangleSoup join(std::vector<FacetPiece>& pieces, Executor& executor) {
             sizeof(Triangle3f), count};
 }
 
-/// Adds up what the pieces hold, which come in order.
+/// Adds up the counts of the chunks, which come in order.
 void add(FacetPiece& sum, const FacetPiece& piece) {
     sum.stored += piece.stored;
     sum.nonfinite.add(piece.nonfinite);
@@ -399,7 +399,7 @@ void count_triangles(const PieceParser<FacetPiece>& parser, const FacetPiece& pi
                                            : fmt::format("line {}", parser.line_of_triangle(piece, left)));
 }
 
-/// What is to be said of the text as a whole.
+/// Adds the warnings about the text as a whole.
 MeshFile describe(const ByteSource& source, const FacetPiece& sum, const MeshReadOptions& options) {
     const std::string_view text = source.text();
     const auto line = [&](std::size_t offset) {

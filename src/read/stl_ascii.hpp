@@ -1,6 +1,6 @@
 #pragma once
 
-// ASCII STL: words between blanks, whatever the lines.
+// ASCII STL: words between blanks; line ends count as blanks.
 //
 //     solid NAME
 //       facet normal 0 0 1
@@ -22,20 +22,20 @@
 
 namespace lamella {
 
-/// Whether the text begins with the word "solid" (after a byte order mark and blanks).
+/// Returns whether the text begins with the word "solid", after a byte order mark and blanks.
 [[nodiscard]] bool begins_with_solid(std::string_view text);
 
-/// Whether the text begins with "solid", a name, and then a facet or "endsolid". A name runs to the end of
-/// its line, but ends where a facet begins, as whole files on one line exist.
+/// Returns whether the text begins with "solid", a name, and then a facet or "endsolid". A name ends at the
+/// end of its line or at a facet, because some files consist of one line.
 [[nodiscard]] bool is_stl_ascii(std::string_view text);
 
-/// Reads a text that begins with "solid". Keywords in any case; any number of solids, taken together; normals
-/// are skipped, also when they are missing, and with a warning where other words stand in their place. In
-/// parallel, with the same result, errors included, as from front to back.
+/// Reads a text that begins with "solid". Keywords may be in any case. All solids are joined. Normals are
+/// skipped and may be missing; other words in their position cause a warning. Runs in parallel, with the same
+/// result and errors as a sequential parser.
 [[nodiscard]] MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
                                       const Execution& execution);
 
-/// Hands the same triangles to the sink; see MeshInput::stream.
+/// Passes the same triangles to the sink; see MeshInput::stream.
 [[nodiscard]] MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink,
                                         const MeshReadOptions& options, const Execution& execution);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Texts that are parsed in pieces, by many threads, as if it were from front to back.
+// Parses texts in chunks, on many threads, with the result of a sequential parser.
 
 #include "core/byte_source.hpp"
 #include "core/executor.hpp"
@@ -24,7 +24,7 @@ namespace lamella {
     return text.substr(0, 3) == "\xEF\xBB\xBF" ? 3 : 0;
 }
 
-/// What stands after a byte order mark and blanks.
+/// Returns the text after a byte order mark and blanks.
 [[nodiscard]] inline std::string_view after_blanks(std::string_view text) noexcept {
     text.remove_prefix(after_byte_order_mark(text));
     text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n\v\f"), text.size()));
@@ -51,20 +51,20 @@ namespace lamella {
     return at;
 }
 
-/// Whether the word is this keyword, which is in lower case, in any case.
+/// Returns whether the word is this keyword, given in lower case; the word may be in any case.
 [[nodiscard]] inline bool matches(std::string_view word, std::string_view keyword) {
     return word.size() == keyword.size() && std::equal(word.begin(), word.end(), keyword.begin(),
                                                        [](char w, char k) { return lower_case(w) == k; });
 }
 
-/// What makes a text unreadable.
+/// The reason why a text is unreadable.
 struct TextFault {
     std::size_t offset;
-    std::string text;  ///< what was expected, or the whole story where `found` is false
+    std::string text;  ///< expected text; the whole message if `found` is false
     bool found = true; ///< the error shows the word at the offset
 };
 
-/// Walks over a text word by word.
+/// A cursor over the words of a text.
 class Words {
   public:
     Words(std::string_view text, std::size_t from)
@@ -78,13 +78,13 @@ class Words {
 
     void skip_blanks() { at_ = lamella::skip_blanks(at_, end_); }
 
-    /// Skips blanks and says whether the line went on.
+    /// Skips blanks and returns whether the line continues.
     bool skip_blanks_in_line() {
         at_ = skip_spaces(at_, end_);
         return at_ != end_ && !is_line_end(*at_);
     }
 
-    /// The word that begins here (empty at the end).
+    /// Returns the word that begins here (empty at the end).
     [[nodiscard]] std::string_view peek() const { return word_at(at_, end_); }
 
     void skip_word() { at_ += peek().size(); }
@@ -97,7 +97,7 @@ class Words {
             skip_line();
     }
 
-    /// Skips the keyword when it is the word that begins here.
+    /// Skips the keyword if it is the word that begins here.
     bool take(std::string_view keyword) {
         const auto left = static_cast<std::size_t>(end_ - at_);
         if (left < keyword.size() || !matches({at_, keyword.size()}, keyword) ||
@@ -107,14 +107,15 @@ class Words {
         return true;
     }
 
-    /// Takes the number that begins here, which is not the end. Throws TextFault where there is none.
+    /// Takes the number that begins here; must not be called at the end. Throws TextFault if there is no
+    /// number.
     double take_coordinate() {
         double value = 0;
         const char* const stop = parse_coordinate(at_, end_, value);
         if (stop == nullptr)
             throw TextFault{offset(), std::string(expected_instead(peek()))};
         at_ = stop;
-        return value + 0.0; // turns -0 into +0, as everywhere
+        return value + 0.0; // turns -0 into +0
     }
 
   protected:
@@ -123,54 +124,53 @@ class Words {
     const char* end_;
 };
 
-/// The number of the line that holds byte `offset`. O(offset), in little memory.
+/// Returns the number of the line with byte `offset`. O(offset), in little memory.
 [[nodiscard]] std::uint64_t line_of(const ByteSource& source, std::size_t offset);
 
-/// "part.obj: line 7: found 'x', expected a number", as an Error{input}.
+/// Throws Error{input}: "part.obj: line 7: found 'x', expected a number".
 [[noreturn]] void refuse_text(const ByteSource& source, const TextFault& fault);
 
-/// What one thread parses at a time: enough that handing it out does not count.
+/// Size of a chunk: large enough that the cost of scheduling it is negligible.
 inline constexpr std::size_t text_piece_bytes = std::size_t{1} << 20;
 
-/// No place in a text.
+/// No offset in a text.
 inline constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
 
-/// No bound for the triangles of a piece.
+/// No bound for the triangles of a chunk.
 inline constexpr std::uint64_t all_triangles = std::numeric_limits<std::uint64_t>::max();
 
-/// A piece of a text. What derives from it has what was found there.
+/// A chunk of a text. Derived classes contain its contents.
 struct TextPiece {
     std::size_t begin = 0;
-    std::size_t limit = 0;    ///< it is parsed up to the first place for a cut that is not before this
-    std::uint64_t before = 0; ///< all that the parser has to know of the text before it
+    std::size_t limit = 0;    ///< parsing ends at the first possible cut that is not before this offset
+    std::uint64_t before = 0; ///< everything that the parser must know of the text before the chunk
 
-    std::size_t end = 0;     ///< where parsing ended
-    std::uint64_t after = 0; ///< `before` of what follows
+    std::size_t end = 0;     ///< offset at which parsing ended
+    std::uint64_t after = 0; ///< `before` of the next chunk
     std::optional<TextFault> fault;
 };
 
-/// How the pieces of a format are parsed. Piece derives from TextPiece.
+/// The parser of a format. Piece derives from TextPiece.
 template <class Piece>
 struct PieceFormat {
-    /// Parses a piece, but stops before what would give more than `most_triangles`. Called by many threads.
+    /// Parses a chunk, but stops before there are more than `most_triangles`. Called by many threads.
     std::function<void(Piece& piece, std::uint64_t most_triangles)> parse;
-    /// A place from `from` on and before `limit` where a piece is likely to begin; else `nowhere`. It need
-    /// not look further: what is wrong or missing costs time and nothing else.
+    /// Returns an offset in [from, limit) where a chunk probably begins, or `nowhere`. A wrong or missing
+    /// offset only costs time.
     std::function<std::size_t(std::size_t from, std::size_t limit)> find_cut;
-    /// Guesses `before` of all pieces but the first.
+    /// Guesses `before` of all chunks except the first.
     std::function<void(std::vector<Piece>& pieces)> guess = {};
 };
 
-/// The first place in [from, limit) that is the first word of a line. A line that ends with a backslash goes
-/// on in the next one.
+/// Returns the offset of the first word in [from, limit) that begins a line. A line that ends with a
+/// backslash continues on the next one.
 [[nodiscard]] std::size_t find_line(std::string_view text, std::size_t from, std::size_t limit);
 
-/// Parses a text stretch by stretch, the pieces of a stretch at the same time, and lets go of the memory of
-/// what was parsed.
+/// Parses a text several chunks at a time, in parallel, and releases the memory of the text that was parsed.
 template <class Piece>
 class PieceParser {
   public:
-    /// A stretch is `pieces_ahead` pieces of `piece_bytes`.
+    /// Parses `pieces_ahead` chunks of `piece_bytes` at a time.
     PieceParser(const ByteSource& source, std::size_t begin, PieceFormat<Piece> format, Executor& executor,
                 ProgressMeter& progress, std::size_t pieces_ahead = 32,
                 std::size_t piece_bytes = text_piece_bytes)
@@ -178,10 +178,9 @@ class PieceParser {
           progress_(progress), piece_bytes_(piece_bytes), stretch_bytes_(pieces_ahead * piece_bytes),
           at_(begin) {}
 
-    /// What follows, a stretch further or up to the end. The pieces of all results follow one another without
-    /// a gap from the begin of the text to its end or to the first fault, exactly as if it had been parsed
-    /// from front to back: a piece that was parsed ahead counts only when the one before it ended where it
-    /// begins.
+    /// Parses the next chunks, up to the end of the text at most. The chunks of all results cover the text
+    /// without gaps up to its end or to the first fault, with the result of a sequential parser: a chunk that
+    /// was parsed ahead is used only if the one before it ended where it begins.
     std::vector<Piece> next() {
         const std::size_t limit = stretch_bytes_ < text_.size() - at_ ? at_ + stretch_bytes_ : text_.size();
         const std::size_t begin = at_;
@@ -209,12 +208,12 @@ class PieceParser {
             before_ = pieces.back().after;
             done_ = at_ >= text_.size() || pieces.back().fault;
         } while (at_ < limit && !done_);
-        // Not piece by piece: whoever reads the next one brings back pages of this one.
+        // Released in one call, because parsing a chunk may read pages of the one before.
         release(source_, source_.bytes.subspan(begin, at_ - begin));
         return pieces;
     }
 
-    /// All that follows. `count` sees each piece before the next stretch is parsed.
+    /// Parses the rest of the text. Calls `count` with each chunk before the next ones are parsed.
     template <class Count>
     std::vector<Piece> rest(const Count& count) {
         std::vector<Piece> pieces;
@@ -228,7 +227,8 @@ class PieceParser {
 
     [[nodiscard]] bool done() const noexcept { return done_; }
 
-    /// The line of what makes the piece hold more than these many triangles. Parses it again up to there.
+    /// Returns the line on which the number of triangles of the chunk exceeds this one; parses the chunk
+    /// again up to there.
     [[nodiscard]] std::uint64_t line_of_triangle(const Piece& piece, std::uint64_t triangles) const {
         Piece again = unparsed(piece.begin, piece.limit, piece.before);
         format_.parse(again, triangles);
@@ -247,8 +247,8 @@ class PieceParser {
     std::vector<Piece> cut(std::size_t limit) const {
         std::vector<Piece> pieces{unparsed(at_, limit, before_)};
         for (std::size_t from = at_ + piece_bytes_; from < limit; from += piece_bytes_) {
-            // Beyond the next cut nothing is looked at: blanks or a word of gigabytes would be walked over
-            // once for each piece.
+            // The search ends at the next cut: otherwise blanks or a word of gigabytes would be scanned again
+            // for each chunk.
             const std::size_t begin = format_.find_cut(from, std::min(from + piece_bytes_, limit));
             if (begin == nowhere)
                 continue;

@@ -33,9 +33,9 @@ constexpr std::uint32_t largest_id = 0x7FFFFFFF;
 constexpr std::size_t longest_object_name = 200;
 constexpr std::size_t longest_model_title = 1000;
 constexpr std::size_t most_remarks = 50;
-constexpr std::size_t longest_setting = 100; ///< that anybody reads
+constexpr std::size_t longest_setting = 100; ///< of settings that are read
 
-/// An <object> without what is in it.
+/// Returns the object of an <object> without its contents.
 ThreeMfObject object_of(const ThreeMfElement& element) {
     ThreeMfObject object;
     object.id = element["id"].index();
@@ -47,7 +47,7 @@ ThreeMfObject object_of(const ThreeMfElement& element) {
     return object;
 }
 
-/// Settings of Cura that say what a body is for, where they are true.
+/// Settings of Cura that give a body its role if they are true.
 constexpr std::array<std::pair<std::string_view, MeshRole>, 4> cura_roles = {{
     {"anti_overhang_mesh", MeshRole::support_blocker},
     {"support_mesh", MeshRole::support},
@@ -55,7 +55,7 @@ constexpr std::array<std::pair<std::string_view, MeshRole>, 4> cura_roles = {{
     {"cutting_mesh", MeshRole::modifier},
 }};
 
-/// "cura:support_mesh" without what comes before the colon.
+/// Returns "support_mesh" of "cura:support_mesh".
 std::string_view local_name(std::string_view name) {
     return name.substr(name.find(':') + 1);
 }
@@ -77,10 +77,10 @@ TriangleIndices triangle_of(const ThreeMfElement& element, std::size_t vertices)
     return corners;
 }
 
-/// The ids of a part: all its resources share one set of them.
+/// The ids of a part; all its resources share one set of them.
 class ResourceIds {
   public:
-    /// That of a resource, unless it has none. `remark` gets what is odd about it.
+    /// Takes the id of a resource, or none if it has no id. `remark` is called for each violation.
     template <class Remark>
     std::optional<std::uint32_t> take(const ThreeMfElement& element, std::uint32_t smallest_id,
                                       const Remark& remark) {
@@ -102,10 +102,10 @@ class ResourceIds {
     }
 
   private:
-    std::map<std::uint32_t, bool> ids_; ///< and whether an object has it
+    std::map<std::uint32_t, bool> ids_; ///< true if an object has the id
 };
 
-/// What an element stands in.
+/// Element that contains the current one.
 enum class ModelPlace {
     outside,
     model,
@@ -120,7 +120,7 @@ enum class ModelPlace {
     triangles,
     components,
     build,
-    elsewhere ///< in something that is passed over
+    elsewhere ///< in an element that is skipped
 };
 
 class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
@@ -158,7 +158,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
             if (!prefix.empty())
                 model.prefixes.push_back(prefix);
         for (ThreeMfObject& object : model.objects)
-            object.text.prefixes = model.prefixes; // moving the model leaves them where they are
+            object.text.prefixes = model.prefixes; // moving the model does not move them
         return take();
     }
 
@@ -222,7 +222,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
         return Where::elsewhere;
     }
 
-    /// What programs add to the format.
+    /// Handles the elements that programs add to the format.
     Where start_foreign(const ThreeMfElement& element) {
         const std::string_view space = element.name.space;
         const std::string_view name = element.name.local;
@@ -288,7 +288,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
 
     Where pass_over(const ThreeMfElement&) { return Where::elsewhere; }
 
-    /// What must not come twice.
+    /// Refuses an element that must not occur twice.
     template <ModelPlace what>
     Where once(const ThreeMfElement& element) {
         if (!seen_.insert(what).second)
@@ -298,7 +298,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
 
     Where start_build(const ThreeMfElement& element) {
         const Where build = once<Where::build>(element);
-        return is_root_ ? build : Where::elsewhere; // that of other parts does not count
+        return is_root_ ? build : Where::elsewhere; // the builds of other parts are ignored
     }
 
     Where start_metadata(const ThreeMfElement& element) {
@@ -375,10 +375,10 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
 
     bool is_root_;
     bool is_beta_ = false;
-    std::string setting_; ///< its name, and what it is set to so far
+    std::string setting_; ///< name of the current setting
     std::string setting_value_;
-    std::set<Where> seen_; ///< of those that must not come twice; vertices and triangles: in this object
-    std::map<std::string, std::string> spaces_; ///< prefixes that the root element declares
+    std::set<Where> seen_; ///< elements that must not occur twice; vertices and triangles of this object
+    std::map<std::string, std::string> spaces_; ///< prefixes declared by the root element
     std::set<std::string> required_;
     std::set<std::string> metadata_;
     ResourceIds ids_;

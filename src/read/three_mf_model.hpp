@@ -1,6 +1,6 @@
 #pragma once
 
-// One model part of a 3MF package, as it stands there.
+// One model part of a 3MF package as written.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
@@ -17,7 +17,7 @@
 
 namespace lamella {
 
-/// What objects of a type are.
+/// Returns the role of objects of this type.
 [[nodiscard]] MeshRole role_of(ThreeMfObjectType type) noexcept;
 
 struct ThreeMfObject {
@@ -25,35 +25,35 @@ struct ThreeMfObject {
     std::string name;
     ThreeMfObjectType type = ThreeMfObjectType::model;
     std::size_t line = 0;
-    /// By its type or by settings of Cura.
+    /// by the object's type or by settings of Cura
     MeshRole role = MeshRole::part;
-    bool is_mesh = false;             ///< else it consists of components
-    bool is_coarse = false;           ///< its mesh only stands in for its slices
-    std::vector<VolumeRange> volumes; ///< of its mesh, where Slic3r says such
-    IndexedMesh mesh; ///< in the unit of the part; where `text` was not read by the parser, empty yet
+    bool is_mesh = false;             ///< otherwise it consists of components
+    bool is_coarse = false;           ///< its mesh only replaces its slices
+    std::vector<VolumeRange> volumes; ///< of its mesh, if Slic3r defines them
+    IndexedMesh mesh;                 ///< in the unit of the part; empty until a skimmed `text` is read
     MeshText text;
     std::vector<ThreeMfUse> components;
 };
 
 struct ThreeMfModel {
     std::string part;   ///< name in the package
-    std::string source; ///< as errors call it
+    std::string source; ///< name in errors
     double unit_mm = 1;
     std::string title;
     std::vector<ThreeMfObject> objects;
     std::vector<ThreeMfUse> items;
-    std::vector<std::string> prefixes; ///< that the root element declares, ascending
-    std::vector<std::string> remarks;  ///< what offends against the rules of the format, one line each
+    std::vector<std::string> prefixes; ///< declared by the root element, ascending
+    std::vector<std::string> remarks;  ///< violations of the format's rules, one line each
 };
 
-/// Reads a model part. `skim`: leave the vertices and triangles of meshes in `text`, unread, where they stand
-/// as plain runs. Throws Error{input} with the line for what is no model, and Error{limit} for what is too
-/// much, as soon as it is; the limits count what is returned.
+/// Reads a model part. If `skim` is true, vertices and triangles that form plain sequences are left unread in
+/// `text`. Throws Error{input} with the line if the part is not a model, and Error{limit} as soon as a limit
+/// is exceeded. The limits count the result.
 [[nodiscard]] ThreeMfModel read_three_mf_model(const ByteSource& source, const std::string& part,
                                                bool is_root, bool skim, ReadLimits& limits,
                                                const std::function<void(std::size_t)>& progress);
 
-/// How meshes are written in model parts.
+/// Returns how model parts write meshes.
 [[nodiscard]] const MeshTextForm& three_mf_text_form() noexcept;
 
 } // namespace lamella

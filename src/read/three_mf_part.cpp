@@ -20,12 +20,12 @@ namespace lamella {
 
 namespace {
 
-/// Extensions without which readers of meshes and slices get on, also where a file requires them.
+/// Extensions that a file may require although readers of meshes and slices ignore them.
 constexpr std::array extensions = {
     three_mf::core,
     three_mf::production,
     three_mf::slices,
-    three_mf::beams, // beams themselves are refused
+    three_mf::beams, // beams are refused
     three_mf::materials,
     std::string_view("http://schemas.microsoft.com/3dmanufacturing/production/alternatives/2021/04"),
     std::string_view("http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07"),

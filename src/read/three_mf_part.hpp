@@ -1,7 +1,7 @@
 #pragma once
 
-// What all readers of 3MF packages share: which part is the root, a part as a stream of elements, and the
-// values of their attributes.
+// Code shared by all readers of 3MF packages: the root part, a part as a stream of elements, and the values
+// of attributes.
 
 #include "lamella/mesh/transform.hpp"
 
@@ -25,27 +25,27 @@ struct ThreeMfElement;
 
 enum class ThreeMfObjectType { model, solid_support, support, surface, other };
 
-/// An object that is put somewhere: a component of another one, or an item of the build.
+/// A placed object: a component of another object, or an item of the build.
 struct ThreeMfUse {
     std::uint32_t object = 0; ///< its id
-    std::string part;         ///< where it is defined; empty for the part that uses it
+    std::string part;         ///< part that defines it; empty for the part that uses it
     Transform placement;      ///< lengths in millimetres
     bool printable = true;
     std::size_t line = 0;
 };
 
-/// What an attribute of an element says. What is wrong with it is Error{input}, as ThreeMfElement::fail has
-/// it.
+/// The value of an attribute of an element. Functions throw Error{input} as by ThreeMfElement::fail if it is
+/// invalid.
 struct ThreeMfValue {
     const ThreeMfElement& element;
     std::string_view name;
     std::string_view text; ///< without the blanks around it
     bool is_there;
 
-    /// A whole number from 0 on; of either sign.
+    /// Each returns an integer: not negative, or of either sign.
     [[nodiscard]] std::uint32_t index() const;
     [[nodiscard]] std::int32_t whole() const;
-    /// A number within `farthest_coordinate`.
+    /// Returns a number within `farthest_coordinate`.
     [[nodiscard]] double number() const;
     [[nodiscard]] double number_or(double absent) const { return is_there ? number() : absent; }
 
@@ -54,28 +54,30 @@ struct ThreeMfValue {
     [[noreturn]] void refuse(std::string_view expected) const;
 };
 
-/// An element of a part; it lives for the length of a call.
+/// An element of a part; valid during a call.
 struct ThreeMfElement {
-    const std::string& document; ///< the part, as errors call it
+    const std::string& document; ///< name of the part in errors
     XmlName name;
     const XmlAttributes& attributes;
     std::size_t line;
-    const std::map<std::string, std::string>& spaces; ///< by the prefixes that the root element declares
+    const std::map<std::string, std::string>& spaces; ///< by the prefixes declared by the root element
 
     [[nodiscard]] ThreeMfValue operator[](std::string_view attribute) const;
     [[nodiscard]] ThreeMfValue operator[](XmlName attribute) const;
 
-    /// The millimetres of the unit of a <model>.
+    /// Returns the unit of a <model> in millimetres.
     [[nodiscard]] double unit_mm() const;
-    /// How a component or an item of the build is placed, in the unit of the model: twelve numbers, row by
-    /// row of a matrix that rows are multiplied with from the left. Where there are none, nothing moves.
+    /// Returns the placement of a component or an item of the build, in the unit of the model: twelve
+    /// numbers, row by row of a matrix by which row vectors are multiplied. Without numbers it is the
+    /// identity.
     [[nodiscard]] Transform transform() const;
 
-    /// The extensions that a <model> requires. Refuses those that readers of meshes and slices do not know.
+    /// Returns the extensions that a <model> requires. Refuses those that readers of meshes and slices do not
+    /// know.
     [[nodiscard]] std::set<std::string> required_extensions() const;
-    /// Of an <object>.
+    /// Returns the type of an <object>.
     [[nodiscard]] ThreeMfObjectType object_type() const;
-    /// What a <component> or an <item> of the build says, in a part of that unit.
+    /// Returns the contents of a <component> or an <item> of the build, in a part with this unit.
     [[nodiscard]] ThreeMfUse use(double unit_mm) const;
 
     /// Throws Error{input}: "x, part 'y', line 7: found `found`, expected `expected`".
@@ -83,17 +85,17 @@ struct ThreeMfElement {
     [[nodiscard]] auto place() const { return at_line(line); }
 };
 
-/// The part that the package names as its model, or the usual one where it names none.
+/// Returns the part that the package names as its model, or the usual one if it names none.
 [[nodiscard]] std::string root_model(const ZipReader& package);
 
-/// Unpacks a part. Throws Error{input} when there is none of this name.
+/// Decompresses a part. Throws Error{input} if there is no part with this name.
 [[nodiscard]] ByteSource unpack_part(const ZipReader& package, const std::string& name);
 
-/// Parses a part; `start` gets each element, `end` the name of each that ends.
+/// Parses a part. Calls `start` for each element, and `end` with the name of each element that ends.
 void parse_part(const ByteSource& part, const std::function<void(const ThreeMfElement&)>& start,
                 const std::function<void(XmlName)>& end, Executor& executor);
 
-/// How each part of a 3MF package must be written.
+/// Rules of XML that each part of a 3MF package must satisfy.
 inline constexpr XmlRules three_mf_rules{.namespaces = true, .utf8_only = true, .no_document_type = true};
 
 } // namespace lamella

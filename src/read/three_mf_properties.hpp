@@ -1,7 +1,7 @@
 #pragma once
 
-// Materials, colours and textures of a 3MF model: nothing of them is read, but a strict caller hears what is
-// wrong with them.
+// Checks materials, colours and textures of a 3MF model. They are not read, but a strict caller is informed
+// of violations.
 
 #include "container/xml.hpp"
 
@@ -13,11 +13,11 @@
 
 namespace lamella {
 
-/// Holds the groups of properties against the rules of the Materials and Properties Extension.
+/// Checks the groups of properties by the rules of the Materials and Properties Extension.
 class ThreeMfProperties {
   public:
-    /// Looks at an element directly in <resources>, or further down; `id` is that of a resource. Says what is
-    /// wrong, when something is.
+    /// Checks an element in <resources>, at any depth; `id` is that of a resource. Returns a description of
+    /// the violation, if there is one.
     [[nodiscard]] std::optional<std::string> check(XmlName name, const XmlAttributes& attributes,
                                                    std::optional<std::uint32_t> id);
 

@@ -1,6 +1,6 @@
-// The model has the profiles of a toolpath and lists its layers; each layer is a part of the package, which
-// names parts on the plate and profiles by identifiers. Segments that have part and profile in common are the
-// layers of one part of what is read.
+// The model has the profiles of a toolpath and lists its layers. Each layer is a part of the package, which
+// names parts on the plate and profiles by identifiers. Segments with the same part and profile become the
+// layers of one part of the result.
 
 #include "lamella/core/error.hpp"
 
@@ -32,20 +32,20 @@ bool is_toolpath(std::string_view space) {
     return space == toolpath_3mf::space || space == toolpath_3mf::draft_space;
 }
 
-/// Of a profile or a segment: whether it names a laser, and not the first.
+/// Returns whether a profile or a segment names a laser other than the first.
 bool is_other_laser(const ThreeMfElement& element) {
     const std::string_view index = element["laserindex"].text;
     return !index.empty() && index != "0";
 }
 
-constexpr double largest_unit = 1e12; ///< by which coordinates of 32 bits are multiplied
+constexpr double largest_unit = 1e12; ///< factor of the 32-bit coordinates
 
-/// What the model says of one toolpath.
+/// Properties of one toolpath in the model.
 struct Toolpath {
     struct Profile {
         std::size_t number = 0;           ///< in the order of the model
         std::optional<Exposure> exposure; ///< its part is set later
-        bool says_kind = false;           ///< ours, which tell contours from hatches
+        bool says_kind = false;           ///< set by Lamella's files, which distinguish contours from hatches
         bool other_laser = false;         ///< than the first
     };
     struct Listed {
@@ -183,11 +183,11 @@ class ToolpathModelReader {
     Toolpath* toolpath_ = nullptr;
 };
 
-/// What the segments of one part of the result have in common.
+/// Properties that all segments of one part of the result share.
 struct SegmentKind {
     std::size_t item = 0;
     std::size_t profile = 0;
-    bool hatches = false; ///< where the profile does not say whether it is of hatches
+    bool hatches = false; ///< used if the profile does not specify the kind
 
     friend auto operator<=>(const SegmentKind&, const SegmentKind&) = default;
 };
@@ -233,7 +233,7 @@ class LayerReader {
     }
 
   private:
-    /// Of the segment.
+    /// Returns the position of the segment.
     [[nodiscard]] std::string place() const { return fmt::format("{}, line {}", document_, line_); }
 
     [[nodiscard]] Point2 point(const ThreeMfElement& element, std::string_view x, std::string_view y) const {
@@ -330,7 +330,7 @@ class ToolpathReader {
     }
 
   private:
-    /// The toolpath that the build names, else the first one.
+    /// Returns the toolpath that the build names, or the first one.
     [[nodiscard]] const Toolpath& chosen(const std::string& document) const {
         const auto found = model_.chosen ? model_.toolpaths.find(*model_.chosen) : model_.toolpaths.begin();
         if (found == model_.toolpaths.end())
@@ -349,7 +349,7 @@ class ToolpathReader {
             [&](XmlName element) { reader.end(element, dropped_); }, executor_);
     }
 
-    /// Parts in the order of the build, and exposures of each in that of the profiles.
+    /// Numbers parts in the order of the build, and exposures of each part in that of the profiles.
     void number_parts(const Toolpath& toolpath, std::vector<RawLayer>& layers) {
         std::vector<std::string> labels(model_.items.size());
         for (const auto& [uuid, item] : model_.items)
@@ -358,7 +358,7 @@ class ToolpathReader {
         for (const auto& [uuid, profile] : toolpath.profiles)
             profiles[profile.number] = &profile;
         ReadLabels read_labels;
-        std::map<std::size_t, std::string> names; // of items that have vectors
+        std::map<std::size_t, std::string> names; // of items with vectors
         kinds_.put(file_, layers, [&](const SegmentKind& kind) {
             const auto [name, is_new] = names.try_emplace(kind.item);
             if (is_new)
