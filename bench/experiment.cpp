@@ -25,9 +25,9 @@ namespace lamella::bench {
 
 namespace {
 
-/// A virtual machine may have given back memory that was free for a while, and then has to ask for each page
-/// again, which takes longer than slicing into it. A process that takes as much as a measurement may, and
-/// ends, leaves memory behind that is there.
+/// Makes free memory available. A virtual machine may have returned memory that was free for a while, and
+/// then must request each page again, which takes longer than slicing into it. A child process that touches
+/// as much memory as a measurement may need, and ends, avoids this.
 void have_memory_ready() {
     const auto free =
         static_cast<std::size_t>(sysconf(_SC_AVPHYS_PAGES)) * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
@@ -58,7 +58,7 @@ std::uint64_t run_in_child(const std::function<void(std::span<std::byte>)>& body
     have_memory_ready();
     const pid_t child = fork();
     if (child == 0) {
-        // As the program does (app/heap.cpp).
+        // Settings of the program (app/heap.cpp).
         mallopt(M_MMAP_THRESHOLD, 32 << 20);
         mallopt(M_TRIM_THRESHOLD, 64 << 20);
         try {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What every experiment needs: a fresh process for each measurement, a clock, medians, and a table.
+// Tools of all experiments: a fresh process for each measurement, a clock, medians, and a table.
 
 #include <algorithm>
 #include <chrono>
@@ -21,13 +21,13 @@ inline double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What a piece of work took. Seconds of processors are what to compare where others use the machine, too.
+/// Cost of some work. CPU seconds are comparable even if the machine has other load.
 struct Cost {
     double wall_s = 0;
-    double cpu_s = 0; ///< of all threads, by the system for it, too
+    double cpu_s = 0; ///< of all threads, including system time
 };
 
-/// What the process has used of the processors so far.
+/// Returns the CPU seconds that the process has used so far.
 [[nodiscard]] double processor_seconds();
 
 template <class Work>
@@ -38,13 +38,13 @@ Cost cost_of(const Work& work) {
     return {seconds_since(start), processor_seconds() - used};
 }
 
-/// What a copy of a file takes as a program makes it that has the bytes in memory already.
+/// Returns the cost of writing a copy of a file whose bytes are in memory.
 [[nodiscard]] Cost cost_of_copying(const std::string& path);
 
-/// The least of several, for each figure: what others on the machine do only adds.
+/// Returns the minimum of each figure, because other load on the machine only adds.
 [[nodiscard]] Cost least(std::span<const Cost> costs);
 
-/// Calls `round` so many times, or until `seconds` are over, but once at least.
+/// Calls `round` this many times, or until `seconds` are over, but at least once.
 template <class Round>
 void repeat(int rounds, double seconds, const Round& round) {
     const auto start = Clock::now();
@@ -52,9 +52,9 @@ void repeat(int rounds, double seconds, const Round& round) {
         round();
 }
 
-/// Runs `body` in a process of its own, so that no measurement inherits warm memory from the one before, and
-/// the peak memory is its own. Exits the program with a message when the process fails. Returns its peak
-/// resident memory in bytes; the bytes of the result are written to `result`.
+/// Runs `body` in its own process, so that no measurement reuses memory of the one before, and returns the
+/// peak resident memory of this process in bytes. Copies the bytes of the result to `result`. Exits the
+/// program with a message if the process fails.
 std::uint64_t run_in_child(const std::function<void(std::span<std::byte> result)>& body,
                            std::span<std::byte> result);
 
@@ -79,7 +79,7 @@ Measured<Result> measure_in_child(const Body& body) {
 
 [[nodiscard]] double median(std::vector<double> values);
 
-/// Columns of text, right-aligned but for the first.
+/// Columns of text, right-aligned except the first.
 class Table {
   public:
     explicit Table(std::vector<std::string> head) : rows_{std::move(head)} {}
@@ -90,23 +90,22 @@ class Table {
     std::vector<std::vector<std::string>> rows_;
 };
 
-/// One line: processor, threads available, compiler.
+/// Returns one line: processor, threads available, compiler.
 [[nodiscard]] std::string machine();
 
-/// What the command line asks for, as `--name value`.
+/// The options of the command line, as `--name value`.
 class Options {
   public:
-    /// `usage`: such as "limit [--rounds 7] [--parts rook,lattice]", the options that there are with the
-    /// values that they have unless given. --help prints it and ends the program; so does, with exit code 2,
-    /// anything that it does not name.
+    /// `usage` lists the options with their defaults, such as "limit [--rounds 7] [--parts rook,lattice]".
+    /// --help prints it and ends the program. Any other option ends the program with exit code 2.
     Options(int argc, char** argv, const std::string& usage);
 
     [[nodiscard]] const std::string& text(const std::string& name) const { return values_.at(name); }
-    [[nodiscard]] std::vector<std::string> list(const std::string& name) const; ///< divided at commas
-    /// Anything but a number ends the program with exit code 2.
+    [[nodiscard]] std::vector<std::string> list(const std::string& name) const; ///< split at commas
+    /// Ends the program with exit code 2 if the value is not a number.
     [[nodiscard]] double number(const std::string& name) const;
     [[nodiscard]] int rounds() const { return static_cast<int>(number("--rounds")); }
-    /// As many as there are processors where it is 0.
+    /// Returns the number of processors if the option is 0.
     [[nodiscard]] unsigned threads() const;
 
   private:

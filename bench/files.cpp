@@ -1,8 +1,8 @@
-// What does a file cost? Writing layers that are in memory, by one thread, against copying the finished file;
-// and from STL file to slice file while slicing goes on, with the peak memory of that, against slicing into
-// memory. The files are read back and checked.
+// Measures the cost of writing files: writing layers that are in memory, with one thread, against copying the
+// finished file; and slicing an STL file into a slice file, with peak memory, against slicing into memory.
+// The files are read back and checked.
 //
-// A row takes so many rounds, or as many as fit into the seconds.
+// Each row is measured a given number of times, or as often as the seconds allow.
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -29,7 +29,7 @@ std::unique_ptr<LayerWriter> open_writer(const OpenedPart& opened, const LayerFo
                               .bottom = opened.plan.layers.front().bottom});
 }
 
-/// From the STL file, on as many threads as there are.
+/// Slices the STL file into a file, on all threads.
 void into_file(const Part& part, const LayerFormat& format, const std::string& path) {
     const OpenedPart opened = open_part(part, {});
     const auto writer = open_writer(opened, format, path);
@@ -38,8 +38,8 @@ void into_file(const Part& part, const LayerFormat& format, const std::string& p
 }
 
 struct Steps {
-    Cost slicing; ///< into memory, on as many threads as there are
-    Cost writing; ///< by one thread
+    Cost slicing; ///< into memory, on all threads
+    Cost writing; ///< with one thread
     Cost copying;
 };
 
@@ -51,7 +51,7 @@ Steps steps_of(const Part& part, const LayerFormat& format, const std::string& p
         opened = open_part(part, {});
         layers = slice(opened.mesh, opened.plan);
     });
-    std::filesystem::remove(path); // to free the last one's blocks is no part of writing the next
+    std::filesystem::remove(path); // freeing the blocks of the old file is not part of writing
     steps.writing = cost_of([&] {
         const auto writer = open_writer(opened, format, path);
         for (const Layer& layer : layers)
@@ -62,8 +62,8 @@ Steps steps_of(const Part& part, const LayerFormat& format, const std::string& p
     return steps;
 }
 
-/// Whether the file, read back, has the layers of the part: as many, closed, of the right area at its
-/// resolution.
+/// Returns whether the file, read back, has the layers of the part: the same number, closed, with the right
+/// area at the file's resolution.
 bool right(const Part& part, const std::string& path) {
     const OpenedPart opened = open_part(part, {});
     const LayerStack back = read_layers(path).merged();
@@ -72,7 +72,7 @@ bool right(const Part& part, const std::string& path) {
         return false;
     for (std::size_t i = 0; i < areas.size(); ++i) {
         const LayerMeasure found = measure(back[i]);
-        const double moved = 0.001; // no format here moves a point by more, in mm
+        const double moved = 0.001; // mm; an upper bound for all formats here
         if (found.open_chains != 0 || std::abs(found.area_mm2 - areas[i]) > moved * found.perimeter_mm)
             return false;
     }
@@ -120,7 +120,7 @@ int report(int argc, char** argv) {
                 costs.file.push_back(run.result);
                 costs.peak_bytes = std::max(costs.peak_bytes, run.peak_bytes);
             });
-            // The others are read by programs that are not ours (tests/agreement/foreign_readers_test.py).
+            // Foreign programs read the other formats (tests/agreement/foreign_readers_test.py).
             constexpr std::array<std::string_view, 6> read_back{"cli", "cli-ascii", "svg",
                                                                 "slc", "json",      "npz"};
             const bool checked = std::find(read_back.begin(), read_back.end(), name) != read_back.end();

@@ -1,5 +1,5 @@
-// Does the cost stay flat? Time per triangle and point, and memory, from 10^4 to 10^7 triangles, and from 30
-// to 3,000 planes. Layers are dropped when they are done.
+// Measures whether time per triangle and point, and memory, stay constant from 10^4 to 10^7 triangles and
+// from 30 to 3,000 planes. Layers are discarded as soon as they are finished.
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -23,7 +23,7 @@ struct Run {
     double worst_area_error;
 };
 
-/// From a soup in memory to layers, checked.
+/// Slices a soup in memory and checks the layers.
 Run slice_soup(const TriangleSoup& soup, unsigned planes, unsigned threads) {
     const Execution execution{.threads = threads};
     const Box3 box = bounding_box(soup, execution);
@@ -48,8 +48,8 @@ Run slice_soup(const TriangleSoup& soup, unsigned planes, unsigned threads) {
     return run;
 }
 
-/// Upright pins beside a torus with as many corners on a plane as they have together: contours that nothing
-/// ever happens to, beside one that changes on every plane.
+/// Upright pins, and a torus with as many points on a plane as all pins: contours without changes, and one
+/// that changes on every plane.
 TriangleSoup make_pins_and_torus() {
     constexpr unsigned side = 64;
     const TriangleSoup pin = make_box(1, 1, 100);
@@ -123,19 +123,20 @@ int main(int argc, char** argv) {
     std::cout << machine() << "; medians of " << rounds << " rounds, " << threads << " threads\n\n";
 
     Report report(rounds, threads);
-    // Growing in triangles: the same torus with finer facets, planes growing with their height.
+    // More triangles: the same torus with smaller facets; the number of planes grows with the number of
+    // facets along its height.
     for (const unsigned n : {71U, 224U, 708U, 2237U})
         report.add(
             "torus", [n] { return make_torus(50, 20, n, n); }, std::max(30U, n / 4));
-    // Growing in planes: the same lattice, thinner layers.
+    // More planes: the same lattice with thinner layers.
     for (const unsigned planes : {30U, 100U, 300U, 1000U, 3000U})
         report.add(
             "lattice", [] { return make_lattice({}); }, planes);
-    // The worst case growing in planes: walls that every plane crosses.
+    // More planes, worst case: walls that every plane cuts.
     for (const unsigned planes : {30U, 100U, 300U, 1000U, 3000U})
         report.add(
             "sheet 100", [] { return make_sheet({.holes = 100}); }, planes);
-    // Contours that last, beside others that change.
+    // Contours without changes, and others that change.
     for (const unsigned planes : {100U, 300U, 1000U})
         report.add("pins and torus", make_pins_and_torus, planes);
     return report.finish();

@@ -1,8 +1,8 @@
-// How does the cost of looking after layers grow where layers are made to be slow? Each kind of layer in four
-// sizes, each twice the one before; the growth is the power of the number of points that the times follow
-// (n log n is about 1.1, a square 2). Crossings are as many as the layer was made with; simplified contours
-// keep within the tolerance and do not cross; filled layers have no crossings and, filled again, stay as they
-// are; of rings in one another the largest is left, and hatched.
+// Measures how the cost of layer steps grows for layers that are designed to be slow. Each kind of layer has
+// four sizes, each twice the one before; the growth is the power of the number of points that fits the times
+// (n log n is about 1.1, a square 2). Checks: the number of crossings is that of the design; simplified
+// contours keep within the tolerance and do not cross; filled layers have no crossings and do not change when
+// filled again; of nested rings the largest is kept and hatched.
 
 #include "experiment.hpp"
 
@@ -35,7 +35,7 @@ Point2 polar(double radius, double angle) {
 
 constexpr double turn = 2 * std::numbers::pi;
 
-/// Long segments from one side to a hundred times as much of the other one: each crosses one neighbour.
+/// Long segments that fan out by a factor of a hundred; each crosses one neighbour.
 Layer narrow_fan(int n) {
     std::vector<Contour> lines;
     for (int i = 0; i < n; ++i)
@@ -43,7 +43,7 @@ Layer narrow_fan(int n) {
     return layer_of({}, lines);
 }
 
-/// The same fan of dashes: neighbours cross in the first ones.
+/// The same fan of dashes; neighbours cross in the first ones.
 Layer dashed_fan(int n) {
     std::vector<Contour> lines;
     for (int i = 0; i < n / 3; ++i) {
@@ -58,7 +58,7 @@ Layer dashed_fan(int n) {
     return layer_of({}, lines);
 }
 
-/// The same in all directions.
+/// The same fan in all directions.
 Layer round_fan(int n) {
     std::vector<Contour> lines;
     for (int i = 0; i < n; ++i)
@@ -66,7 +66,7 @@ Layer round_fan(int n) {
     return layer_of({}, lines);
 }
 
-/// Walls aslant, each crossing one neighbour, and a line through all of them.
+/// Oblique walls, each crossing one neighbour, and a line through all of them.
 Layer walls_and_stray(int n) {
     std::vector<Contour> lines;
     for (int i = 0; i < n - 1; ++i)
@@ -75,7 +75,7 @@ Layer walls_and_stray(int n) {
     return layer_of({}, lines);
 }
 
-/// A star whose spikes all come back to one point.
+/// A star whose spikes all return to one point.
 Layer star(int n) {
     Contour ring;
     for (int i = 0; i < n / 2; ++i) {
@@ -85,7 +85,7 @@ Layer star(int n) {
     return layer_of({ring});
 }
 
-/// A wall along a spiral, turns apart by three times its thickness.
+/// A wall along a spiral; its turns are three times its thickness apart.
 Layer spiral_wall(int n, double turns) {
     Contour ring;
     Contour back;
@@ -115,7 +115,7 @@ Layer comb(int n) {
     return layer_of({ring});
 }
 
-/// Round holes in a plate, and the plate once more, half a pitch further: as `layer_steps` doubles a sheet.
+/// A plate with round holes and its copy, moved by half a pitch, as in `layer_steps`.
 Layer plate_over_its_copy(int n) {
     constexpr int corners = 64;
     const int side = static_cast<int>(std::sqrt(n / (2.0 * corners)));
@@ -133,7 +133,7 @@ Layer plate_over_its_copy(int n) {
     return layer_of(rings);
 }
 
-/// Discs in a row, each over half of the next: one group of them all.
+/// Discs in a row, each covering half of the next: all are connected.
 Layer row_of_discs(int n) {
     constexpr int corners = 16;
     std::vector<Contour> rings;
@@ -147,7 +147,7 @@ Layer row_of_discs(int n) {
     return layer_of(rings);
 }
 
-/// Slivers that all touch in one point, each as wide as the way to the next.
+/// Slivers that all touch in one point, each as wide as the gap to the next.
 Layer slivers(int n) {
     std::vector<Contour> rings;
     for (int i = 0; i < n / 3; ++i)
@@ -155,7 +155,7 @@ Layer slivers(int n) {
     return layer_of(rings);
 }
 
-/// Long thin walls side by side, whose corners are off by up to 1e-5 times `off`.
+/// Long parallel thin walls whose corners are displaced by up to 1e-5 times `off`.
 Layer fins(int n, double off) {
     std::vector<Contour> rings;
     for (int i = 0; i < n / 4; ++i) {
@@ -165,7 +165,7 @@ Layer fins(int n, double off) {
     return layer_of(rings);
 }
 
-/// Small rings within one another in one place, in a large frame.
+/// Small nested rings at one location in a large frame.
 Layer nest(int n) {
     std::vector<Contour> rings{{{-1000, -1000}, {1000, -1000}, {1000, 1000}, {-1000, 1000}}};
     for (int i = 0; i < n / 8; ++i) {
@@ -176,7 +176,7 @@ Layer nest(int n) {
     return layer_of(rings);
 }
 
-/// Bodies around one another, counter-clockwise, or every other one a hole.
+/// Nested rings, all counter-clockwise, or every other one a hole.
 Layer concentric(int n, bool holes) {
     constexpr int corners = 8;
     const int count = n / corners;
@@ -190,7 +190,7 @@ Layer concentric(int n, bool holes) {
     return layer_of(rings);
 }
 
-/// Rectangles around one another whose lower sides lie on one line, which is turned by an angle.
+/// Nested rectangles whose lower sides are on one line, rotated by an angle.
 Layer nested_on_a_line(int n, double angle, bool holes) {
     const int count = n / 4;
     std::vector<Contour> rings;
@@ -206,7 +206,7 @@ Layer nested_on_a_line(int n, double angle, bool holes) {
     return layer_of(rings);
 }
 
-/// Kites around one another that share one end.
+/// Nested kites that share one corner.
 Layer nested_at_an_end(int n, bool left) {
     const int count = n / 4;
     std::vector<Contour> rings;
@@ -218,7 +218,7 @@ Layer nested_at_an_end(int n, bool left) {
     return layer_of(rings);
 }
 
-/// There and back, above one another in a body, or all from one point on.
+/// Rings without area, stacked in a body, or all beginning at one point.
 Layer flat_rings(int n, bool in_a_body) {
     std::vector<Contour> rings;
     if (in_a_body)
@@ -231,8 +231,8 @@ Layer flat_rings(int n, bool in_a_body) {
     return layer_of(rings);
 }
 
-/// Hooks above one another: all chains begin and end at the same x, and each ends closest to where the next
-/// one begins.
+/// Hooks in a column: all chains begin and end at the same x, and each ends closest to the beginning of the
+/// next one.
 Layer column_of_hooks(int n) {
     std::vector<Contour> chains;
     for (int i = 0; i < n / 3; ++i)
@@ -240,7 +240,7 @@ Layer column_of_hooks(int n) {
     return layer_of({}, chains);
 }
 
-/// Seconds, and whether the result is right.
+/// Time in seconds, and whether the result is right.
 struct Timed {
     double seconds = 0;
     std::uint64_t points = 0;
@@ -277,7 +277,7 @@ Timed fill_nonzero(const Layer& layer) {
             !has_crossings(filled) && !fill(filled, FillRule::nonzero).changed()};
 }
 
-/// What the steps are to leave.
+/// Expected result of a step.
 struct Expected {
     std::size_t rings;
     double area_mm2;
@@ -289,21 +289,21 @@ bool is(const Layer& layer, const Expected& expected) {
            std::abs(area - expected.area_mm2) <= 1e-6 * (1 + expected.area_mm2);
 }
 
-/// Of a layer of which the largest ring is all that is left, and is `largest`.
+/// Fills a layer of which only the largest ring, `largest`, must be kept.
 Timed fill_to_largest(const Layer& layer, const Expected& largest) {
     const auto start = Clock::now();
     const Layer filled = fill(layer, FillRule::nonzero).layer;
     return {seconds_since(start), layer.points.size(), is(filled, largest)};
 }
 
-/// Outwards by next to nothing.
+/// Offsets outwards by a negligible distance.
 Timed grow(const Layer& layer, const Expected& expected) {
     const auto start = Clock::now();
     const Layer grown = offset(layer, 1e-9);
     return {seconds_since(start), layer.points.size(), is(grown, expected)};
 }
 
-/// The vectors of all regions of the default strategy; what is hatched, in mm^2.
+/// Makes the vectors of all regions of the default strategy; checks the hatched area, mm^2.
 Timed make_vectors(const Layer& layer, double area_mm2) {
     const ScanStrategy strategy;
     const auto start = Clock::now();
@@ -318,7 +318,7 @@ Timed make_vectors(const Layer& layer, double area_mm2) {
     return {seconds, layer.points.size(), hatched > 0.9 * area_mm2 && hatched <= area_mm2};
 }
 
-/// Inwards by so much that nothing is left.
+/// Offsets inwards until nothing is left.
 Timed shrink_away(const Layer& layer, double by, OffsetCorner shape) {
     const auto start = Clock::now();
     const Layer left = offset(layer, -by, {.shape = shape});
@@ -341,7 +341,7 @@ Timed join_hooks(int n) {
             closed.layer.open_chains() == 1 && closed.refused == 0};
 }
 
-/// Layers of about so many points.
+/// Layers by their approximate number of points.
 struct Family {
     std::string what;
     std::function<Layer(int)> layer;
@@ -425,7 +425,7 @@ int report(int argc, char** argv) {
                [](int i) { return shrink_away(slivers(i), 200 * turn / i, OffsetCorner::mitre); });
     report.add("offset: slivers, crossings of all pairs", n / 100,
                [](int i) { return shrink_away(slivers(i), 200 * turn / i, OffsetCorner::bevel); });
-    // Rings in one another, and what is left of them: the largest.
+    // Nested rings, and the largest one as the result.
     constexpr int few = 4000;
     const Expected octagon{1, 100 * 100 * 2 * std::numbers::sqrt2};
     const Expected rectangle{1, 200 * 100};

@@ -1,4 +1,4 @@
-// The kernels one by one (Google Benchmark): read, rank, weld, link, walk, run, format.
+// Benchmarks of single kernels (Google Benchmark): read, rank, weld, link, walk, run, format.
 
 #include "core/byte_source.hpp"
 #include "core/executor.hpp"
@@ -40,8 +40,8 @@ Execution on(const benchmark::State& state) {
     return {.threads = static_cast<unsigned>(state.range(0))};
 }
 
-/// The bytes of an STL file, looked at where it is mapped, or copied into memory of their own first, as
-/// meshes are read. Its pages are in the system's cache.
+/// Reads the bytes of an STL file where they are mapped, or copies them into memory first, as meshes are
+/// read. The pages are in the system's cache.
 void read_file(benchmark::State& state, bool copied) {
     const std::string path = std::filesystem::temp_directory_path() / "lamella-kernels.stl";
     write_stl(path, torus());
@@ -97,7 +97,7 @@ void link_triangles(benchmark::State& state) {
 }
 BENCHMARK(link_triangles)->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
 
-/// Time of the sweep alone; linking is left out.
+/// Time of the sweep without linking.
 void sweep(benchmark::State& state, const TriangleSoup& soup, double planes) {
     const Plan plan = planes_of(soup, planes);
     const Execution execution = on(state);
@@ -109,7 +109,7 @@ void sweep(benchmark::State& state, const TriangleSoup& soup, double planes) {
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(report.points));
 }
 
-/// Facets about as high as a layer: nearly every plane of every contour is a walk of its own.
+/// Facets about as high as a layer: nearly every contour is walked on every plane.
 void walk(benchmark::State& state) {
     sweep(state, torus(), 350);
 }

@@ -1,7 +1,7 @@
-// What does looking after layers and meshes cost? Filling layers that are clean, and layers of a part and its
-// copy half a body further, against slicing; offsets against slicing, and against those of Clipper, GEOS and
-// CGAL; finding self-intersections against welding. Clean layers must come back bit for bit, united ones must
-// have no crossings left and, filled again, stay as they are; areas of offsets must be those of the others.
+// Measures the cost of layer and mesh steps: filling clean layers, and layers of a part and its copy moved by
+// half of its width, against slicing; offsets against slicing and against Clipper, GEOS and CGAL; finding
+// self-intersections against welding. Clean layers must come back bit for bit. United layers must have no
+// crossings and not change when filled again. Areas of offsets must equal those of the other libraries.
 
 #include "experiment.hpp"
 #include "offsets_of_others.hpp"
@@ -18,7 +18,7 @@ namespace lamella::bench {
 
 namespace {
 
-/// Seconds, and whether the result is right.
+/// Times in seconds, and whether the result is right.
 struct Timed {
     double slice = 0;
     double fill = 0;
@@ -47,7 +47,7 @@ Timed fill_clean(const Part& part, const Execution& execution) {
     return result;
 }
 
-/// Every layer with a copy of itself, moved by half of the part's width: many bodies cross.
+/// Adds to every layer a copy of itself, moved by half of the part's width: many bodies cross.
 LayerStack doubled(const LayerStack& layers, double by) {
     LayerStack both;
     for (const Layer& layer : layers) {
@@ -81,18 +81,18 @@ Timed fill_doubled(const Part& part, const Execution& execution) {
     return result;
 }
 
-/// Seconds on one thread, for the same layers.
+/// Times in seconds on one thread, for the same layers.
 struct Moved {
     double slice = 0;
     double ours = 0;
-    double clipper = 0; ///< for all layers, reckoned from a few; so the next ones
+    double clipper = 0; ///< for all layers, estimated from a few; also for the next ones
     double geos = 0;
-    double cgal = 0; ///< 0 where layers are too large for it
+    double cgal = 0; ///< 0 if layers are too large for CGAL
     std::uint64_t points = 0;
     bool right = true;
 };
 
-/// More points in a layer would take CGAL minutes.
+/// Larger layers take CGAL minutes.
 constexpr std::size_t most_points_for_cgal = 10000;
 
 Moved move_layers(const Part& part, double distance) {
@@ -105,7 +105,7 @@ Moved move_layers(const Part& part, double distance) {
     const auto moving = Clock::now();
     const LayerStack moved = take_steps({.offset_mm = distance}, layers, changes, {.threads = 1});
     result.ours = seconds_since(moving);
-    // Others take their time: a few layers stand for all.
+    // The other libraries are slow, so a few layers represent all.
     const auto compare = [&](std::size_t count, double tolerance, const auto& area_by, double& seconds) {
         const std::size_t step = std::max<std::size_t>(1, layers.size() / count);
         std::size_t compared = 0;
@@ -123,7 +123,7 @@ Moved move_layers(const Part& part, double distance) {
     for (const Layer& layer : layers)
         largest = std::max(largest, layer.points.size());
     compare(10, 1e-6, area_by_clipper, result.clipper);
-    // GEOS leaves out points that are closer to their neighbours' line than a hundredth of the distance.
+    // GEOS omits points closer to the line through their neighbours than a hundredth of the distance.
     compare(10, 0.01 * std::abs(distance), area_by_geos, result.geos);
     if (largest <= most_points_for_cgal)
         compare(2, 1e-4, area_by_cgal, result.cgal);
@@ -178,7 +178,7 @@ Meetings self_intersections(const Part& part, const Execution& execution) {
     return result;
 }
 
-/// One row: medians of what `measure` tells.
+/// Adds one row: medians of the results of `measure`.
 template <class Measure>
 bool add_fill(Table& table, const std::string& what, int rounds, const Measure& measure) {
     std::vector<double> slice;
@@ -216,7 +216,7 @@ int report(int argc, char** argv) {
             add_fill(fills, part.name, rounds, [&] { return fill_clean(part, execution); }) && all_right;
     for (const Part& part : parts) {
         if (part.name != "rook" && part.name != "lattice")
-            continue; // the others have crossings by the million, which take minutes
+            continue; // the others have millions of crossings, which take minutes
         all_right =
             add_fill(fills, part.name + ", doubled", 1, [&] { return fill_doubled(part, execution); }) &&
             all_right;

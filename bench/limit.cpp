@@ -1,6 +1,6 @@
-// How far from the limit? The limit of slicing a file is to read its bytes and to write the points of the
-// result to fresh memory. Both are timed here in one run, each in a process of its own, in turn, and the
-// result is checked.
+// Measures the slicing time as a multiple of the lower bound, which is reading the bytes of the file and
+// writing the points of the result to fresh memory. Both are timed alternately in one run, each in its own
+// process, and the result is checked.
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -32,8 +32,8 @@ void on_threads(unsigned threads, const std::function<void(unsigned)>& body) {
         thread.join();
 }
 
-/// The sum of a file's words from one byte to another, read piece by piece into memory that stays in the
-/// cache: touching the pages of a mapped file takes longer.
+/// Returns the sum of a file's words in a range of bytes. Reads chunks into memory that stays in the cache,
+/// because touching the pages of a mapped file takes longer.
 std::uint64_t sum_of_words(int file, std::size_t begin, std::size_t end) {
     std::vector<std::uint64_t> piece(std::size_t{1} << 15);
     std::uint64_t sum = 0;
@@ -49,7 +49,7 @@ std::uint64_t sum_of_words(int file, std::size_t begin, std::size_t end) {
     return sum;
 }
 
-/// Reads every byte of the file and writes `points` points, with the best that this machine offers to a
+/// Reads every byte of the file and writes `points` points in the fastest way that this machine offers to a
 /// program: reading into a small buffer, memory in large pages.
 double limit_seconds(const std::string& path, std::uint64_t points, unsigned threads) {
     const auto start = Clock::now();
@@ -122,15 +122,14 @@ Run run_lamella(const Part& part, unsigned threads, bool weld_too) {
     return run;
 }
 
-/// What one number of threads takes of a part, round by round. What the machine does beside it only ever
-/// adds, and sometimes as much as the program itself takes, so the least of several rounds tells of a time.
-/// How fast the machine is changes, too, for seconds at a time: what is told as a ratio was measured side by
-/// side in each round, and the median of the rounds tells of it.
+/// Times of a part for one number of threads. Other load on the machine only adds time, sometimes as much as
+/// the program takes, so times are the minimum of several repetitions. The machine's speed also changes for
+/// seconds, so ratios are the median of ratios whose two times were measured together.
 class Timings {
   public:
     explicit Timings(unsigned thread_count) : threads(thread_count) {}
 
-    /// One more round; returns whether its layers are right, and those of `hash` where that is not 0.
+    /// Measures once more. Returns whether the layers are right and have this hash, unless it is 0.
     bool measure(const Part& part, std::uint64_t& hash) {
         runs_.push_back(measure_in_child<Run>([&] { return run_lamella(part, threads, true); }).result);
         const Run& run = runs_.back();
@@ -155,12 +154,12 @@ class Timings {
         };
         return (*std::min_element(runs_.begin(), runs_.end(), less)).*stage;
     }
-    /// How many times the limit the total is.
+    /// Returns the total as a multiple of the lower bound.
     [[nodiscard]] double ratio() const {
         return median_ratio([this](std::size_t i) { return runs_[i].total; },
                             [this](std::size_t i) { return limits_[i]; });
     }
-    /// How many times as long as there a stage takes here, or the limit. There are to be as many rounds.
+    /// Returns the time of a stage as a multiple of its time in `there`, which must have as many repetitions.
     [[nodiscard]] double against(const Timings& there, double Run::*stage) const {
         return median_ratio([&](std::size_t i) { return runs_[i].*stage; },
                             [&](std::size_t i) { return there.runs_[i].*stage; });
@@ -185,7 +184,7 @@ class Timings {
     std::vector<double> limits_;
 };
 
-/// Of slicing alone, without the checks.
+/// Returns the peak memory of slicing without the checks.
 std::uint64_t peak_of_slicing(const Part& part, unsigned threads) {
     return measure_in_child<std::uint64_t>([&] {
                const Execution execution{.threads = threads};

@@ -1,8 +1,8 @@
-// What do pictures cost? Of a job of pictures with 2560 x 1620 pixels: slicing, the raster, the pictures'
-// files, and the whole job from an STL file, in seconds of processors, beside touching every pixel once
+// Measures the cost of images: for a job with images of 2560 x 1620 pixels, the CPU seconds of slicing, the
+// raster, the image files, and the whole job from an STL file, compared with touching every pixel once
 // (memset). The covered areas are compared with those of the sections.
 //
-// A row takes so many rounds, or as many as fit into the seconds.
+// Each row is measured a given number of times, or as often as the seconds allow.
 
 #include "experiment.hpp"
 #include "parts.hpp"
@@ -23,7 +23,7 @@ namespace {
 constexpr std::uint32_t width = 2560;
 constexpr std::uint32_t height = 1620;
 
-/// Square pixels, as small as lets the part fill the display.
+/// Returns the smallest size of square pixels with which the part fits on the display.
 double pixel_mm(const Box3& box) {
     return std::max((box.max.x - box.min.x) / width, (box.max.y - box.min.y) / height);
 }
@@ -43,7 +43,7 @@ std::unique_ptr<LayerWriter> open_job(const OpenedPart& opened, const std::strin
         {.picture = pictures(opened.box, antialias)});
 }
 
-/// From the STL file, on as many threads as there are.
+/// Slices the STL file into a job, on all threads.
 void into_job(const Part& part, const std::string& path, unsigned antialias) {
     const OpenedPart opened = open_part(part, {});
     const auto writer = open_job(opened, path, antialias);
@@ -61,16 +61,16 @@ PixelGrid grid_of(const Box3& box) {
             .v0 = -box.min.y / mm};
 }
 
-/// As the writers of pictures have them.
+/// Options as in the writers of images.
 RasterOptions raster_options(const Layer& layer, unsigned antialias) {
     return {.antialias = antialias, .winds_once = antialias > 1 && winds_once({&layer, 1})};
 }
 
-/// On one thread, one step after the other.
+/// Costs on one thread, one step after the other.
 struct Steps {
     Cost slicing;
     Cost raster;
-    Cost pictures; ///< the raster, the pictures' files in memory, and what each layer adds to the thumbnails
+    Cost pictures; ///< the raster, the image files in memory, and the updates of the thumbnails
 };
 
 Steps steps_of(const Part& part, const std::string& path, unsigned antialias) {
@@ -90,23 +90,25 @@ Steps steps_of(const Part& part, const std::string& path, unsigned antialias) {
     const auto writer = open_job(opened, path, antialias);
     steps.pictures = cost_of([&] {
         for (const Layer& layer : layers)
-            static_cast<void>(writer->prepare(layer)); // makes the picture; what comes back would write it
+            static_cast<void>(writer->prepare(layer)); // makes the image; the function returned would write
+                                                       // it
     });
     return steps;
 }
 
-/// Touching the pixels of all layers once, in a picture that is used again.
+/// Touches the pixels of all layers once, in one image that is reused.
 void touch(std::size_t layers) {
     const auto pixels = std::make_unique<unsigned char[]>(std::size_t{width} * height);
     for (std::size_t i = 0; i < layers; ++i) {
         std::memset(pixels.get(), static_cast<int>(i), std::size_t{width} * height);
-        const volatile unsigned char seen = pixels[i % width]; // so that it happens
+        const volatile unsigned char seen = pixels[i % width]; // prevents elimination of the memset
         static_cast<void>(seen);
     }
 }
 
-/// Whether each layer's picture covers the area of the section: exactly, but in layers with overlaps for
-/// stretches of rows where very much lies close together, of which each point of a contour may be one.
+/// Returns whether each layer's image covers the area of the section. It must be exact, except in layers with
+/// overlaps for parts of rows where many edges are close together; each point of a contour may be such a
+/// part.
 bool right(const Part& part, unsigned antialias) {
     const OpenedPart opened = open_part(part, {});
     const double mm = pixel_mm(opened.box);
@@ -153,7 +155,7 @@ int report(int argc, char** argv) {
     bool all_right = true;
     for (const Part& part : chosen_parts(options)) {
         if (part.name.ends_with("shuffled"))
-            continue; // the same pictures
+            continue; // the same images
         Table table({part.name, "layers", "file MB", "slicing CPU s", "raster CPU s", "PNG CPU s",
                      "job CPU s", "job s", "touching all s", "checked"});
         const auto layers =
@@ -164,7 +166,7 @@ int report(int argc, char** argv) {
             Costs costs;
             repeat(rounds, limit, [&] {
                 costs.add(measure_in_child<Steps>([&] { return steps_of(part, path, antialias); }).result);
-                std::filesystem::remove(path); // to free the last one's blocks is no part of writing the next
+                std::filesystem::remove(path); // freeing the blocks of the old file is not part of writing
                 costs.job.push_back(measure_in_child<Cost>([&] {
                                         return cost_of([&] { into_job(part, path, antialias); });
                                     }).result);

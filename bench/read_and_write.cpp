@@ -1,5 +1,5 @@
-// The least that a slicer of small parts can do: reads files and writes an answer that is there already.
-// Usage: read_and_write ANSWER OUTPUT-FOLDER INPUT, which is a file or a folder of them.
+// The minimal work of a slicer of small parts: reads files and writes an answer that exists already. Usage:
+// read_and_write ANSWER OUTPUT-FOLDER INPUT, which is a file or a folder of them.
 
 #include <filesystem>
 #include <fstream>

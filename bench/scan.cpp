@@ -1,8 +1,8 @@
-// How many hatch lines a second, and what do scan vectors of a whole part cost against slicing it? Beside the
-// way that open tools of this field go: parallel lines across the layer, all clipped by its contours in one
-// call of Clipper. The lines' total length must be Clipper's; the vectors of all patterns must cover as much
-// as plain lines do. And what does a whole job take, from mesh to a binary file, against copying that file?
-// What it holds must be what verify_vectors asks for.
+// Measures hatch lines per second, and the cost of scan vectors of a whole part against slicing it and
+// against the method of open-source tools: parallel lines across the layer, all clipped by its contours in
+// one call of Clipper. The total length of the lines must equal Clipper's; the vectors of all patterns must
+// cover as much as plain lines. Also measures a whole job, from mesh to a binary file, against copying this
+// file, whose contents must pass verify_vectors.
 
 #include "lamella/core/unit_circle.hpp"
 
@@ -27,7 +27,7 @@ namespace {
 constexpr double distance_mm = 0.1;
 constexpr double degrees = 67;
 
-/// Only lines, over the whole material.
+/// Returns a strategy of hatch lines only, over all material.
 ScanStrategy lines_only(HatchPattern pattern) {
     ScanStrategy strategy;
     strategy.contours.count = 0;
@@ -46,7 +46,7 @@ double length_of(const Layer& vectors) {
     return measure_vectors(vectors, {}, beam).marked_mm;
 }
 
-/// Clipper's lines across a layer.
+/// Lines of Clipper across a layer.
 struct Lines {
     double seconds = 0;
     double length = 0;
@@ -96,7 +96,7 @@ Lines lines_by_clipper(const Layer& layer) {
     return lines;
 }
 
-/// On one thread.
+/// Results on one thread.
 struct Hatched {
     double seconds = 0;
     double clipper_seconds = 0; ///< for a few layers
@@ -134,7 +134,7 @@ Hatched hatch_layers(const Part& part, HatchPattern pattern, bool compare) {
     return result;
 }
 
-/// What becomes of a part, on one thread.
+/// Steps of a part, on one thread.
 struct Job {
     double slice = 0;
     double scan = 0;
@@ -164,7 +164,7 @@ Job whole_job(const Part& part, const ScanStrategy& strategy) {
     return job;
 }
 
-/// From the STL file to a file of vectors, and a copy of that; on one thread.
+/// Costs of a job from an STL file to a file of vectors, and of copying that file; on one thread.
 struct FileCost {
     Cost job;
     Cost copy;

@@ -1,6 +1,5 @@
-// What do small parts cost? Thousands of boxes, each sliced by a process of its own and all of them in a
-// batch, against a program that only reads the same files and writes the finished answer under the same
-// names.
+// Measures the cost of small parts: thousands of boxes, sliced each by its own process and all in one batch,
+// against a program that only reads the same files and writes the finished answer under the same names.
 
 #include "experiment.hpp"
 #include "parts/shapes.hpp"
@@ -33,7 +32,7 @@ std::string bytes_of(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A program of its own, from its start to its end. What it prints is lost.
+/// Returns the time of running a program. Its output is discarded.
 double seconds_of(std::vector<std::string> words) {
     std::vector<char*> arguments;
     for (std::string& word : words)
@@ -53,7 +52,7 @@ double seconds_of(std::vector<std::string> words) {
     return seconds_since(start);
 }
 
-/// The folders of the experiment, in one of the system's temporary files.
+/// Folders of the experiment, in a temporary folder.
 class Boxes {
   public:
     explicit Boxes(std::size_t count) : count_(count) {
@@ -70,15 +69,15 @@ class Boxes {
     [[nodiscard]] std::string first() const { return inputs() + "/000000.stl"; }
     [[nodiscard]] std::string answer() const { return (root_ / "answer.cli").string(); }
 
-    /// An empty folder for what is written. File systems are slow to make files where many were removed just
-    /// now, so each has a name of its own, and all go at the end.
+    /// Returns an empty folder for output. File systems create files slowly where many were removed recently,
+    /// so each folder has its own name, and all are removed at the end.
     [[nodiscard]] fs::path outputs() {
         const fs::path folder = root_ / fmt::format("out{}", folders_++);
         fs::create_directory(folder);
         return folder;
     }
 
-    /// Whether so many files are there, all of them the answer.
+    /// Returns whether there are this many files, all of them equal to the answer.
     [[nodiscard]] bool right(const fs::path& outputs, std::size_t count) const {
         const std::string expected = bytes_of(answer());
         std::size_t files = 0;
@@ -97,7 +96,7 @@ class Boxes {
     std::size_t folders_ = 0;
 };
 
-/// Medians of runs in turn, in seconds.
+/// Medians of alternating repetitions, in seconds.
 struct Comparison {
     double ours;
     double theirs;
@@ -105,7 +104,8 @@ struct Comparison {
     bool right;
 };
 
-/// Both programs, each into a folder of its own, so many times. `files`: how many each writes.
+/// Runs both programs `times` times, each into its own folder; `files` is the number of files that each
+/// writes.
 template <class Ours, class Theirs>
 Comparison compare(Boxes& boxes, int times, std::size_t files, const Ours& ours, const Theirs& theirs) {
     std::vector<double> our_seconds;
