@@ -1,1 +1,1 @@
-"""Broken meshes as each slicer sees them: see ../README.md."""
+"""Compares slicers on broken meshes: see ../README.md."""

@@ -1,4 +1,4 @@
-"""Shows broken meshes as Lamella and other slicers see them; writes broken.md, broken.html and report.json.
+"""Shows broken meshes as Lamella and other slicers slice them; writes broken.md, broken.html and report.json.
 
     python3 -m bench.broken [options]           (from the root of the source tree; `make broken` does it)
 """
@@ -30,7 +30,7 @@ def main(arguments):
     found, public = [], []
 
     def write():
-        """After each mesh, so that a long run that is stopped has left what it found."""
+        """Called after each mesh, so that an interrupted run leaves its results so far."""
         report.build_page(found, public, present, absent, machine.describe(options.lamella)).write(folder, "broken")
         (folder / "report.json").write_text(json.dumps(report.as_json(found, public, present), indent=1) + "\n",
                                             encoding="utf-8")
@@ -60,7 +60,7 @@ def parse(arguments):
 
 
 def find(chosen):
-    """Rivals with their versions, and the titles of those that are not there."""
+    """Returns the available rivals with their versions, and the titles of the missing ones."""
     unknown = set(chosen or []) - {rival.name for rival in RIVALS}
     if unknown:
         raise SystemExit(f"no rival {', '.join(sorted(unknown))}; there are: {', '.join(rival.name for rival in RIVALS)}")

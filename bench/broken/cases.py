@@ -1,25 +1,26 @@
-"""Bodies, and what is done to them so that they are broken."""
+"""Bodies and their defects."""
 
 import random
 from dataclasses import dataclass, field
 
 from bench.broken.triangles import bounds, box, gem, section_areas, sheet, single, turned
 
-LAYER_HEIGHT_MM = 0.25  # cuts have no rounding: 0.125, 0.375, ...
+LAYER_HEIGHT_MM = 0.25  # cuts are exact: 0.125, 0.375, ...
 
 
 @dataclass
 class Case:
     name: str
     title: str
-    broken: str  # what was done to it, for the report
+    broken: str  # the defect, for the report
     triangles: list
-    policies: tuple  # the options of `lamella slice` that fit
-    # The solid that is meant, as a sum of closed meshes that count once (1) or are taken away (-1).
+    policies: tuple  # suitable options of `lamella slice`
+    # The intended solid, as a sum of closed meshes that are added (1) or subtracted (-1).
     solid: list = field(default_factory=list)
 
     def planes(self):
-        """The heights of the cuts: the middles of full layers, and of a last one more than half full."""
+        """Returns the heights of the cuts: the middles of full layers, and of a last layer that is more than half
+        full."""
         low, high = bounds(self.triangles)
         count = int((high[2] - low[2]) / LAYER_HEIGHT_MM + 0.5)
         return [low[2] + (i + 0.5) * LAYER_HEIGHT_MM for i in range(count)]
@@ -31,7 +32,7 @@ class Case:
 
 
 def cases(ring):
-    """`ring` is a torus of some thousand triangles, about 24 mm wide, that stands askew."""
+    """Returns all cases. `ring` is an oblique torus of some thousand triangles, about 24 mm wide."""
     block, beside = box((0, 0, 0), (20, 20, 20)), box((24, 0, 0), (36, 20, 20))
     shifted, shared = box((10, 8, 0), (30, 28, 20)), box((10, 8, 0), (20, 20, 20))
     lump, within = box((5, 5, 5), (15, 15, 15)), box((20, 20, 0), (40, 40, 20))
@@ -76,13 +77,13 @@ def cases(ring):
 
 
 def chooser(share):
-    """The same choice every time."""
+    """Returns a reproducible random choice."""
     numbers = random.Random(1)
     return lambda: numbers.random() < share
 
 
 def knocked(triangles, radius):
-    """Without those about the corner that is farthest along x."""
+    """Returns the triangles without those near the corner that is farthest along x."""
     x, y, z = max(corner for triangle in triangles for corner in triangle)
 
     def far(triangle):

@@ -1,4 +1,4 @@
-"""Meshes of a folder, as `lamella info` tells of them."""
+"""Reads the meshes of a folder by `lamella info`."""
 
 import json
 import subprocess
@@ -20,7 +20,7 @@ class Mesh:
 
 
 def meshes_of(folder, lamella):
-    """Those that can be read, by their names."""
+    """Returns the readable meshes, in the order of their names."""
     if folder is None:
         return
     for path in sorted(Path(folder).iterdir()):

@@ -1,4 +1,4 @@
-"""One layer as each slicer sees it: an SVG of panels side by side."""
+"""Draws one layer of each slicer as an SVG of panels side by side."""
 
 from bench.harness import chart
 
@@ -7,7 +7,7 @@ MATERIAL, WALL, OPEN = "#cfe8dc", "#0b6e4f", "#d1495b"
 
 
 def picture(title, panels, bounds):
-    """`panels`: [(title, Drawing or None, note)]; `bounds`: of the mesh."""
+    """Draws the panels [(title, Drawing or None, note)]; `bounds` are those of the mesh."""
     (low_x, low_y, _), (high_x, high_y, _) = bounds
     margin = 0.08 * max(high_x - low_x, high_y - low_y)
     scale = PANEL / (max(high_x - low_x, high_y - low_y) + 2 * margin)
@@ -28,7 +28,7 @@ def picture(title, panels, bounds):
 
 
 def draw(drawing, place, scale):
-    """Contours are filled with what they wind around; a tool's path is as wide as it is."""
+    """Fills contours by their winding numbers; draws a tool path with its width."""
     parts = []
     if drawing.rings:
         outline = " ".join(path(ring, place) + "Z" for ring in drawing.rings)
@@ -43,7 +43,7 @@ def draw(drawing, place, scale):
 
 
 def path(points, place):
-    """Points that fall together at the scale of the picture are left out."""
+    """Omits points that coincide at the scale of the image."""
     texts = []
     for point in points:
         text = "{:.1f} {:.1f}".format(*place(point))

@@ -1,4 +1,4 @@
-"""The comparison as tables, pictures and JSON."""
+"""Reports the comparison as tables, images and JSON."""
 
 import dataclasses
 import re

@@ -1,4 +1,4 @@
-"""One mesh after the other, as each slicer sees it."""
+"""Slices one mesh after the other with every slicer."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -11,9 +11,9 @@ from bench.harness.layers import Layer
 from bench.rivals.job import Job
 
 OURS = ("lamella", "lamella-mended")
-# For meshes of which nobody says what is wrong with them.
+# Policies for meshes whose defects are unknown.
 ALL_POLICIES = ("--weld-tolerance", "0.001", "--drop-duplicates", "--orient", "--close-gaps", "2", "--fill", "nonzero")
-# What each program reads; others are not shown it.
+# Formats that each program reads; it is not given others.
 READS = {"slic3r": (".stl", ".obj", ".amf", ".3mf"), "prusa-slicer": (".stl", ".obj", ".amf", ".3mf"), "cura": (".stl",)}
 
 
@@ -21,13 +21,13 @@ READS = {"slic3r": (".stl", ".obj", ".amf", ".3mf"), "prusa-slicer": (".stl", ".
 class Finding:
     name: str
     title: str
-    broken: str  # what is wrong with it
-    policies: tuple  # that fit
-    rows: list  # of (View, Difference, or None where there are no layers)
+    broken: str  # its defect
+    policies: tuple  # suitable ones
+    rows: list  # of (View, Difference, or None without layers)
     bounds: tuple
     expected: list  # layers
-    z: Optional[float] = None  # of the layer that is drawn, above the bottom
-    drawings: list = field(default_factory=list)  # of that layer, one for each row
+    z: Optional[float] = None  # of the layer drawn, above the bottom
+    drawings: list = field(default_factory=list)  # of this layer, one for each row
 
 
 class Study:
@@ -37,7 +37,7 @@ class Study:
         self.folder.mkdir(parents=True, exist_ok=True)
 
     def case(self, case):
-        """Against the solid that is meant."""
+        """Compares with the intended solid."""
         mesh = self.folder / f"{case.name}.stl"
         write_stl(mesh, case.triangles)
         extent = bounds(case.triangles)
@@ -46,7 +46,7 @@ class Study:
         return self.finding(case.name, case.title, case.broken, case.policies, views, extent, expected)
 
     def mesh(self, mesh):
-        """Against what Lamella makes of it: as it is when it is closed, else with all policies."""
+        """Compares with Lamella's result: without policies if the mesh is closed, otherwise with all of them."""
         views = self.ours(mesh.path, ALL_POLICIES, LAYER_HEIGHT_MM)
         expected = views[0 if mesh.closed else -1].layers
         views += self.theirs(mesh.path, mesh.bounds, LAYER_HEIGHT_MM)
@@ -54,7 +54,7 @@ class Study:
                             expected)
 
     def ours(self, mesh, policies, layer_height):
-        """As it is, and with the policies."""
+        """Slices without policies, and with them if there are any."""
         tries = [(OURS[0], "Lamella", ())]
         if policies:
             tries.append((OURS[1], "Lamella, mended", policies))
@@ -81,13 +81,13 @@ class Study:
             found.z = telling_height(found)
             found.drawings = [view.draw(found.z) for view in views]
         for view in views:
-            view.draw = None  # holds all layers
+            view.draw = None  # it keeps all layers in memory
         return found
 
 
 def telling_height(finding):
-    """The layer in which the others are most off; where they agree with the truth, the one in which Lamella is without
-    mending."""
+    """Returns the height of the layer with the largest difference of the others; if they agree with the truth, of
+    Lamella without mending."""
     told = [(view, off) for view, off in finding.rows if off]
     others = [off for view, off in told if view.slicer not in OURS and off.share > 0.01]
     worst = max(others or [off for _, off in told], key=lambda off: off.share)

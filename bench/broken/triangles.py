@@ -1,4 +1,4 @@
-"""Meshes as lists of triangles, a triangle as three corners, a corner as three numbers of single precision."""
+"""Meshes as lists of triangles: a triangle is three corners, a corner three numbers of single precision."""
 
 import struct
 from pathlib import Path
@@ -8,7 +8,7 @@ CORNER = struct.Struct("<3f")
 
 
 def read_stl(path):
-    """Of a binary file."""
+    """Reads a binary file."""
     data = Path(path).read_bytes()
     return [(row[3:6], row[6:9], row[9:12]) for row in RECORD.iter_unpack(data[84:])]
 
@@ -19,20 +19,20 @@ def write_stl(path, triangles):
 
 
 def single(corner):
-    """As a file keeps it."""
+    """Rounds to single precision, as in a file."""
     return CORNER.unpack(CORNER.pack(*corner))
 
 
 def box(low, high):
-    """Twelve triangles, seen counter-clockwise from outside."""
+    """Returns twelve triangles, counter-clockwise as seen from outside."""
     corners = [tuple((low, high)[bits >> axis & 1][axis] for axis in range(3)) for bits in range(8)]
     squares = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
     return [triangle for square in squares for triangle in sheet(*(corners[i] for i in square))]
 
 
 def gem(x, y, height):
-    """A body that stands on a square, is widest half-way up, with corners at x +- height/2 and y +- height/2, and ends in a
-    tip."""
+    """Returns a body with a square base and a tip, widest half-way up, with corners at x +- height/2 and y +-
+    height/2."""
     def square(z, radius):
         return [(x + radius * dx, y + radius * dy, z) for dx, dy in ((1, 0), (0, 1), (-1, 0), (0, -1))]
 
@@ -46,7 +46,7 @@ def gem(x, y, height):
 
 
 def sheet(a, b, c, d):
-    """A flat square of two triangles."""
+    """Returns a flat square of two triangles."""
     return [(a, b, c), (a, c, d)]
 
 
@@ -61,8 +61,9 @@ def bounds(triangles):
 
 
 def section_areas(triangles, planes):
-    """The areas of the sections just above each of the ascending planes, straight from the triangles: nothing is linked.
-    Every cut triangle adds the area between its segment and the middle of the mesh, with the sign of its direction."""
+    """Returns the areas of the sections just above each of the ascending planes, computed from single triangles without
+    linking: every cut triangle adds the area between its segment and the middle of the mesh, with the sign of its
+    direction."""
     low, high = bounds(triangles)
     middle = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2)
     areas = []
@@ -77,8 +78,8 @@ def section_areas(triangles, planes):
 
 
 def sector(triangle, z, middle):
-    """Of a triangle that the plane cuts. The material is to the left of its segment, which runs from the edge that falls
-    to the edge that rises."""
+    """Returns the area of a cut triangle. Material is to the left of its segment, which runs from the descending edge
+    to the ascending one."""
     ends = {}
     for a, b in zip(triangle, triangle[1:] + triangle[:1]):
         if (a[2] > z) != (b[2] > z):

@@ -1,4 +1,4 @@
-"""What a slicer makes of a mesh: areas of its layers, and their rings for a picture."""
+"""The result of a slicer for a mesh: areas of its layers, and their rings for drawing."""
 
 import json
 from dataclasses import dataclass, field
@@ -14,11 +14,11 @@ from bench.rivals.slic3r import SLIC3R
 
 @dataclass
 class Drawing:
-    """One layer. Rings and chains in the coordinates of the mesh."""
+    """One layer: rings and chains in the coordinates of the mesh."""
 
     rings: list = field(default_factory=list)
-    chains: list = field(default_factory=list)  # contours that do not close
-    width: float = 0.0  # of a tool's path along the rings; 0: rings are contours
+    chains: list = field(default_factory=list)  # contours that are not closed
+    width: float = 0.0  # of a tool path along the rings; 0: rings are contours
 
 
 @dataclass
@@ -57,8 +57,8 @@ def drawing(layer):
 
 @dataclass
 class Reading:
-    """How to read what a rival leaves: each layer's height and rings; where the middle of the mesh is in them, from its
-    corners of least and most coordinates; and the width of the path."""
+    """Reads the result of a rival: height and rings of each layer, position of the middle of the mesh in them, from its
+    smallest and largest coordinates, and the width of the path."""
 
     rings: Callable
     middle: Callable
@@ -66,7 +66,7 @@ class Reading:
 
 
 def path_rings(path):
-    """Of a tool path, layers by their number."""
+    """Returns the rings of a tool path, layers by their number."""
     def read(job):
         return [((number + 0.5) * job.layer_height, rings) for number, rings in enumerate(toolpath.read_rings(*path(job)))]
     return read
@@ -98,7 +98,7 @@ def their_view(rival, job, bounds, timeout):
 
 
 def moved(rings, middle, bounds):
-    """To where the mesh is."""
+    """Moves rings to the position of the mesh."""
     dx, dy = ((low + high) / 2 - at for low, high, at in zip(*bounds, middle))
     return [[(x + dx, y + dy) for x, y in ring] for ring in rings]
 
@@ -115,13 +115,13 @@ def last_words(outcome):
 @dataclass
 class Difference:
     share: float  # sum of the differences of all layers over the sum of their true areas
-    worst_z: float  # where it is largest
-    worst_mm2: float  # there: found less true
+    worst_z: float  # height of the largest difference
+    worst_mm2: float  # area found minus true area
 
 
 def difference(view, expected, layer_height, sinks):
-    """Against `expected` layers. Programs that leave out the lowest layers and put the rest lower are also tried one and two
-    layers higher, and the closest counts."""
+    """Compares with the `expected` layers. Some programs omit the lowest layers and lower the rest: these are also
+    compared one and two layers higher, and the smallest difference counts."""
     tries = []
     for lowered in range(3 if sinks else 1):
         found = [Layer(layer.z + lowered * layer_height, layer.contours, layer.area_mm2) for layer in view.layers]
@@ -130,7 +130,7 @@ def difference(view, expected, layer_height, sinks):
 
 
 def difference_as_it_stands(found, expected):
-    """A layer that only one side has counts as empty on the other."""
+    """Compares without moving layers. A layer of only one side counts as empty on the other."""
     theirs = {height(layer.z): layer.area_mm2 for layer in found}
     ours = {height(layer.z): layer.area_mm2 for layer in expected}
     off = {z: theirs.get(z, 0.0) - ours.get(z, 0.0) for z in theirs.keys() | ours.keys()}

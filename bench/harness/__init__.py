@@ -1,1 +1,1 @@
-"""What the comparisons beside this folder share: processes measured from outside, parts, tables and charts."""
+"""Code shared by the comparisons: measured processes, parts, tables and charts."""

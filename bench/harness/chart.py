@@ -1,4 +1,4 @@
-"""Charts as SVG text: bars on a logarithmic axis, and points with fitted lines on two of them."""
+"""Charts as SVG text: bars on a logarithmic axis, and points with fitted lines on two logarithmic axes."""
 
 import html
 import math
@@ -7,7 +7,7 @@ from typing import Optional
 
 COLOURS = ["#0b6e4f", "#6fb98f", "#d1495b", "#edae49", "#30638e", "#8d6a9f", "#7a7a7a"]
 FONT = 'font-family="sans-serif" font-size="13"'
-# Light and dark, as the page around it.
+# Light or dark like the page around it.
 STYLE = ("<style>.paper{fill:#fff}text{fill:#222}.grid{stroke:#ddd}.mark{stroke:#fff}"
          "@media(prefers-color-scheme:dark){.paper{fill:#1b1f22}text{fill:#ddd}.grid{stroke:#444a4f}.mark{stroke:#1b1f22}}</style>")
 
@@ -16,14 +16,14 @@ STYLE = ("<style>.paper{fill:#fff}text{fill:#222}.grid{stroke:#ddd}.mark{stroke:
 class Bar:
     group: str
     series: str
-    value: Optional[float]  # None: no bar, the note says why
-    inner: Optional[float] = None  # a part of the value, drawn as a mark within
+    value: Optional[float]  # None: no bar; the note gives the reason
+    inner: Optional[float] = None  # a part of the value, marked inside the bar
     note: str = ""
-    hollow: bool = False  # it went no further than this: an outline
+    hollow: bool = False  # outline only: the value is the limit at which it stopped
 
 
 def bars(items, title, axis, inner_label=""):
-    """Horizontal bars, one group under the other."""
+    """Draws horizontal bars in groups, one below the other."""
     groups, series = unique(item.group for item in items), unique(item.series for item in items)
     values = [value for item in items for value in (item.value, item.inner) if value]
     low, high = decades(values)
@@ -74,7 +74,7 @@ class Series:
 
 
 def scatter(series, title, x_axis, y_axis):
-    """Points on two logarithmic axes, each series with its fitted power law."""
+    """Draws points on two logarithmic axes, each series with its fitted power law."""
     low_x, high_x = decades([x for one in series for x, _ in one.points])
     low_y, high_y = decades([y for one in series for _, y in one.points])
     left, right, top, bottom, width, height = 84, 290, 56, 396, 900, 446
@@ -92,7 +92,7 @@ def scatter(series, title, x_axis, y_axis):
         parts += [line(left, y, width - right, y), text(left - 8, y + 4, power_of_ten(decade), anchor="end")]
     parts += [text(left, height - 8, x_axis), text(0, top - 16, y_axis)]
     for i, one in enumerate(series):
-        radius = max(7 - 1.5 * i, 2)  # so that points upon one another are seen
+        radius = max(7 - 1.5 * i, 2)  # keeps coincident points visible
         for point in one.points:
             cx, cy = place(*point)
             parts.append(f'<circle cx="{cx:.1f}" cy="{cy:.1f}" r="{radius}" fill="{colour(i)}"/>')
@@ -113,7 +113,7 @@ def unique(values):
 
 
 def decades(values):
-    """Powers of ten below and above all positive values."""
+    """Returns the powers of ten below and above all positive values."""
     values = [value for value in values if value > 0] or [1.0]
     low, high = math.floor(math.log10(min(values))), math.ceil(math.log10(max(values)))
     return low, max(high, low + 1)
@@ -128,7 +128,7 @@ def colour(i):
 
 
 def line(x1, y1, x2, y2, stroke=None, width=1.0, kind="grid"):
-    """In a colour, or without one as a line of the grid or a mark on a bar."""
+    """Draws a line in a colour; without one, a line of the grid or a mark on a bar."""
     paint = f'stroke="{stroke}"' if stroke else f'class="{kind}"'
     return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" {paint} stroke-width="{width}"/>'
 

@@ -14,7 +14,7 @@ TIMED_OUT = "exit code 5"  # a limit was hit
 @dataclass
 class Slicing:
     outcome: process.Outcome
-    stats: Optional[dict]  # None when it did not come to an end
+    stats: Optional[dict]  # None if it did not finish
 
     @property
     def ok(self):
@@ -26,12 +26,12 @@ class Slicing:
 
     @property
     def seconds(self):
-        """Within the program, from opening the file to the last layer."""
+        """Returns the seconds within the program, from opening the file to the last layer."""
         return self.stats["seconds"]["total"]
 
     @property
     def layers(self):
-        """Heights count from the bottom of the part."""
+        """Returns the layers; heights count from the bottom of the part."""
         bottom = self.stats["input"]["bbox"][0][2]
         return [Layer(layer["z"] - bottom, layer["contours"], layer["area_mm2"], layer["perimeter_mm"])
                 for layer in self.stats["layers"]]

@@ -1,8 +1,8 @@
-"""Runs one command and says what it took; a program of its own, so that it forks from a small process.
+"""Runs one command and measures it; a separate program, so that it forks from a small process.
 
 usage: launch.py TIMEOUT_SECONDS MEMORY_BYTES LOG COMMAND...
 
-A process inherits the peak memory of the one that it was forked from, so a large driver cannot measure a small
+A process inherits the peak memory of the process that it was forked from, so a large driver cannot measure a small
 child. Prints one JSON object: seconds, user, system, peak_rss_bytes, timed_out, status (as of waitpid).
 """
 
@@ -17,7 +17,7 @@ import time
 def main():
     timeout, memory, log, command = float(sys.argv[1]), int(sys.argv[2]), sys.argv[3], sys.argv[4:]
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGCHLD])
-    # A request to stop must reach the child, too.
+    # A request to stop must also reach the child.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     started = time.perf_counter()
     child = os.fork()
@@ -39,7 +39,7 @@ def main():
 
 
 def run(command, memory, log):
-    """In the child: becomes the command, in a process group of its own."""
+    """In the child: becomes the command, in its own process group."""
     try:
         os.setpgid(0, 0)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGCHLD])

@@ -1,4 +1,4 @@
-"""Layers as figures, whoever cut them, and how far two slicers agree."""
+"""Figures of layers from any slicer, and the agreement of two slicers."""
 
 import math
 from dataclasses import dataclass, replace
@@ -7,7 +7,7 @@ from typing import Optional
 
 @dataclass
 class Layer:
-    z: float  # of the cut, mm from the bottom of the part
+    z: float  # of the cut, mm above the bottom of the part
     contours: int
     area_mm2: Optional[float] = None
     perimeter_mm: Optional[float] = None
@@ -15,26 +15,25 @@ class Layer:
 
 @dataclass
 class Agreement:
-    layers: int  # that both have
-    missing: int  # that only one of the two has
-    same_count: int  # layers with as many contours
-    contours: int  # of the other slicer, in all
+    layers: int  # of both slicers
+    missing: int  # of only one slicer
+    same_count: int  # layers with equal numbers of contours
+    contours: int  # of the other slicer, in total
     expected_contours: int
-    area_off: Optional[float]  # sum of the differences over sum of areas
+    area_off: Optional[float]  # sum of the differences / sum of areas
     perimeter_off: Optional[float]
-    lowered: int = 0  # by that many layers the other one puts the part lower
+    lowered: int = 0  # number of layers by which the other slicer lowers the part
 
     @property
     def exact(self):
-        """As many contours in every layer, and areas and lengths that differ by less than one in
-        100,000."""
+        """Returns whether all layers have equal numbers of contours, and areas and lengths differ by less than 1e-5."""
         return (self.missing == 0 and self.lowered == 0 and self.same_count == self.layers and self.measured()
                 and all(off is None or off < 1e-5 for off in (self.area_off, self.perimeter_off)))
 
     @property
     def near(self):
-        """What the rounding and thinning of tool-path programs leave of the same layers: one layer more or less (or one
-        in a hundred), the number of contours within one in a hundred, areas and lengths within one in a hundred."""
+        """Returns whether only the rounding and simplification of tool-path programs separates the layers: at most one
+        layer (or 1%) more or less, and at most 1% of the contours, areas and lengths."""
         return (self.layers > 0 and self.missing <= max(1, 0.01 * self.layers) and self.measured()
                 and abs(self.contours - self.expected_contours) <= 0.01 * self.expected_contours
                 and all(off is None or off < 0.01 for off in (self.area_off, self.perimeter_off)))
@@ -59,8 +58,8 @@ class Agreement:
 
 
 def agreement(found, expected, layer_height=None):
-    """Compares by height, to a thousandth of a millimetre. With `layer_height`, for programs that leave out the lowest
-    layers when no wall fits into them and put the rest lower, also one and two layers lower: the closest is taken."""
+    """Compares by height, to 0.001 mm. Some programs omit the lowest layers if no wall fits into them, and lower the
+    rest: with `layer_height`, layers are also compared one and two layers higher, and the closest comparison counts."""
     if layer_height is None or not found:
         return agreement_as_it_stands(found, expected)
     tries = []

@@ -1,4 +1,4 @@
-"""What a table of seconds must say about where it was measured."""
+"""Describes the machine on which times were measured."""
 
 import datetime
 import os
@@ -8,7 +8,7 @@ from pathlib import Path
 
 
 def describe(lamella):
-    """Processor, threads, memory, system, compiler, program, date: name -> text."""
+    """Returns processor, threads, memory, system, compiler, program, date: name -> text."""
     return {
         "processor": processor(),
         "threads": str(len(os.sched_getaffinity(0))),

@@ -15,14 +15,14 @@ class Heading:
 
 @dataclass
 class Paragraph:
-    text: str  # may hold `code` and **bold**
+    text: str  # may contain `code` and **bold**
 
 
 @dataclass
 class Table:
     head: list
     rows: list = field(default_factory=list)
-    texts: int = 1  # that many columns from the left hold text, the others numbers
+    texts: int = 1  # number of columns from the left that contain text; the others contain numbers
 
     def add(self, *cells):
         if len(cells) != len(self.head):
@@ -32,13 +32,13 @@ class Table:
 
 @dataclass
 class Chart:
-    name: str  # of the file beside the Markdown
+    name: str  # of the file, in the folder of the Markdown
     title: str
     svg: str
 
 
 def brief(value):
-    """Three digits that count, and never an exponent."""
+    """Formats three significant digits without an exponent."""
     if value == 0:
         return "0"
     return f"{value:,.{max(0, 2 - math.floor(math.log10(abs(value))))}f}"
@@ -59,7 +59,7 @@ class Page:
         self.blocks.append(block)
 
     def markdown(self, charts=""):
-        """`charts`: where those are, seen from the Markdown."""
+        """`charts` is their folder, relative to the Markdown."""
         texts = [f"![{block.title}]({charts}{block.name}.svg)" if isinstance(block, Chart) else MARKDOWN[type(block)](block)
                  for block in self.blocks]
         return f"# {self.title}\n\n" + "\n\n".join(texts) + "\n"
@@ -69,7 +69,7 @@ class Page:
         return HTML_PAGE.format(title=html.escape(self.title), body=body)
 
     def write(self, folder, name):
-        """NAME.md with its charts beside it, and NAME.html, which needs nothing else."""
+        """Writes NAME.md with its charts in the same folder, and a self-contained NAME.html."""
         folder = Path(folder)
         (folder / f"{name}.md").write_text(self.markdown(), encoding="utf-8")
         (folder / f"{name}.html").write_text(self.html(), encoding="utf-8")
@@ -81,7 +81,7 @@ class Page:
                 (folder / f"{block.name}.svg").write_text(block.svg + "\n", encoding="utf-8")
 
     def write_to_documentation(self, docs, name):
-        """NAME.md, and its charts in images/NAME/."""
+        """Writes NAME.md, and its charts to images/NAME/."""
         images = Path(docs) / "images" / name
         images.mkdir(parents=True, exist_ok=True)
         (Path(docs) / f"{name}.md").write_text(self.markdown(f"images/{name}/"), encoding="utf-8")

@@ -12,7 +12,7 @@ class Part:
     name: str
     title: str
     make: tuple  # arguments of `lamella make`
-    family: str = ""  # parts of one family differ in size only
+    family: str = ""  # parts of one family differ only in size
     layer_height: float = LAYER_HEIGHT_MM
 
     def path(self, folder):
@@ -20,7 +20,7 @@ class Part:
 
 
 def sheet(holes, order="hole", segments=None):
-    """A sheet of the paper in the order of its tables (docs/paper.md), or one like it."""
+    """Returns a sheet of the paper in the order of its tables (docs/paper.md), or a similar one."""
     suffix = "" if order == "hole" else f"-{order}"
     options = () if segments is None else ("--segments", str(segments))
     if segments is not None:
@@ -54,7 +54,7 @@ TINY_PARTS = [Part("box", "box", ("box", "--size", "20,30,2.5")), sheet(4, segme
 
 
 def named(names, parts):
-    """Those `parts` whose names are listed, in the order of `parts`."""
+    """Returns the `parts` with these names, in the order of `parts`."""
     known = {part.name: part for part in parts}
     unknown = [name for name in names if name not in known]
     if unknown:
@@ -63,7 +63,7 @@ def named(names, parts):
 
 
 def make(part, lamella, folder):
-    """The STL file of a part; made unless it is there already, and by this program."""
+    """Returns the STL file of a part; this program makes it unless it exists."""
     path = part.path(folder)
     if not path.exists() or path.stat().st_mtime < Path(lamella).stat().st_mtime:
         Path(folder).mkdir(parents=True, exist_ok=True)

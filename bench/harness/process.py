@@ -1,4 +1,4 @@
-"""One measurement: a command in a process of its own, timed from start to end, with a limit."""
+"""One measurement: a command in its own process, timed from start to end, with a limit."""
 
 import json
 import os
@@ -16,7 +16,7 @@ class Outcome:
     seconds: float  # wall time of the whole process
     user: float
     system: float
-    peak_rss_bytes: int  # no less than some 7 MB, the size of the launcher
+    peak_rss_bytes: int  # at least about 7 MB, the size of the launcher
     ended: str  # "ok", "timeout", "killed by SIGSEGV", "exit code 3"
     text: str  # standard output and error
 
@@ -34,8 +34,8 @@ def physical_memory():
 
 
 def run(command, timeout, log, memory=None):
-    """Runs `command`; what it prints goes to the file `log`. `memory` is the most address space it may use, by
-    default what the machine has, so that a program out of bounds ends and the machine does not."""
+    """Runs `command`; its output goes to the file `log`. `memory` limits its address space, by default to the memory of
+    the machine, so that a program that exceeds it ends and the machine does not."""
     command = [str(word) for word in command]
     launcher = [sys.executable, "-I", "-S", "-B", str(LAUNCHER), str(timeout), str(memory or physical_memory()),
                 str(log), *command]

@@ -1,4 +1,4 @@
-"""How long a mesh larger than memory takes, and how much memory: slices a lattice of 100 million triangles with 1 GB.
+"""Measures time and memory for a mesh larger than memory: slices a lattice of 100 million triangles with 1 GB.
 
     python3 -m bench.out_of_core [options]      (from the root of the source tree; `make out-of-core` does it)
 """
@@ -80,7 +80,7 @@ class Bench:
                 "output_bytes": output.stat().st_size}
 
     def ratio(self):
-        """A mesh that fits, whole and in slabs, in turn."""
+        """Slices a mesh that fits into memory, whole and in ranges of planes, alternately."""
         mesh = self.make(self.options.fitting_cells)
         times = {"whole": [], "slabs": []}
         self.slice(mesh)  # fills the cache

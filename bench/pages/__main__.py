@@ -1,4 +1,4 @@
-"""What pages cost to write, and how long they take to show something; writes pages.md, pages.html and report.json.
+"""Measures the cost of writing pages, and their time until display; writes pages.md, pages.html and report.json.
 
     python3 -m bench.pages [options]      (from the root of the source tree; `make page-bench` does it)
 """
@@ -15,7 +15,7 @@ from bench.harness import machine, parts, process
 from bench.harness.page import Page, Table, brief
 
 HERE = Path(__file__).parent
-PACKAGES = HERE.parents[1] / "tests" / "viewer"  # that drive the browser
+PACKAGES = HERE.parents[1] / "tests" / "viewer"  # for driving the browser
 PARTS = [part for part in parts.ALL_PARTS if part.name in ("rook", "lattice", "sheet-1225", "head", "sole")]
 TIMEOUT = 600  # seconds
 
@@ -45,7 +45,7 @@ def main(arguments):
 
 
 def written(part, folder, options):
-    """Processor seconds of the page and of a slice file of the same layers, and how large the page is."""
+    """Returns CPU seconds of the page and of a slice file of the same layers, and the size of the page."""
     mesh = parts.make(part, options.lamella, folder / "parts")
     height = ["--layer-height", part.layer_height]
 

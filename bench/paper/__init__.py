@@ -1,1 +1,1 @@
-"""The tables of the EECC paper, measured again: see ../README.md."""
+"""Measures the tables of the EECC paper again: see ../README.md."""

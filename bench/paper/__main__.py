@@ -21,7 +21,7 @@ from bench.rivals.prusa_slicer import PRUSA_SLICER
 from bench.rivals.slic3r import SLIC3R
 
 FIGURES = Path(__file__).with_name("figures.json")
-RIVALS = [CURA, SLIC3R, PRUSA_SLICER]  # the last is not in the paper, but is Slic3r's successor
+RIVALS = [CURA, SLIC3R, PRUSA_SLICER]  # the last one is not in the paper, but succeeds Slic3r
 
 
 @dataclass
@@ -30,7 +30,7 @@ class Measured:
     cells: list = field(default_factory=list)
     order_parts: dict = field(default_factory=dict)
     order_cells: list = field(default_factory=list)
-    split_cells: list = field(default_factory=list)  # of the sheets split as a whole, by the engines that this slows down
+    split_cells: list = field(default_factory=list)  # sheets split as a whole, for the engines that this slows down
     rival_cells: list = field(default_factory=list)
     rival_titles: dict = field(default_factory=dict)
     pictures: dict = field(default_factory=dict)  # part name -> SVG
@@ -74,7 +74,7 @@ def main(arguments):
         measured.order_cells += new_laboratory().cells(part, ENGINES, tell)
     for part in chosen:
         measured.cells += laboratory.cells(part, ENGINES, tell)
-        write()  # so that a long run that is stopped has left what it found
+        write()  # an interrupted run leaves its results so far
     splitting = new_laboratory()
     for part in chosen:
         if part.family == "sheet" and "edge" not in part.name and part.name in figures["table5_seconds"]:

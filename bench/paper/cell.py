@@ -1,4 +1,4 @@
-"""One engine on one part: run, checked against the sweep, and estimated where the limit is too short."""
+"""One engine on one part: run, checked against the sweep, and estimated if the time limit is too short."""
 
 import statistics
 from dataclasses import dataclass, field
@@ -9,9 +9,9 @@ from bench.harness import lamella, parts
 
 ENGINES = ["conventional", "ecc", "ecc-edge-match", "eecc", "sweep"]
 REFERENCE = "sweep"
-# Whose work is proportional to the planes. With edge matching most is done on the first plane of a triangle.
+# Their work is proportional to the number of planes. With edge matching, most work is done on a triangle's first plane.
 PROPORTIONAL = ["conventional", "ecc"]
-# Relative to the largest layer; for engines that order or round otherwise. Equal hashes need no tolerance.
+# Relative to the largest layer, for engines with another order or rounding. Equal hashes need no tolerance.
 AREA_TOLERANCE = 1e-9
 
 
@@ -27,11 +27,11 @@ class Cell:
     points: int = 0
     triangles: int = 0
     matching: Optional[dict] = None
-    check: str = ""  # how the layers were found right
-    estimate: Optional[float] = None  # of `seconds`, where that could not be measured
+    check: str = ""  # result of checking the layers
+    estimate: Optional[float] = None  # of `seconds`, if they could not be measured
     estimated_from: str = ""
     lower_bound: bool = False  # the estimate is one: lists of few planes fit the cache, those of all may not
-    searches_estimate: Optional[float] = None  # of matching["searches"], likewise
+    searches_estimate: Optional[float] = None  # the same for matching["searches"]
 
     @property
     def ok(self):
@@ -39,19 +39,19 @@ class Cell:
 
     @property
     def sign(self):
-        """What stands before a figure of this cell."""
+        """Returns the sign before a figure of this cell."""
         return "" if self.ok else ("≥ " if self.lower_bound else "≈ ")
 
     @property
     def best_known(self):
-        """Measured or estimated seconds of a cell that is not wrong."""
+        """Returns measured or estimated seconds of a cell that is not wrong."""
         return self.seconds if self.ok else (self.estimate if self.ended == "timeout" else None)
 
 
 @dataclass
 class Laboratory:
     program: Path
-    folder: Path  # for what is left over: listings, statistics
+    folder: Path  # for temporary files: listings, statistics
     parts_folder: Path
     timeout: float
     most_runs: int
@@ -60,7 +60,7 @@ class Laboratory:
 
     def cells(self, part, engines, tell=lambda cell: None):
         mesh = parts.make(part, self.program, self.parts_folder)
-        mesh.read_bytes()  # so that all read from memory
+        mesh.read_bytes()  # all engines then read from the cache
         reference = self.slice(part, mesh, REFERENCE)[-1]
         if not reference.ok:
             raise SystemExit(f"{REFERENCE} on {part.name}: {reference.outcome.ended}\n{reference.outcome.text}")
@@ -82,7 +82,7 @@ class Laboratory:
         return cell
 
     def slice(self, part, mesh, engine, *options):
-        """Once when it takes long; else until the sum of times is no accident."""
+        """Runs once if the engine is slow, otherwise repeatedly until the total time is significant."""
         runs = []
         while True:
             runs.append(lamella.slice_part(self.program, mesh, self.folder, *self.plan(part, options), engine=engine,
@@ -109,8 +109,8 @@ class Laboratory:
                     matching=stats.get("matching"), check=check)
 
     def estimate(self, cell, part, mesh, reference, smaller):
-        """From some of the planes, for planes do not influence one another but for the cache; else from the next smaller
-        part of the family, whose work grows with the square of the triangles."""
+        """Estimates from some of the planes, because planes influence one another only through the cache; otherwise
+        from the next smaller part of the family, as work grows with the square of the triangles."""
         planes = reference.stats["layers"]
         cell.triangles = reference.stats["input"]["triangles"]
         cell.layers = len(planes)
@@ -119,11 +119,11 @@ class Laboratory:
         if None in samples:
             cell.ended = "wrong"
         elif len(samples) > 1 or (samples and cell.engine in PROPORTIONAL):
-            # A line through what two numbers of planes took, or one through nothing.
+            # A line through two measurements, or through one and the origin.
             first = samples[0] if len(samples) > 1 else Sample(0, 0.0, 0)
             last = samples[-1]
             further = (len(planes) - last.planes) / (last.planes - first.planes)
-            # Never less than the limit, which it passed: lists of few planes fit the cache, those of all may not.
+            # At least the time limit, which was exceeded: lists of few planes fit the cache, those of all may not.
             cell.estimate = max(self.timeout, last.total + max(0.0, last.seconds - first.seconds) * further)
             cell.lower_bound = True
             cell.searches_estimate = last.searches + (last.searches - first.searches) * further
@@ -134,7 +134,7 @@ class Laboratory:
             cell.lower_bound = smaller.lower_bound
 
     def some_planes(self, part, mesh, engine, planes):
-        """Samples of two numbers of planes, if the limit allows; a None among them is a wrong result."""
+        """Returns samples of two numbers of planes, if the time limit allows; [None] means a wrong result."""
         samples, count = [], max(1, len(planes) // 30)
         while len(samples) < 2:
             chosen = evenly(planes, count)
@@ -148,7 +148,7 @@ class Laboratory:
             seconds = run.stats["seconds"]
             samples.append(Sample(count, seconds["link"] + seconds["slice"], run.stats.get("matching", {}).get("searches", 0),
                                   seconds["total"]))
-            # As many as half of the limit should hold: the fewer the planes, the more of their lists fit the cache.
+            # Aims at half of the time limit: the fewer the planes, the more of their lists fit the cache.
             count = min(int(count * self.timeout / 2 / max(run.outcome.seconds, 1e-3)), len(planes) // 2)
             if count <= samples[-1].planes:
                 break
@@ -157,21 +157,21 @@ class Laboratory:
 
 @dataclass
 class Sample:
-    """What some of the planes took."""
+    """Cost of some of the planes."""
 
     planes: int
-    seconds: float  # for lists and layers: what grows with the planes
+    seconds: float  # for lists and layers, which grow with the number of planes
     searches: int
     total: float = 0.0
 
 
 def evenly(items, count):
-    """`count` of the items, spread over all of them."""
+    """Returns `count` of the items, evenly spread."""
     return [items[int((i + 0.5) * len(items) / count)] for i in range(count)]
 
 
 def checked(layers, reference):
-    """How the layers were found to be the reference's: "" when they are not."""
+    """Returns how the layers were found equal to the reference's, or "" if they differ."""
     if len(layers) != len(reference):
         return ""
     if [layer["hash"] for layer in layers] == [layer["hash"] for layer in reference]:

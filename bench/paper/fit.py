@@ -4,14 +4,14 @@ import math
 
 
 def power_law(points):
-    """(factor, exponent) of y = factor * x ** exponent through points with positive coordinates, or None."""
+    """Returns (factor, exponent) of y = factor * x ** exponent through points with positive coordinates, or None."""
     usable = [(math.log(x), math.log(y)) for x, y in points if x > 0 and y > 0]
     line = straight_line(usable)
     return None if line is None else (math.exp(line[0]), line[1])
 
 
 def straight_line(points):
-    """(intercept, slope), or None when all x are the same."""
+    """Returns (intercept, slope), or None if all x are equal."""
     if not points:
         return None
     mean_x, mean_y = (sum(values) / len(points) for values in zip(*points))

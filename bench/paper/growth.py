@@ -1,7 +1,7 @@
-"""How the work grows, counted and not timed: Table 7 and section 4.1.
+"""Counts how the work grows, without timing: Table 7 and section 4.1.
 
-Sheets let both sizes be set alone. In split order, which is harder than the paper's, the first half of a plane's
-intersections touch none of one another, so the lists of a plane, k, grow to half the triangles that cross it. Every wall
+The two sizes of a sheet are independent. In split order, which is harder than the paper's, no two of the first half of
+a plane's intersections are adjacent, so the lists of a plane, k, grow to half the triangles that cross it. Every wall
 triangle crosses all planes, so m is the number of planes.
 """
 
@@ -19,9 +19,9 @@ SEGMENTS = 64
 class Sample:
     engine: str
     order: str
-    k: float  # half the triangles that cross a plane
-    m: int  # planes that cross a wall triangle
-    triangles: int  # that are cut
+    k: float  # half the number of triangles that cross a plane
+    m: int  # number of planes that cross a wall triangle
+    triangles: int  # number of triangles cut
     searches: int
     comparisons: int
     intersections: int
@@ -38,7 +38,7 @@ class Growth:
 
 
 def measure(program, folder, parts_folder, timeout, small=False, tell=lambda sample: None):
-    """`small` is for tests of the report."""
+    """Measures all sheets; `small` is for tests of the report."""
     holes = [4, 16] if small else [4, 16, 36, 64, 100, 196]
     planes = [2, 6] if small else [1, 3, 10, 30, 100]
     memory_planes = [2, 6] if small else [10, 30, 100]
@@ -81,6 +81,6 @@ def exponent(samples, x, y):
 
 
 def bytes_per_intersection(samples, size):
-    """The slope: what does not grow with the intersections is left out."""
+    """Returns the slope, which excludes memory that does not grow with the intersections."""
     line = fit.straight_line([(sample.intersections, size(sample)) for sample in samples])
     return None if line is None else line[1]

@@ -1,4 +1,4 @@
-"""The parts of the paper as pictures, and the false match of its Fig. 2."""
+"""Images of the parts of the paper, and of the false match in its Fig. 2."""
 
 import json
 import random
@@ -11,9 +11,9 @@ from tools import draw_layers
 
 @dataclass(frozen=True)
 class View:
-    figures: str  # of the paper that show the part
-    opened: float  # height of the layer at which the stack is opened, as a part of the whole
-    layers: int = 60  # drawn; few where they are all alike, or full of detail
+    figures: str  # of the paper, with the part
+    opened: float  # height of the layer at which the stack is opened, as a fraction of the whole
+    layers: int = 60  # number drawn; few if they are all alike or have many details
 
 
 VIEWS = {"calibration": View("Fig. 11", 0.72), "dodecahedra": View("Fig. 10", 0.5), "rook": View("Fig. 6", 0.93),
@@ -23,7 +23,7 @@ VIEWS = {"calibration": View("Fig. 11", 0.72), "dodecahedra": View("Fig. 10", 0.
 
 
 def of_part(part, program, folder, parts_folder):
-    """A part in layers, opened at one of them, and that layer from above, as SVG text."""
+    """Draws a part in layers, opened at one of them, and this layer from above, as SVG text."""
     mesh = parts.make(part, program, parts_folder)
     slices = folder / "picture.svg"
     box = json.loads(run(program, "info", mesh, "--json"))["bbox"]
@@ -34,7 +34,7 @@ def of_part(part, program, folder, parts_folder):
 
 
 def of_false_match(program, folder):
-    """Two boxes that touch along an edge, their triangles in such an order that the conventional engine goes wrong."""
+    """Draws two boxes that touch along an edge, with an order of triangles for which the conventional engine fails."""
     triangles = box_triangles(0, 0) + box_triangles(10, 10)
     random.Random(3).shuffle(triangles)
     mesh = folder / "touching.stl"
@@ -56,7 +56,7 @@ def box_triangles(x, y, side=10, height=5):
 
 
 def drawn(columns):
-    """Rings side by side, each in a colour of its own, an arrow on every edge; what turns clockwise is a hole."""
+    """Draws rings side by side in different colours, with an arrow on every edge. Clockwise rings are holes."""
     scale, top, width = 12, 60, 320
     shapes = ['<defs><marker id="arrow" markerWidth="7" markerHeight="7" refX="5" refY="3" orient="auto">'
               '<path d="M0 0L6 3L0 6Z" fill="context-stroke"/></marker></defs>']

@@ -1,4 +1,4 @@
-"""The page that holds all tables."""
+"""The page with all tables."""
 
 import dataclasses
 
@@ -120,7 +120,7 @@ def estimates(cells, titles):
 
 def growth_charts(measured):
     def series(samples, x, y):
-        # Edge matching alone differs from EECC in what a search looks at, the shuffled order hardly from split.
+        # Edge matching alone differs from EECC in the cost of a search; the shuffled order hardly differs from split.
         found = []
         for engine in ("ecc", "eecc"):
             for order in ("split", "hole", "wall"):
@@ -153,7 +153,7 @@ def correctness(cells):
 
 
 def not_reproduced(cells, titles, figures):
-    """The largest departures from the paper, and the general reasons."""
+    """Describes the largest differences from the paper, and their general reasons."""
     texts = ["The seconds of the paper themselves: its machine and compiler are not known, and all parts except the "
              "sheets had to be rebuilt."]
     for engine in ("ecc", "eecc"):

@@ -1,4 +1,4 @@
-"""The paper's tables beside ours. Pure functions: cells and the paper's figures in, tables out."""
+"""The paper's tables compared with ours. Pure functions: cells and the paper's figures in, tables out."""
 
 from bench.harness.page import Table, brief
 from bench.paper import growth
@@ -14,7 +14,7 @@ def find(cells, part, engine):
 
 
 def times(cells, titles, seconds, engines, stopped_after):
-    """Tables 1 and 5: each cell says "the paper's / ours = ratio"."""
+    """Builds tables 1 and 5; each cell is "the paper's / ours = ratio"."""
     heads = [f"{ENGINE_TITLES[engine]}: paper / ours = ratio" if engine != "sweep" else "sweep: ours" for engine in engines]
     table = Table(["part", "triangles", "layers", *heads] + (["EECC to sweep"] if "sweep" in engines else []))
     for part, title in titles.items():
@@ -43,7 +43,7 @@ def ours(cell):
 
 
 def compared(paper, cell, stopped_after):
-    """`paper` is a number, None where they stopped, "" where they say nothing."""
+    """`paper` is a number, None if the authors stopped, "" if they give none."""
     if cell is None:
         return ""
     said = "not told" if paper == "" else (f"> {stopped_after:,}" if paper is None else brief(paper))
@@ -79,7 +79,7 @@ def searches(cells, titles, figures):
 
 
 def cases(cells, titles, figures):
-    """Table 3, of ECC with edge matching."""
+    """Builds table 3, of ECC with edge matching."""
     table = Table(["part", "whose", *[title for _, title in CASES], "requires sorting"], texts=2)
     for part, title in titles.items():
         cell = find(cells, part, "ecc-edge-match")
@@ -100,7 +100,7 @@ def ratio(theirs, mine):
 
 
 def case_shares(cells, figures):
-    """Table 4: the mean over parts of each part's percentages. Returns the table and the number of parts."""
+    """Builds table 4: the mean over parts of each part's percentages. Returns the table and the number of parts."""
     shares = []
     for cell in cells:
         if cell.engine == "eecc" and cell.matching:
@@ -137,7 +137,7 @@ def against_rivals(rival_cells, cells, titles, rival_titles, figures):
 
 
 def exponents(measured, figures):
-    """Table 7 as growth: the exponents of the paper's formulas and the fitted ones."""
+    """Builds table 7 as growth: the exponents of the paper's formulas and the fitted ones."""
     laws = [
         ("lists looked at per search, against k", "per_search_against_k", measured.against_k, lambda s: s.k,
          lambda s: s.comparisons / s.searches),
@@ -174,7 +174,8 @@ def memory(measured, figures):
 
 
 def order_of_the_paper(cells, split_cells, titles, seconds):
-    """What speaks for the order hole by hole: ratios between engines and growth, which hardly depend on a machine."""
+    """Gives evidence for the order hole by hole: ratios between engines and growth, which hardly depend on a
+    machine."""
     table = Table(["part", "edge matching / EECC: paper", "ours, by hole", "ours, split", "growth of EECC: paper",
                    "ours, by hole", "ours, split", "lists per search of EECC: by hole", "split"])
     sheets = [name for name in titles if name in seconds and name.startswith("sheet-") and "edge" not in name]

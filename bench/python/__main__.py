@@ -1,4 +1,4 @@
-"""How long slicing takes in Python, by Lamella and by what else there is; writes python.md, .html and report.json.
+"""Measures slicing from Python by Lamella and by other packages; writes python.md, .html and report.json.
 
     python3 -m bench.python [options]      (from the root of the source tree; `make python-bench` does it)
 """
@@ -19,7 +19,7 @@ TOLERANCE = 1e-6  # of areas and lengths; VTK computes in single precision
 
 
 def slicers(options):
-    """Name, title, command without operands; Lamella first, the library it is made of second."""
+    """Returns name, title, command without operands; Lamella first, the library that it wraps second."""
     rivals = HERE.parent / "rivals"
     return [
         ("lamella", "lamella, from the file", [PYTHON, "-B", HERE / "lamella_slicer.py", "file"]),
@@ -65,7 +65,7 @@ def main(arguments):
 
 
 def measure(part, chosen, folder, options):
-    """All slicers in turn, several times. The first run of each fills caches and is not counted, unless it is slow."""
+    """Runs all slicers alternately, several times. The first run of each fills caches and counts only if it is slow."""
     mesh = parts.make(part, options.lamella, folder / "parts")
     heights = folder / f"{part.name}.heights"
     heights.write_text("".join(f"{z!r}\n" for z in planes(mesh, part, options)), encoding="utf-8")
@@ -97,7 +97,7 @@ def measure(part, chosen, folder, options):
 
 
 def planes(mesh, part, options):
-    """Where the package cuts the part."""
+    """Returns the heights at which the package cuts the part."""
     code = "import sys, lamella; print(*lamella.iter_layers(sys.argv[1], float(sys.argv[2])).z.tolist())"
     done = process.run(["env", f"PYTHONPATH={Path(options.package).resolve()}", PYTHON, "-B", "-c", code, mesh,
                         part.layer_height], 120, Path(options.out) / "planes.log")
@@ -119,7 +119,7 @@ def total(one):
 
 
 def agrees(ours, theirs):
-    """As many rings, and the same lengths and areas where they are told, layer by layer."""
+    """Returns whether numbers of rings are equal in every layer, and lengths and areas, if given, agree."""
     def near(a, b):
         return abs(a - b) <= TOLERANCE * max(1.0, abs(a))
 
@@ -153,7 +153,7 @@ def page_of(cells, chosen, here, options):
 
 
 def overheads(package, library):
-    """What the package takes beyond the library, as shares of time and of processor time."""
+    """Returns the overhead of the package over the library, as fractions of wall time and CPU time."""
     return (package["slice"]["least"] / library["slice"]["least"] - 1,
             package["processor_seconds"] / library["processor_seconds"] - 1)
 

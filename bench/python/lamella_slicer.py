@@ -2,7 +2,7 @@
 
 usage: lamella_slicer.py file|arrays MESH HEIGHTS RESULT
 
-`file` reads the file by the package; `arrays` gives it vertices and faces, as who has a mesh in NumPy does.
+`file` reads the file by the package; `arrays` passes vertices and faces, as from a mesh in NumPy.
 """
 
 import json

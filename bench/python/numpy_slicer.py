@@ -1,11 +1,11 @@
-"""Cuts a mesh with NumPy alone, in two ways.
+"""Cuts a mesh with NumPy alone, by two methods.
 
 usage: numpy_slicer.py planes|bulk MESH HEIGHTS RESULT
 
-`planes` goes plane by plane through all triangles, as trimesh's mesh_multiplane does, with the heights of vertices
-computed once. `bulk` makes all segments of all planes at once, without looking at a triangle more often than it is
-cut: the best that arrays can do. Both then join segments to rings: segments are found by the edge that they begin on,
-and followed from list to list. RESULT is JSON as the other slicers write it, with the areas of layers, too.
+`planes` processes all triangles for each plane, like trimesh's mesh_multiplane, with the heights of vertices computed
+once. `bulk` makes all segments of all planes at once and visits a triangle only as often as it is cut: the best that
+arrays can do. Both then join segments to rings: segments are found by the edge on which they begin, and followed from
+list to list. RESULT is JSON as the other slicers write it, and includes the areas of layers.
 """
 
 import json
@@ -18,7 +18,7 @@ STL = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", 
 
 
 def read(path):
-    """Vertices (n, 3) and faces (m, 3) of a binary STL file, equal corners joined."""
+    """Returns vertices (n, 3) and faces (m, 3) of a binary STL file, equal corners joined."""
     corners = np.fromfile(path, STL, offset=84)["corners"].reshape(-1, 3)
     rows = np.ascontiguousarray(corners).view("V12").ravel()
     _, first, number = np.unique(rows, return_index=True, return_inverse=True)
@@ -26,7 +26,7 @@ def read(path):
 
 
 def by_planes(vertices, faces, planes):
-    """For each plane: where segments begin and end, and the edges that they begin and end on."""
+    """Returns the ends of segments, and the edges on which they begin and end, plane by plane."""
     heights = vertices[:, 2]
     for z in planes:
         above = heights[faces] > z
@@ -36,8 +36,8 @@ def by_planes(vertices, faces, planes):
 
 
 def in_bulk(vertices, faces, planes):
-    """The same from all triangles and planes at once."""
-    rank = np.searchsorted(planes, vertices[:, 2], side="left")[faces]  # how many planes lie below a vertex
+    """Returns the same from all triangles and planes at once."""
+    rank = np.searchsorted(planes, vertices[:, 2], side="left")[faces]  # number of planes below a vertex
     first, last = rank.min(axis=1), rank.max(axis=1)
     times = last - first
     triangle = np.repeat(np.arange(len(faces)), times)
@@ -52,13 +52,13 @@ def in_bulk(vertices, faces, planes):
 
 
 def segments(vertices, faces, above, z):
-    """Of triangles cut by planes at z: material lies to the left of each segment."""
+    """Returns segments of triangles cut by planes at z. Material is to the left of each segment."""
     lone = np.where(above.sum(axis=1) == 1, above.argmax(axis=1), above.argmin(axis=1))
     row = np.arange(len(faces))
     alone, after, before = (faces[row, (lone + step) % 3] for step in (0, 1, 2))
-    upward = above[row, lone]  # the lone corner is the one above
+    upward = above[row, lone]  # the single corner is the upper one
     near, far = np.where(upward, after, before), np.where(upward, before, after)
-    # Walking around a triangle whose tip is above, seen from outside, the plane is left where the tip comes first.
+    # Around a triangle with its tip above, seen from outside, the boundary descends through the plane after the tip.
     return (crossing(vertices, alone, near, z), crossing(vertices, alone, far, z),
             edge(alone, near, len(vertices)), edge(alone, far, len(vertices)))
 
@@ -75,7 +75,7 @@ def crossing(vertices, a, b, z):
 
 
 def rings(starts, from_edge, to_edge):
-    """The points of each ring: a segment is followed by the one that begins on the edge that it ends on."""
+    """Returns the points of each ring: a segment is followed by the one that begins on the edge where it ends."""
     order = np.argsort(from_edge)
     following = order[np.searchsorted(from_edge, to_edge, sorter=order)].tolist()
     seen = bytearray(len(following))

@@ -1,4 +1,4 @@
-"""How long others take from a mesh file to a mesh, beside Lamella; writes read_meshes.md, .html and report.json.
+"""Compares reading mesh files into meshes with other readers; writes read_meshes.md, .html and report.json.
 
     python3 -m bench.read_meshes [options]      (from the root of the source tree; `make read-meshes` does it)
 """
@@ -50,7 +50,8 @@ def parse(arguments):
 
 
 def measure(one, present, folder, expected, options):
-    """All readers of a format in turn, several times; the first reading of each is not counted, it fills the cache."""
+    """Runs all readers of a format alternately, several times; the first run of each fills the cache and does not
+    count."""
     path = folder / "files" / one.file
     chosen = [reader for reader, _ in present if one.name in reader.formats]
     runs = {reader.name: [] for reader in chosen}

@@ -1,4 +1,4 @@
-"""The same solid in every format that is read."""
+"""Writes the same solid in every format that is read."""
 
 import struct
 import subprocess
@@ -27,8 +27,8 @@ FORMATS = [
 
 
 def make(lamella, body, folder):
-    """Writes all files: STL and binary PLY by the program, texts with six digits after the point, as many programs
-    write them. Returns the number of triangles."""
+    """Writes all files: STL and binary PLY by the program, texts with six decimals, as many programs write them.
+    Returns the number of triangles."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for name, options in [("solid.stl", []), ("solid-ascii.stl", ["--ascii"]), ("solid.ply", [])]:
@@ -82,7 +82,7 @@ def write(path, *parts):
 
 
 def read_ply(path):
-    """Vertices and triangles of a binary PLY file as the program writes it in single precision."""
+    """Reads vertices and triangles of a binary PLY file as the program writes it in single precision."""
     data = path.read_bytes()
     end = data.index(b"end_header\n") + len(b"end_header\n")
     head = data[:end].decode("ascii").splitlines()

@@ -1,4 +1,5 @@
-"""Who reads meshes, and which formats. A new format of Lamella is a name in its list and a file in files.py."""
+"""The readers of meshes and their formats. To add a format of Lamella, add its name to its list and a file to
+files.py."""
 
 import json
 import re
@@ -20,19 +21,19 @@ class Reader:
     name: str
     title: str
     formats: tuple
-    command: tuple  # and then the file
-    version: Callable[[], Optional[str]]  # None: not there
-    told: Callable[[str, float], tuple]  # seconds and triangles from what it printed and how long the process took
+    command: tuple  # without the file
+    version: Callable[[], Optional[str]]  # None: not installed
+    told: Callable[[str, float], tuple]  # returns seconds and triangles from the output and the time of the process
 
 
 def told_by_us(text, _):
-    """The last line is JSON of ours."""
+    """Reads the last line, which is JSON of our readers."""
     told = json.loads(text.strip().splitlines()[-1])
     return told["seconds"], told["triangles"]
 
 
 def told_by_admesh(text, seconds):
-    """Its table has the number; the time is that of the whole process, which does nothing else of weight."""
+    """Reads the number in its table. The time is that of the whole process, which does little else."""
     return seconds, int(re.search(r"Number of facets\s*:\s*(\d+)", text).group(1))
 
 
@@ -42,7 +43,7 @@ def python_reader(library, formats):
 
 
 def readers(folder, lamella):
-    """`folder` is where the build has put the programs, `lamella` the program itself."""
+    """Returns all readers. `folder` has the programs built here; `lamella` is the program itself."""
     folder = Path(folder)
     return [
         Reader("lamella", "Lamella", ALL, (folder / "lamella_reader",),

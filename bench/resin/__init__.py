@@ -1,1 +1,1 @@
-"""Jobs of pictures for resin printers beside those of PrusaSlicer."""
+"""Compares image jobs for resin printers with PrusaSlicer's."""

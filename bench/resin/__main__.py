@@ -1,4 +1,4 @@
-"""Compares printers' jobs of pictures with PrusaSlicer's; writes resin.md, resin.html and report.json.
+"""Compares image jobs for resin printers with PrusaSlicer's; writes resin.md, resin.html and report.json.
 
     python3 -m bench.resin [options]            (from the root of the source tree; `make resin` does it)
 """
@@ -29,11 +29,11 @@ class Cell:
     processor_seconds: Optional[float] = None
     peak_rss_bytes: Optional[int] = None
     file_bytes: Optional[int] = None
-    agreement: Optional[pictures.Agreement] = None  # of a rival's job with ours, where both ended
+    agreement: Optional[pictures.Agreement] = None  # of a rival's job with ours, if both finished
 
     @property
     def counts(self):
-        """A rival's time only with pictures that are ours."""
+        """Returns whether a rival's time counts: its images must equal ours."""
         return self.slicer in slicers.OURS or (self.agreement is not None and self.agreement.good)
 
 
@@ -49,7 +49,7 @@ def main(arguments):
     cells = []
     for part in chosen:
         cells += measure(part, [slicer for slicer, _ in present], folder, options)
-        # After each part, so that a long run that is stopped has left what it found.
+        # After each part, so that an interrupted run leaves its results so far.
         done = [one for one in chosen if any(cell.part == one.name for cell in cells)]
         build_page(cells, done, present, here, options).write(folder, "resin")
         told = {"machine": here, "versions": {slicer.title: version for slicer, version in present},
@@ -71,7 +71,7 @@ def parse(arguments):
 
 
 def measure(part, present, folder, options):
-    """All in turn, several times; one that fails is not tried again."""
+    """Runs all alternately, several times; one that fails is not tried again."""
     mesh = parts.make(part, options.lamella, folder)
     told = subprocess.run([options.lamella, "info", mesh, "--json"], capture_output=True, text=True, check=True).stdout
     job = slicers.Job(mesh, part.layer_height, slicers.pixel_mm(json.loads(told)["bbox"]))

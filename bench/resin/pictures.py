@@ -1,12 +1,12 @@
-"""Whether two jobs show the same pictures."""
+"""Compares the images of two jobs."""
 
 import zipfile
 from dataclasses import dataclass
 
 from tests.app.png_picture import Picture
 
-LOOKED_AT = 6  # pictures; to decode one takes a second
-MOST_APART = 1e-3  # of the covered area; a tenth of a pixel aside is more, where much is border
+LOOKED_AT = 6  # number of images; decoding one takes a second
+MOST_APART = 1e-3  # fraction of the covered area; a shift by a tenth of a pixel is more if the outline is long
 
 
 @dataclass(frozen=True)
@@ -14,7 +14,7 @@ class Agreement:
     pictures: int
     expected: int
     largest: int = 0  # difference of a pixel, of 255
-    apart: float = 0.0  # sum of all differences, to the covered area
+    apart: float = 0.0  # sum of all differences / covered area
     same_size: bool = True
 
     @property
@@ -23,7 +23,7 @@ class Agreement:
 
     @property
     def as_many(self):
-        """But for a thin layer at the top, which some leave out."""
+        """Returns whether the numbers of layers agree, except for a thin top layer that some programs omit."""
         return abs(self.pictures - self.expected) <= 1
 
     def text(self):
@@ -35,13 +35,13 @@ class Agreement:
 
 
 def names(archive):
-    """Of the layers' pictures; those in folders are thumbnails."""
+    """Returns the names of the layers' images; images in folders are thumbnails."""
     return sorted(name for name in archive.namelist() if name.endswith(".png") and "/" not in name)
 
 
 def compare(ours, theirs):
-    """The archives at these paths. Some layers are looked at, but not the last: where a part ends within it, programs cut it
-    elsewhere."""
+    """Compares the archives at these paths in some layers. The last layer is not compared: if a part ends within it,
+    programs cut it at other heights."""
     with zipfile.ZipFile(ours) as our_job, zipfile.ZipFile(theirs) as their_job:
         our_names, their_names = names(our_job), names(their_job)
         numbers = len(their_names), len(our_names)

@@ -1,4 +1,4 @@
-"""Who makes a printer's job of a part, and what it is asked for: the same layers in the middle of the same display."""
+"""The slicers for image jobs and their options: the same layers in the middle of the same display."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,14 +25,14 @@ class Job:
 class Slicer:
     name: str
     title: str
-    suffix: str  # of what it writes
-    pictures: bool  # whether that is a job of pictures
+    suffix: str  # of its output
+    pictures: bool  # the output is a job of images
     command: Callable[[Job, Path], list]
-    version: Callable[[], Optional[str]]  # None: not there
+    version: Callable[[], Optional[str]]  # None: not installed
 
 
 def pixel_mm(box):
-    """As small as lets a part with this box fill the display, but for a tenth; a number of few digits."""
+    """Returns a size with few digits with which a part with this box fills the display except for a tenth."""
     (left, front, _), (right, back, _) = box
     return float(f"{1.1 * max((right - left) / COLUMNS, (back - front) / ROWS):.3g}")
 
@@ -51,7 +51,7 @@ def prusa_slicer():
     def command(job, output):
         width, height = job.display
         return ["prusa-slicer", "--export-sla", "--loglevel", "1", "--supports-enable=0", "--pad-enable=0",
-                # No pixel is moved or left out on purpose.
+                # Disables everything that moves or omits pixels intentionally.
                 "--slice-closing-radius", "0", "--elefant-foot-compensation", "0",
                 "--layer-height", f"{job.layer_height:g}", "--initial-layer-height", f"{job.layer_height:g}",
                 "--bed-shape", f"0x0,{width}x0,{width}x{height},0x{height}", "--max-print-height", "1000",

@@ -1,1 +1,1 @@
-"""Lamella beside the slicers of today: see ../README.md."""
+"""Compares Lamella with other slicers: see ../README.md."""

@@ -31,7 +31,7 @@ def main(arguments):
     cells = []
     for part in chosen:
         cells += comparison.run(part, [rival for rival, _ in present], tell)
-        # After each part, so that a long run that is stopped has left what it found.
+        # After each part, so that an interrupted run leaves its results so far.
         sliced = [one for one in chosen if any(cell.part == one.name for cell in cells)]
         page = report.build_page(cells, sliced, present, absent, here, options.timeout, threads)
         page.write(folder, "rivals")
@@ -57,7 +57,7 @@ def parse(arguments):
 
 
 def find(options):
-    """Rivals with their versions, and those that are not there."""
+    """Returns rivals with their versions, and the missing ones."""
     rivals = [library.cgal(options.libraries), PRUSA_SLICER, CURA, library.vtk(), SLIC3R]
     if options.rivals is not None:
         unknown = set(options.rivals) - {rival.name for rival in rivals}

@@ -1,4 +1,4 @@
-"""Lamella and its rivals on the same parts and planes: one cell of the table after the other."""
+"""Slices the same parts and planes with Lamella and its rivals; each pair is a cell of the table."""
 
 import statistics
 from dataclasses import dataclass
@@ -19,11 +19,11 @@ class Cell:
     ended: str  # "ok", "timeout", "skipped", "killed by SIGSEGV", "exit code 1", "no layers: ..."
     runs: int = 0
     seconds: Optional[float] = None  # wall time of the whole process, median
-    slicing_seconds: Optional[float] = None  # cutting alone, where it can be told
+    slicing_seconds: Optional[float] = None  # cutting alone, if known
     processor_seconds: Optional[float] = None
     peak_rss_bytes: Optional[int] = None
     last_words: str = ""  # of a program that failed
-    agreement: Optional[Agreement] = None  # None for Lamella, which is what others are compared with
+    agreement: Optional[Agreement] = None  # None for Lamella, the reference
 
     @property
     def ok(self):
@@ -31,7 +31,7 @@ class Cell:
 
     @property
     def counts(self):
-        """Whether its time may be set against ours: it found the same layers."""
+        """Returns whether its time may be compared with ours: it must have found the same layers."""
         return self.ok and (self.agreement is None or self.agreement.near)
 
 
@@ -39,12 +39,12 @@ class Comparison:
     def __init__(self, program, folder, timeout, threads, repeat_below=2.0, most_runs=5):
         self.program, self.folder, self.timeout, self.threads = program, Path(folder), timeout, threads
         self.repeat_below, self.most_runs = repeat_below, most_runs
-        self.timed_out = set()  # (slicer, family) after which larger members are not tried
+        self.timed_out = set()  # (slicer, family); larger members are skipped
 
     def run(self, part, rivals, tell=lambda cell: None):
-        """All cells of one part, Lamella's first."""
+        """Returns all cells of one part, Lamella's first."""
         mesh = parts.make(part, self.program, self.folder.parent / "parts")
-        mesh.read_bytes()  # everybody reads from memory
+        mesh.read_bytes()  # all slicers then read from the cache
         work = self.folder / "work"
         work.mkdir(parents=True, exist_ok=True)
         cells, slicing = [], None
@@ -61,7 +61,7 @@ class Comparison:
 
     def ours(self, part, mesh, work, threads):
         options = ["--threads", threads, "--layer-height", f"{part.layer_height:g}"]
-        # To a file for the whole process, as the others do; into memory for the cutting alone.
+        # To a file for the time of the whole process, as the others; into memory for the time of cutting alone.
         written = self.repeat(lambda: lamella.slice_part(self.program, mesh, work, *options, output=work / "ours.cli"))
         in_memory = self.repeat(lambda: lamella.slice_part(self.program, mesh, work, *options))
         failed = [run.outcome for run in (*written, *in_memory) if not run.ok]
@@ -95,7 +95,7 @@ class Comparison:
         return cell
 
     def repeat(self, once):
-        """Once when it takes long; else until the sum of times is no accident."""
+        """Runs once if the slicer is slow, otherwise repeatedly until the total time is significant."""
         runs = []
         while True:
             runs.append(once())

@@ -29,18 +29,18 @@ def command(job):
 def is_wall(comment):
     if comment.startswith(";TYPE:"):
         return comment.startswith(";TYPE:WALL-OUTER")
-    # Between parts it says that what follows is no mesh.
+    # Between parts it prints that the following is no mesh.
     return None
 
 
 def slicing_seconds(_job, text):
-    """Its first stage: from triangles to polygons."""
+    """Returns the time of its first stage: from triangles to polygons."""
     found = re.search(r"^Progress: slice accomplished in ([\d.]+)s", text, re.MULTILINE)
     return float(found[1]) if found else None
 
 
 def path(job):
-    """Where its tool path is, and how to read it."""
+    """Returns its tool path, and how to read it."""
     return job.file("cura.gcode"), lambda line: line.startswith(";LAYER:"), is_wall
 
 

@@ -1,4 +1,4 @@
-"""What a slicer is asked to do."""
+"""The job of a slicer."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +8,7 @@ from typing import Callable, Optional
 @dataclass
 class Job:
     mesh: Path
-    folder: Path  # for what it writes
+    folder: Path  # for its output
     layer_height: float
     z: list  # heights of the cuts in the coordinates of the mesh
     bottom: float  # of the part
@@ -22,11 +22,11 @@ class Job:
 class Rival:
     name: str
     title: str
-    writes: str  # what it leaves behind
-    compared: str  # what of it is compared with our layers
-    version: Callable[[], Optional[str]]  # None: not there
+    writes: str  # output
+    compared: str  # content of the output that is compared with our layers
+    version: Callable[[], Optional[str]]  # None: not installed
     command: Callable[[Job], list]
-    layers: Callable[[Job], list]  # what it found, read from what it left
-    slicing_seconds: Callable[[Job, str], Optional[float]]  # cutting alone; from the files and the printed text
+    layers: Callable[[Job], list]  # reads the layers from the output
+    slicing_seconds: Callable[[Job, str], Optional[float]]  # time of cutting alone, from the files and the printed text
     threaded: bool
-    sinks: bool = False  # it leaves out lowest layers that are too small for a wall, and puts the others lower
+    sinks: bool = False  # it omits lowest layers that are too small for a wall, and lowers the others

@@ -1,4 +1,4 @@
-"""Layers from a layered SVG file as Slic3r writes it: one <g> a layer, one <polygon> a ring."""
+"""Reads layered SVG files as written by Slic3r: one <g> for each layer, one <polygon> for each ring."""
 
 import re
 
@@ -15,8 +15,8 @@ def read_layers(path):
 
 
 def read_rings(path):
-    """The height of each layer and its rings. Slic3r 1.3.0 multiplies the height of the cut (in millimetres) by a
-    millionth; that is undone here."""
+    """Returns the height and the rings of each layer. Slic3r 1.3.0 multiplies the height of the cut (in millimetres) by
+    1e-6; this is reverted here."""
     layers = []
     with open(path, encoding="utf-8") as lines:
         for line in lines:

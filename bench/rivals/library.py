@@ -1,4 +1,4 @@
-"""Libraries that cut, each behind a small program of ours: it reads the mesh and a list of heights and writes JSON.
+"""Libraries that cut meshes, each in a small program of ours: it reads the mesh and a list of heights and writes JSON.
 
     PROGRAM MESH HEIGHTS RESULT
 
@@ -14,7 +14,7 @@ from bench.rivals.job import Rival
 
 
 def library_rival(name, title, program, threaded=False):
-    """`program` is a command, with the words before its operands."""
+    """Returns the rival; `program` is a command with the words before its operands."""
     def command(job):
         job.file("heights.txt").write_text("".join(f"{z!r}\n" for z in job.z), encoding="utf-8")
         return [*program, job.mesh, job.file("heights.txt"), result(job)]
@@ -44,7 +44,7 @@ def answer(command):
 
 
 def cgal(folder):
-    """`folder` is where the build has put the program."""
+    """Returns CGAL as a rival; `folder` has the program built here."""
     return library_rival("cgal", "CGAL Polygon_mesh_slicer", [Path(folder) / "cgal_slicer"])
 
 

@@ -1,4 +1,4 @@
-"""Versions of programs, as they tell them."""
+"""Versions of programs, as they print them."""
 
 import re
 import shutil
@@ -6,7 +6,7 @@ import subprocess
 
 
 def version(command, pattern):
-    """The first match of `pattern` in what `command` prints, or None when there is no such program."""
+    """Returns the first match of `pattern` in the output of `command`, or None if there is no such program."""
     if shutil.which(command[0]) is None:
         return None
     done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)

@@ -1,4 +1,4 @@
-"""PrusaSlicer: one wall, no infill, as G-code. It has no option for threads and takes what it may use."""
+"""PrusaSlicer: one wall, no infill, as G-code. It has no option for threads and uses all that it may."""
 
 import datetime
 import re
@@ -12,7 +12,7 @@ WIDTH_MM = 0.45
 
 def command(job):
     height = f"{job.layer_height:g}"
-    # Gaps and thin walls would be filled with strokes that are no contours.
+    # Gaps and thin walls would be filled with strokes that are not contours.
     return ["prusa-slicer", "--export-gcode", "--loglevel", "3",
             "--layer-height", height, "--first-layer-height", height,
             "--perimeters", "1", "--perimeter-generator", "classic", "--gap-fill-enabled=0", "--thin-walls=0",
@@ -28,7 +28,7 @@ def is_wall(comment):
 
 
 def slicing_seconds(_job, text):
-    """From the log: cutting is the first stage, making walls the second."""
+    """Reads the log: cutting is the first stage, making walls the second."""
     times = [re.search(rf"^\[(\S+ \S+)\].*\] +{stage}", text, re.MULTILINE)
              for stage in ("Slicing volumes", "Generating perimeters")]
     if None in times:
@@ -38,7 +38,7 @@ def slicing_seconds(_job, text):
 
 
 def path(job):
-    """Where its tool path is, and how to read it."""
+    """Returns its tool path, and how to read it."""
     return job.file("prusa.gcode"), lambda line: line.startswith(";LAYER_CHANGE"), is_wall
 
 

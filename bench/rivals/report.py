@@ -1,4 +1,4 @@
-"""The comparison as a table, a chart and JSON."""
+"""Reports the comparison as a table, a chart and JSON."""
 
 import dataclasses
 
@@ -10,7 +10,7 @@ TELLING = ("rook", "lattice", "sheet-1225")
 
 
 def build_page(cells, parts, rivals, absent, machine, timeout, threads):
-    """`rivals` are those that ran, with their versions: [(rival, version)]; `absent`: {title: why}."""
+    """`rivals` are those that ran, with their versions: [(rival, version)]; `absent`: {title: reason}."""
     page = Page("Lamella beside other slicers")
     titles = {"lamella": f"Lamella, {counted(threads)}", "lamella-1": "Lamella, 1 thread",
               **{rival.name: rival.title for rival, _ in rivals}}

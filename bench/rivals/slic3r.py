@@ -1,4 +1,4 @@
-"""Slic3r 1.3, which writes its slices as SVG. It is asked for these alone: no tool path is made."""
+"""Slic3r 1.3, which writes its slices as SVG. Only these are requested: no tool path is made."""
 
 from bench.rivals import layered_svg
 from bench.rivals.job import Rival

@@ -1,9 +1,8 @@
 """Contours from the tool path of a printer (G-code) that has one wall and nothing else.
 
-The wall's middle runs half its width w within the material. Steiner's formula gives back what the contour encloses:
-area + length * w/2 + pi (w/2)^2 for an outer ring, area - length * w/2 + pi (w/2)^2 for a hole. Corners are rounded by
-it, so areas are near, not exact. Printers run rings in either direction: a ring is a hole when it lies in an odd number
-of others.
+The middle of the wall is half its width w inside the material. Steiner's formula gives the area within the contour:
+area + length * w/2 + pi (w/2)^2 for an outer ring, area - length * w/2 + pi (w/2)^2 for a hole. It rounds corners, so
+areas are approximate. Printers run rings in either direction: a ring is a hole if it is inside an odd number of others.
 """
 
 import math
@@ -15,11 +14,10 @@ SHORT_MM = 0.1  # less than the width of any path
 
 
 def read_layers(path, starts_layer, is_wall, width, layer_height):
-    """Rings of each layer, from extruding moves that follow one another.
+    """Returns the rings of each layer, from consecutive extruding moves.
 
-    `starts_layer(line)` tells the comment that begins a layer; `is_wall(line)` is asked about every comment: True and
-    False switch, None keeps. A ring
-    may consist of several kinds of wall.
+    `starts_layer(line)` recognises the comment that begins a layer. `is_wall(line)` is called for every comment: True
+    and False switch, None keeps. A ring may consist of several kinds of wall.
     """
     layers = []
     for number, rings in enumerate(read_rings(path, starts_layer, is_wall)):
@@ -29,8 +27,8 @@ def read_layers(path, starts_layer, is_wall, width, layer_height):
 
 
 def read_rings(path, starts_layer, is_wall):
-    """The rings of each layer in turn."""
-    rings = None  # of the layer that is being read
+    """Yields the rings of each layer in turn."""
+    rings = None  # of the current layer
     wall = False
     x = y = extruded = 0.0
     ring = []
@@ -64,7 +62,7 @@ def read_rings(path, starts_layer, is_wall):
             amount = float(words.get("E", extruded))
             moves = "X" in words or "Y" in words
             to_x, to_y = float(words.get("X", x)), float(words.get("Y", y))
-            # A step so short that the amount stays the same after rounding belongs to the path, too.
+            # A step too short to change the rounded amount of material belongs to the path, too.
             step = math.dist((x, y), (to_x, to_y))
             if moves and wall and (amount > extruded or (ring and amount == extruded and step < SHORT_MM)):
                 if not ring:
@@ -96,7 +94,7 @@ def box(ring):
 
 
 def contains(ring, x, y):
-    """By the crossings of a ray to the right."""
+    """Counts the crossings of a ray to the right."""
     inside = False
     for (ax, ay), (bx, by) in zip(ring, ring[1:] + ring[:1]):
         if (ay > y) != (by > y) and x < ax + (y - ay) * (bx - ax) / (by - ay):

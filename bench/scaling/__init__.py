@@ -1,1 +1,1 @@
-"""One job on many processes: see ../README.md."""
+"""Runs one job on many processes: see ../README.md."""

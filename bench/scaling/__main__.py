@@ -1,10 +1,10 @@
-"""What lamella-mpi moves and how long it takes, measured on this machine and predicted for a cluster.
+"""Measures communication and time of lamella-mpi on this machine and predicts them for a cluster.
 
     python3 -m bench.scaling [options]      (from the root of the source tree; `make scaling` does it)
 
-Processes share one machine here, with one thread each, so that their processor time counts and not the wall time beyond as
-many processes as there are processors. From runs of one process come the rates; the model predicts every other run, and the
-report sets the measured points beside it.
+All processes share one machine here, with one thread each, so with more processes than processors only CPU time counts,
+not wall time. Runs of one process give the rates; the model predicts every other run, and the report compares it with
+the measured points.
 """
 
 import argparse
@@ -39,7 +39,7 @@ def run(wishes, folder, part, processes):
 
 
 def figures(stats):
-    """Of a run: what the model is about."""
+    """Returns the quantities of a run that the model describes."""
     processes = stats["processes"]
     triangles = sum(r["triangles_read"] for r in processes)
     sliced = [r["triangles_sliced"] for r in processes]
@@ -56,7 +56,7 @@ class Model:
 
     def __init__(self, singles):
         self.read_rate = sum(s["triangles"] for s in singles) / sum(s["read"] for s in singles)
-        # Slicing: so much for each triangle and for each point, by least squares through two or more parts.
+        # Slicing: a time for each triangle and for each point, by least squares over two or more parts.
         a = sum(s["sliced"] ** 2 for s in singles)
         b = sum(s["sliced"] * s["points"] for s in singles)
         c = sum(s["points"] ** 2 for s in singles)
@@ -69,9 +69,9 @@ class Model:
         self.out_bytes = sum(s["bytes"] for s in singles) / sum(s["points"] for s in singles)
 
     def predict(self, triangles, planes, points, processes, balance=1.0):
-        # Each cut triangle goes to one slab, and to one more for each bound between slabs that lies among its planes. It
-        # brings a point to each plane, so all of them together span points - cut gaps between planes. The triangles of
-        # the file are in no order, so one in `processes` is where it belongs.
+        # Each cut triangle goes to one range, and to one more for each bound between ranges that is among its planes.
+        # It has a point on each plane, so all triangles together span points - cut gaps between planes. The triangles
+        # of the file are in no order, so one in `processes` is already in its range.
         cut = self.cut * triangles
         sliced = cut + (processes - 1) * (points - cut) / (planes - 1)
         return {"sliced": sliced, "sent": TRIANGLE * sliced * (processes - 1) / processes,
@@ -81,7 +81,7 @@ class Model:
 
 
 def cluster(model, scale, wishes):
-    """10^9 triangles on 64 processes: a lattice as measured, with more cells, cut into as many more planes."""
+    """Predicts 10^9 triangles on 64 processes: a lattice as measured, with more cells and as many more planes."""
     factor = (1e9 / scale["triangles"]) ** (1 / 3)
     planes, points = scale["planes"] * factor, scale["points"] * factor**3
     lines = []

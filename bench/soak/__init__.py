@@ -1,1 +1,1 @@
-"""Hours of good and bad files through the batch mode: see ../README.md."""
+"""Slices good and bad files in batch mode for hours: see ../README.md."""

@@ -1,11 +1,11 @@
-"""Random good and bad files through `lamella slice --batch`, round after round, under a limit of memory.
+"""Slices random good and bad files by `lamella slice --batch`, again and again, under a memory limit.
 
 usage: python3 -m bench.soak [--minutes N] [--files N] [--memory MB] [--seed N] [--program FILE]
 
-A round is one batch over many files: bodies as `lamella make` has them, whole, cut off, with bytes changed, empty, or no
-mesh at all. After each, and while it runs, it is checked that every file has its one result, in order; that whole files
-give what they gave before; that no process, no zombie and no temporary file is left; and that the workers' memory does
-not grow with the number of files. Ends with exit code 1 at the first thing that is not so, keeping the files.
+A round is one batch of many files: bodies made by `lamella make`, whole, cut off, with bytes changed, empty, or not a
+mesh. During and after each round these are checked: every file has one result, in order; whole files give the same
+result as before; no process, zombie or temporary file is left; the workers' memory does not grow with the number of
+files. Ends with exit code 1 at the first violation, keeping the files.
 """
 
 import argparse
@@ -33,7 +33,7 @@ class Failed(Exception):
 
 
 def make_bodies(program, folder):
-    """Files of each body as binary and ASCII STL, PLY and OBJ."""
+    """Writes files of each body as binary and ASCII STL, PLY and OBJ."""
     files = []
     for i, body in enumerate(BODIES):
         for ending, options in [("stl", []), ("ascii.stl", ["--ascii"]), ("ply", []), ("obj", [])]:
@@ -59,7 +59,7 @@ def spoilt(content, flaw, chance):
 
 
 def fill(folder, bodies, number, chance):
-    """Puts files into the folder; says of each which whole body it is, or None."""
+    """Puts files into the folder; returns for each the whole body that it contains, or None."""
     listed = []
     for i in range(number):
         body = chance.choice(bodies)
@@ -94,7 +94,7 @@ class Watch(threading.Thread):
         super().__init__()
         self.process = process
         self.most = 0
-        self.least = []  # of the workers, at each look: whoever has no large file at that moment
+        self.least = []  # smallest memory among the workers at each sample: that of a worker without a large file
         self.start()
 
     def run(self):
@@ -106,7 +106,8 @@ class Watch(threading.Thread):
             time.sleep(0.05)
 
     def growth(self):
-        """From the second to the last quarter of the run, in bytes: of the least, since any look may meet a large file."""
+        """Returns the growth from the second to the last quarter of the run, in bytes, of the smallest memory, because
+        any sample may coincide with a large file."""
         quarter = len(self.least) // 4
         if quarter < 5:
             return 0
