@@ -1,6 +1,6 @@
 #pragma once
 
-// A folder of its own for each test that touches files.
+// A separate folder for each test that uses files.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 
 namespace lamella {
 
-/// A new empty folder, removed with all that is in it at the end.
+/// A new empty folder, removed with its contents at the end.
 class TemporaryFolder {
   public:
     TemporaryFolder() {
@@ -35,7 +35,7 @@ class TemporaryFolder {
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] std::string file(std::string_view name) const { return (path_ / name).string(); }
 
-    /// Names of all entries, hidden ones included, in order.
+    /// Returns the names of all entries, including hidden ones, in order.
     [[nodiscard]] std::vector<std::string> entries() const {
         std::vector<std::string> names;
         for (const auto& entry : std::filesystem::directory_iterator(path_))

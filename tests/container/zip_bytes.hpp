@@ -1,6 +1,6 @@
 #pragma once
 
-// Zip archives in memory, true ones and liars: each field that a reader has to check can be told wrongly.
+// Zip archives in memory, valid and forged: each field that a reader must check can be given a wrong value.
 
 #include "container/deflate.hpp"
 #include "container/inflate.hpp"
@@ -20,7 +20,7 @@ struct ZipPart {
     bool deflated = true;
     bool sizes_behind = false; ///< a data descriptor follows
     bool zip64 = false;
-    // What is told instead of the truth.
+    // Values that replace the true ones.
     std::optional<std::string> inner_name = {};
     std::optional<std::string> packed = {};
     std::optional<std::uint64_t> size = {};

@@ -11,8 +11,8 @@
 
 namespace lamella {
 
-/// Runs `action`, which ends by _exit, in a process of its own and returns the exit code; -1 when the process
-/// ended otherwise.
+/// Runs `action`, which ends by _exit, in its own process and returns the exit code; -1 if the process ended
+/// otherwise.
 template <class Action>
 int exit_code_of_child(const Action& action) {
     const pid_t child = fork();
@@ -25,8 +25,8 @@ int exit_code_of_child(const Action& action) {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-/// Permissions hold for this process from now on, also where it is root's: by its capabilities root may read
-/// and write everywhere.
+/// Makes permissions apply to this process from now on even if it runs as root, whose capabilities allow
+/// reading and writing everywhere.
 inline bool give_up_capabilities() {
     __user_cap_header_struct header{.version = _LINUX_CAPABILITY_VERSION_3, .pid = 0};
     const std::array<__user_cap_data_struct, _LINUX_CAPABILITY_U32S_3> none{};

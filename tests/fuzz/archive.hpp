@@ -1,6 +1,6 @@
 #pragma once
 
-// A zip archive around the bytes of a fuzzer, which would never hit upon its checksums.
+// Puts the bytes of a fuzzer, which would never find valid checksums, into a zip archive.
 
 #include <zlib.h>
 
@@ -60,8 +60,8 @@ class Archive {
     std::uint64_t entries_ = 0;
 };
 
-/// Entries of these names, as far as the bytes go. Each has its length in front, two bytes, the lower one
-/// first.
+/// Makes entries of these names, as many as there are bytes for. Two bytes, the lower one first, give the
+/// length of each.
 inline std::string archive_of(std::string_view bytes, std::initializer_list<std::string_view> names) {
     Archive archive;
     for (const std::string_view name : names) {

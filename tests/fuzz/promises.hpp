@@ -1,6 +1,6 @@
 #pragma once
 
-// What the readers promise, whatever the bytes.
+// Contracts of the readers for any input.
 
 #include <lamella/lamella.hpp>
 
@@ -15,7 +15,7 @@ inline void require(bool promise) {
         std::abort();
 }
 
-/// Contours of finite points, and hatches of two each.
+/// Requires contours of finite points, and hatches of two points each.
 inline void require_whole(const Layer& layer) {
     require(!layer.offsets.empty() && layer.offsets.front() == 0 &&
             layer.offsets.back() == layer.points.size());
@@ -28,7 +28,7 @@ inline void require_whole(const Layer& layer) {
             require(std::isfinite(p.x) && std::isfinite(p.y));
 }
 
-/// Layers that can be checked: in normal form, or scan vectors.
+/// Requires layers in normal form, or scan vectors.
 inline void require_sound(const LayerFile& file) {
     require(!file.parts.empty());
     for (const LayerPart& part : file.parts) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Building meshes from meshes, and from nothing.
+// Builds meshes from other meshes, and random ones.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/transform.hpp"
@@ -32,7 +32,7 @@ inline TriangleSoup moved(const TriangleSoup& soup, double x, double y, double z
     return soup.transformed(translation(x, y, z));
 }
 
-/// All triangles of all parts, placed, in one soup.
+/// Returns all triangles of all parts, placed, in one soup.
 inline TriangleSoup assemble(std::initializer_list<TriangleSoup> parts) {
     std::vector<Triangle3f> out;
     for (const TriangleSoup& part : parts) {
@@ -49,7 +49,7 @@ inline TriangleSoup turned_inside_out(const TriangleSoup& soup) {
     return TriangleSoup(std::move(out));
 }
 
-/// Adds triangles between any of the vertices, some of them degenerate.
+/// Adds triangles between random vertices, some of them degenerate.
 inline void add_random_triangles(IndexedMesh& mesh, std::int64_t count, test::Random& random) {
     const auto any = [&] {
         return static_cast<std::uint32_t>(random.integer(0, std::ssize(mesh.vertices) - 1));

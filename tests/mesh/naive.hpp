@@ -1,6 +1,6 @@
 #pragma once
 
-// The same questions as the library answers, answered the slow and obvious way.
+// Slow and obvious implementations of functions of the library.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
@@ -37,7 +37,7 @@ inline IndexedMesh naive_weld(const TriangleSoup& soup) {
 struct EdgeCounts {
     std::uint64_t boundary = 0;    ///< one triangle
     std::uint64_t nonmanifold = 0; ///< more than two
-    std::uint64_t unbalanced = 0;  ///< two or more, not as many one way as the other
+    std::uint64_t unbalanced = 0;  ///< two or more, with different numbers in the two directions
     std::uint64_t degenerate_triangles = 0;
 
     friend bool operator==(const EdgeCounts&, const EdgeCounts&) = default;
@@ -81,7 +81,7 @@ inline std::uint64_t naive_duplicates(const IndexedMesh& mesh) {
     return out;
 }
 
-/// Parts connected over edges, by flooding.
+/// Counts parts connected by edges, by flooding.
 inline std::uint64_t naive_shells(const IndexedMesh& mesh) {
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::size_t>> at_edge;
     const auto edge = [&](std::size_t i, int k) {
@@ -112,7 +112,7 @@ inline std::uint64_t naive_shells(const IndexedMesh& mesh) {
     return out;
 }
 
-/// Closed, every edge with exactly two triangles that run through it in opposite directions.
+/// Returns whether the mesh is closed and every edge has exactly two triangles, in opposite directions.
 inline bool two_manifold(const TriangleSoup& soup) {
     return naive_edges(naive_weld(soup)) == EdgeCounts{};
 }

@@ -58,8 +58,8 @@ inline void expect_same(const LayerStatistics& one, const LayerStatistics& other
     }
 }
 
-/// The same figures of the mesh, its layers and what was written, bit for bit: all but times, and who did
-/// what.
+/// Expects equal figures of mesh, layers and output, bit for bit, except for times and the distribution of
+/// work.
 inline void expect_same(const FileResult& one, const FileResult& other) {
     EXPECT_EQ(one.triangles, other.triangles);
     EXPECT_EQ(one.box, other.box);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Processes as threads of one process: all that several of them do but the messages themselves.
+// Processes simulated by threads of one process; only the messages between them are not real.
 
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/processes.hpp"
@@ -27,11 +27,11 @@
 
 namespace lamella::test {
 
-/// What the threads share. A process that is gone ends the others: whoever waits for it throws, so that a
-/// test fails where processes would hang.
+/// State shared by the threads. A process that is gone ends the others: waiting for it throws, so that a test
+/// fails in cases in which processes would hang.
 class Meeting {
   public:
-    /// What a process brings to a step that all take.
+    /// Contribution of a process to a step that all take.
     struct Post {
         std::string_view step;
         std::string_view said = {};
@@ -43,7 +43,7 @@ class Meeting {
 
     [[nodiscard]] std::size_t size() const noexcept { return posts_.size(); }
 
-    /// look(posts of all processes), which stay as they are until all have looked.
+    /// Calls look(posts of all processes). The posts do not change until all have looked.
     template <class Look>
     void meet(std::size_t process, const Post& post, const Look& look) {
         posts_[process] = post;
@@ -79,7 +79,7 @@ class Meeting {
         changed_.notify_all();
     }
 
-    /// Whether what was sent was received.
+    /// Returns whether all messages that were sent were received.
     [[nodiscard]] bool quiet() const {
         return std::all_of(messages_.begin(), messages_.end(),
                            [](const auto& queue) { return queue.second.empty(); });
@@ -167,8 +167,8 @@ class ThreadProcess final : public Communicator {
     std::size_t process_;
 };
 
-/// Runs body(communicator) as so many processes. What each of them threw; what is no Error counts as
-/// internal.
+/// Runs body(communicator) as this many processes and returns the error of each. An exception that is no
+/// Error counts as internal.
 template <class Body>
 std::vector<std::optional<Error>> failures_of(std::size_t processes, const Body& body) {
     Meeting meeting(processes);
@@ -192,14 +192,14 @@ std::vector<std::optional<Error>> failures_of(std::size_t processes, const Body&
     return failures;
 }
 
-/// The same where none of them may fail.
+/// Runs body(communicator) as this many processes; none of them may fail.
 template <class Body>
 void run_processes(std::size_t processes, const Body& body) {
     for (const std::optional<Error>& failure : failures_of(processes, body))
         EXPECT_FALSE(failure.has_value()) << failure->what();
 }
 
-/// The results of a job that so many processes slice.
+/// Returns the results of a job sliced by this many processes.
 inline std::vector<FileResult> slice_by(std::size_t processes, const FileJob& job) {
     std::vector<FileResult> results(processes);
     run_processes(processes,
@@ -207,7 +207,7 @@ inline std::vector<FileResult> slice_by(std::size_t processes, const FileJob& jo
     return results;
 }
 
-/// As run_processes where all of them have to fail, and alike.
+/// Runs body(communicator) as this many processes; all of them must fail, with the same error.
 template <class Body>
 Error common_failure(std::size_t processes, const Body& body) {
     const std::vector<std::optional<Error>> failures = failures_of(processes, body);

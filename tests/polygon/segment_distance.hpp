@@ -1,6 +1,6 @@
 #pragma once
 
-// How far a point is from a segment, in the plainest way.
+// Computes the distance between a point and a segment in the simplest way.
 
 #include "lamella/core/point.hpp"
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Areas of a layer by winding number, by slabs: an oracle that shares nothing with the library.
+// Areas of a layer by winding number, computed in strips between heights: an oracle that shares no code with
+// the library.
 
 #include "lamella/contour/layer.hpp"
 
@@ -11,16 +12,16 @@
 
 namespace lamella::test {
 
-/// The area of where the winding numbers of two layers fulfil `is_material`. Between two neighbouring heights
-/// of vertices and crossings no edges cross, so each slab is a row of trapezoids. O(n^2) pairs, O(n^3) in
-/// all: for small layers.
+/// Returns the area in which the winding numbers of two layers satisfy `is_material`. Between two
+/// neighbouring heights of vertices and crossings no edges cross, so each strip is a row of trapezoids.
+/// O(n^2) pairs, O(n^3) in total: for small layers.
 inline double winding_area(const Layer& first, const Layer& second,
                            const std::function<bool(int, int)>& is_material) {
     struct Line {
         Point2 lo; // the lower end
         Point2 hi;
         bool first;
-        int step; // from left to right
+        int step; // change of the winding number from left to right
     };
     std::vector<Line> lines;
     std::vector<double> heights;
@@ -73,7 +74,7 @@ inline double winding_area(const Layer& first, const Layer& second,
     return area;
 }
 
-/// The same of one layer.
+/// Returns the area in which the winding numbers of one layer satisfy `is_material`.
 inline double winding_area(const Layer& layer, const std::function<bool(int)>& is_material) {
     return winding_area(layer, Layer{}, [&](int winding, int) { return is_material(winding); });
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What pixels should be covered by, without any of the raster's ways.
+// Coverage of pixels, computed without any method of the raster.
 
 #include "lamella/contour/measure.hpp"
 
@@ -11,8 +11,8 @@
 
 namespace lamella::test {
 
-/// What of a ring lies where `inside`, a distance to a line, is positive. Of a ring that is not convex the
-/// pieces hang together along the line, where they add nothing to its area.
+/// Returns the part of a ring in which `inside`, a distance to a line, is positive. If the ring is not
+/// convex, the pieces stay connected along the line, which does not change the area.
 template <class Inside>
 Contour cut_off(const Contour& ring, Inside inside) {
     Contour kept;
@@ -31,7 +31,7 @@ Contour cut_off(const Contour& ring, Inside inside) {
     return kept;
 }
 
-/// What of it lies in a row.
+/// Returns the part of the ring in a row.
 inline Contour cut_off_in_row(const Contour& ring, double row) {
     return cut_off(cut_off(ring, [&](const Point2& p) { return p.y - row; }),
                    [&](const Point2& p) { return row + 1 - p.y; });
@@ -42,7 +42,7 @@ inline Contour cut_off_in_column(const Contour& ring, double column) {
                    [&](const Point2& p) { return column + 1 - p.x; });
 }
 
-/// The area of a ring within a pixel, by cutting it off at the pixel's sides.
+/// Returns the area of a ring within a pixel, by cutting the ring off at the pixel's sides.
 inline double clipped_area(const Contour& ring, double column, double row) {
     const Contour rest = cut_off_in_column(cut_off_in_row(ring, row), column);
     return rest.size() < 3 ? 0 : std::abs(ring_area(rest));

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the tests of the readers of indexed meshes share: reading from memory, and what comes of it.
+// Tools for tests of the readers of indexed meshes: reading from memory, and checking the result.
 
 #include "lamella/core/error.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -25,7 +25,7 @@ namespace lamella::mesh_test {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-/// From memory of exactly this size, so that a sanitizer sees one byte too far.
+/// Reads from memory of exactly this size, so that a sanitizer detects reading one byte too far.
 inline MeshFile read(std::string_view bytes, const std::string& name, const MeshReadOptions& options = {},
                      unsigned threads = 1) {
     const std::unique_ptr<std::byte[]> exact(new std::byte[bytes.size()]);
@@ -41,7 +41,7 @@ inline const IndexedMesh& mesh_of(const MeshFile& file) {
     return *mesh;
 }
 
-/// Reads without a warning and gives these vertices and triangles.
+/// Expects these vertices and triangles without a warning.
 inline void expect_mesh(std::string_view bytes, const std::string& name, const std::vector<Point3>& vertices,
                         const std::vector<Corners>& triangles) {
     const MeshFile file = read(bytes, name);
@@ -51,13 +51,13 @@ inline void expect_mesh(std::string_view bytes, const std::string& name, const s
     EXPECT_EQ(file.warnings, std::vector<std::string>{});
 }
 
-/// What the error says; fails the test when there is none or it is of another kind.
+/// Returns the text of the error; fails the test if there is none or it is of another kind.
 inline std::string error_of(std::string_view bytes, const std::string& name,
                             const MeshReadOptions& options = {}, ErrorKind kind = ErrorKind::input) {
     return test::error_of(kind, [&] { static_cast<void>(read(bytes, name, options)); });
 }
 
-/// Reads with this one warning, which is an error for a strict caller.
+/// Expects this one warning, which is an error for a strict caller.
 inline void expect_warning(std::string_view bytes, const std::string& name, std::uint64_t triangles,
                            const std::string& warning) {
     const MeshFile file = read(bytes, name);
@@ -66,7 +66,7 @@ inline void expect_warning(std::string_view bytes, const std::string& name, std:
     EXPECT_EQ(error_of(bytes, name, {.strict = true}, ErrorKind::defect), name + ": " + warning);
 }
 
-/// Whatever the bytes, the answer is a sound mesh or an error of one line. Returns whether it is a mesh.
+/// Expects a valid mesh or an error of one line, for any bytes. Returns whether it is a mesh.
 inline bool survive(std::string_view bytes, const std::string& name) {
     try {
         const MeshFile file = read(bytes, name);
@@ -83,7 +83,7 @@ inline bool survive(std::string_view bytes, const std::string& name) {
     }
 }
 
-/// Every cut, and some thousand changes, of these files.
+/// Tests every truncation, and some thousand changes, of these files.
 inline void survive_hostility(const std::vector<std::string>& seeds, const std::string& name,
                               const std::vector<std::string>& words) {
     for (const std::string& seed : seeds)
@@ -99,7 +99,7 @@ inline void survive_hostility(const std::vector<std::string>& seeds, const std::
     EXPECT_GT(read_anyway, 100U) << "the mutations are so wild that they test nothing";
 }
 
-/// The same whatever the number of threads, for files of several pieces.
+/// Expects the same result for any number of threads, for files of several chunks.
 inline void expect_same_for_any_threads(std::string_view bytes, const std::string& name) {
     const MeshFile one = read(bytes, name, {}, 1);
     for (const unsigned threads : {2U, 7U}) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Texts packed with gzip, by its own program.
+// Texts compressed by the program gzip.
 
 #include "temporary_folder.hpp"
 
@@ -14,7 +14,7 @@
 
 namespace lamella::test {
 
-/// The content of a file with this one packed in it; "" where there is no program to do it.
+/// Returns the content compressed as a gzip file; "" if the program is missing.
 inline std::string packed(std::string_view content) {
     const TemporaryFolder folder;
     const std::string path = folder.file("content");

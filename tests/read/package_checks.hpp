@@ -1,6 +1,6 @@
 #pragma once
 
-// What tests of 3MF and AMF files share.
+// Tools for tests of 3MF and AMF files.
 
 #include "lamella/core/error.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -26,7 +26,7 @@ inline MeshFile read(std::string_view bytes, const MeshReadOptions& options = {}
                      {.threads = threads});
 }
 
-/// The error, "" when there is none.
+/// Returns the text of the error, "" if there is none.
 inline std::string error_of(std::string_view bytes, ErrorKind kind = ErrorKind::input,
                             const MeshReadOptions& options = {}) {
     try {
@@ -62,8 +62,8 @@ inline std::string replaced(std::string text, std::string_view from, std::string
     return text;
 }
 
-/// Reads from memory of exactly this size, so that a sanitizer sees one byte too far. Returns the number of
-/// triangles, none when the file was refused.
+/// Reads from memory of exactly this size, so that a sanitizer detects reading one byte too far. Returns the
+/// number of triangles, none if the file was refused.
 inline std::optional<std::size_t> survive(std::string_view bytes) {
     const std::unique_ptr<std::byte[]> exact(new std::byte[bytes.size()]);
     std::memcpy(exact.get(), bytes.data(), bytes.size());
@@ -74,7 +74,7 @@ inline std::optional<std::size_t> survive(std::string_view bytes) {
         for (const MeshObject& object : file.objects) {
             const IndexedMesh* const mesh = object.mesh.indexed();
             if (mesh == nullptr)
-                return file.mesh().size(); // a mutation made an STL file of it
+                return file.mesh().size(); // a mutation made it an STL file
             EXPECT_NO_THROW(check(*mesh));
             triangles += mesh->triangles.size();
         }
@@ -93,7 +93,7 @@ inline std::optional<std::size_t> survive(std::string_view bytes) {
     }
 }
 
-/// Changes some bytes, and puts words where they do most harm.
+/// Changes some bytes, and inserts words at positions where they cause errors.
 inline std::string mutated(std::string text, std::mt19937& random, std::span<const std::string_view> words) {
     for (unsigned change = 0; change <= random() % 3; ++change) {
         const std::size_t at = random() % text.size();

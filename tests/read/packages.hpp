@@ -13,7 +13,7 @@
 
 namespace lamella::package_test {
 
-/// A box [0, x] x [0, y] x [0, z] as the content of a 3MF <object>.
+/// Returns a box [0, x] x [0, y] x [0, z] as the content of a 3MF <object>.
 inline std::string box_mesh(double x = 1, double y = 2, double z = 3) {
     std::string mesh = "<mesh><vertices>\n";
     for (int i = 0; i < 8; ++i)
@@ -62,7 +62,7 @@ inline const std::string content_types =
     "<Default Extension=\"model\" "
     "ContentType=\"application/vnd.ms-package.3dmanufacturing-3dmodel+xml\"/></Types>";
 
-/// A 3MF package of a root model and further parts.
+/// Returns a 3MF package of a root model and further parts.
 inline std::string package(std::string_view root,
                            const std::vector<std::pair<std::string, std::string>>& others = {},
                            bool deflate = true) {
@@ -82,7 +82,7 @@ inline std::string package(std::string_view root,
     return zip_test::zip_bytes(parts);
 }
 
-/// A tetrahedron with legs of 1, as an AMF <object>.
+/// Returns a tetrahedron with legs of length 1, as an AMF <object>.
 inline std::string amf_object(std::string_view id, std::string_view more = "") {
     return fmt::format(
         "<object id=\"{}\">{}<mesh><vertices>"

@@ -1,6 +1,6 @@
 #pragma once
 
-// STL files made in memory, sound and broken.
+// STL files in memory, valid and defective.
 
 #include "lamella/mesh/triangle_soup.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -21,7 +21,7 @@ namespace lamella::stl_test {
 
 using Triangles = std::vector<Triangle3f>;
 
-/// Triangles of numbers that are exact in few decimals; not a closed body.
+/// Returns triangles of numbers that are exact in few decimals; not a closed body.
 inline Triangles some_triangles(std::size_t count) {
     Triangles triangles(count);
     for (std::size_t i = 0; i < count; ++i)
@@ -36,7 +36,7 @@ inline void append(std::string& bytes, const void* data, std::size_t size) {
     bytes.append(static_cast<const char*>(data), size);
 }
 
-/// A binary file with any header, count and tail.
+/// Returns a binary file with any header, count and tail.
 inline std::string binary(const Triangles& triangles, std::uint32_t count,
                           std::string header = "made by a test") {
     header.resize(80, '\0');
@@ -91,7 +91,7 @@ inline MeshFile read(std::string_view bytes, const MeshReadOptions& options = {}
                      {.threads = threads});
 }
 
-/// What an STL file holds.
+/// Returns the triangles of an STL file.
 inline TriangleSoup soup_of(const MeshFile& file) {
     return *file.mesh().soup();
 }
@@ -103,13 +103,13 @@ inline Triangles triangles_of(const MeshFile& file) {
     return triangles;
 }
 
-/// What the error says; fails the test when there is none or it is of another kind.
+/// Returns the text of the error; fails the test if there is none or it is of another kind.
 inline std::string error_of(std::string_view bytes, const MeshReadOptions& options = {},
                             ErrorKind kind = ErrorKind::input) {
     return test::error_of(kind, [&] { static_cast<void>(read(bytes, options)); });
 }
 
-/// Reads without a warning and gives these triangles.
+/// Expects these triangles without a warning.
 inline void expect_clean(std::string_view bytes, const Triangles& expected) {
     const MeshFile file = read(bytes);
     EXPECT_EQ(triangles_of(file), expected);
@@ -118,7 +118,7 @@ inline void expect_clean(std::string_view bytes, const Triangles& expected) {
     EXPECT_EQ(file.warnings, std::vector<std::string>{});
 }
 
-/// Reads with this one warning, gives these triangles, and is an error for a strict caller.
+/// Expects these triangles and this one warning, which is an error for a strict caller.
 inline void expect_warning(std::string_view bytes, const Triangles& expected, const std::string& warning) {
     const MeshFile file = read(bytes);
     EXPECT_EQ(triangles_of(file), expected);

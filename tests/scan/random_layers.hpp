@@ -12,8 +12,7 @@
 
 namespace lamella::test {
 
-/// Rings of points on a grid, which cross, touch, run along one another and have corners in one place. Each
-/// time of another kind.
+/// Returns rings of random points on a grid, which cross, touch, overlap along edges and share vertices.
 inline Layer random_rings(Random& random, std::int64_t extent) {
     std::vector<Contour> rings;
     const std::int64_t count = random.integer(1, 6);
@@ -28,12 +27,12 @@ inline Layer random_rings(Random& random, std::int64_t extent) {
     return layer_of(rings);
 }
 
-/// Material, as `scan` hatches it.
+/// Returns material as `scan` hatches it.
 inline Layer random_material(Random& random, std::int64_t extent) {
     return fill(random_rings(random, extent), FillRule::nonzero).layer;
 }
 
-/// The same layer, larger or smaller.
+/// Returns the layer scaled by a factor.
 inline Layer scaled(const Layer& layer, double by) {
     Layer result = layer;
     std::vector<Point2> points(layer.points.begin(), layer.points.end());

@@ -6,7 +6,7 @@
 
 namespace lamella::test {
 
-/// So many planes in the middle of equal parts of a height.
+/// Returns `count` planes, each in the middle of one of as many equal parts of a height.
 inline Plan even_planes(double from, double to, int count, SliceAt at = SliceAt::bottom) {
     std::vector<double> z;
     for (int i = 0; i < count; ++i)
@@ -14,7 +14,7 @@ inline Plan even_planes(double from, double to, int count, SliceAt at = SliceAt:
     return plan_listed(z, at);
 }
 
-/// The same through a body from z = -10 to 10, as test::rugged_drum.
+/// Returns planes through a body from z = -10 to 10, such as test::rugged_drum.
 inline Plan even_planes(int count) {
     return even_planes(-10, 10, count, SliceAt::middle);
 }

@@ -16,7 +16,7 @@
 
 namespace lamella::test {
 
-/// Keeps the layers that it is handed, in order.
+/// Returns a sink that keeps its layers in order.
 inline LayerSink keeping(LayerStack& stack) {
     return [&stack](Layer&& layer) {
         return [&stack, kept = std::move(layer)]() mutable {
@@ -25,7 +25,7 @@ inline LayerSink keeping(LayerStack& stack) {
     };
 }
 
-/// What every layer that an engine makes keeps to.
+/// Checks the properties of every layer that an engine makes.
 inline void expect_sound(const Layer& layer) {
     ASSERT_FALSE(layer.offsets.empty());
     EXPECT_EQ(layer.offsets.front(), 0U);
@@ -47,7 +47,7 @@ inline void expect_sound(const Layer& layer) {
     }
 }
 
-/// The same layers, bit for bit, numbers and heights included.
+/// Expects the same layers, bit for bit, including numbers and heights.
 inline void expect_same(const LayerStack& found, const LayerStack& expected) {
     ASSERT_EQ(found.size(), expected.size());
     for (std::size_t i = 0; i < found.size(); ++i) {

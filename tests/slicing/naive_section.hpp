@@ -1,6 +1,6 @@
 #pragma once
 
-// The section of a mesh, triangle by triangle and plane by plane: too slow to ship, too simple to be wrong.
+// The section of a mesh, triangle by triangle and plane by plane: too slow for use, too simple to be wrong.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
@@ -21,7 +21,7 @@ inline bool is_above(double z, double plane, PlaneRule rule) {
     return rule == PlaneRule::section_above ? z > plane : z >= plane;
 }
 
-/// One triangle's cut: from its edge that runs downwards to its edge that runs upwards.
+/// The cut of a triangle: from its edge that runs downwards to its edge that runs upwards.
 struct CutSegment {
     std::pair<Point3, Point3> from_edge; ///< lower end, upper end
     std::pair<Point3, Point3> to_edge;
@@ -57,8 +57,8 @@ inline std::vector<CutSegment> naive_section(std::span<const Triangle3f> triangl
     return out;
 }
 
-/// How often a segment is run through from its smaller to its larger end, less how often back. Repeated
-/// points and contours that run to and fro on a line leave no trace in it.
+/// Number of times that a segment is traversed from its smaller to its larger end, minus the number of times
+/// in reverse. It does not depend on repeated points and on contours that run to and fro on a line.
 using NetFlow = std::map<std::pair<Point2, Point2>, int>;
 
 inline void add_flow(NetFlow& flow, const Point2& from, const Point2& to) {
@@ -90,8 +90,8 @@ inline NetFlow net_flow(const Layer& layer) {
     return flow;
 }
 
-/// How many chains a section must fall into: over all cut edges, how many more triangles lead away from the
-/// edge than lead to it.
+/// Returns the number of chains of a section: the sum over all cut edges of the excess of triangles that lead
+/// away from the edge over those that lead to it.
 inline std::size_t open_ends(const std::vector<CutSegment>& section) {
     std::map<std::pair<Point3, Point3>, std::array<std::size_t, 2>> uses;
     for (const CutSegment& segment : section) {

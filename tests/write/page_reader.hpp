@@ -1,6 +1,6 @@
 #pragma once
 
-// Pages read back as a browser's scripts read them.
+// Reads pages as a browser's scripts do.
 
 #include "lamella/core/point.hpp"
 
@@ -16,10 +16,10 @@
 
 namespace lamella {
 
-/// The elements that hold data, as they stand in the page.
+/// The elements with data, as in the page.
 struct ReadPage {
     std::map<std::string, std::string> json; ///< by the element's id
-    std::vector<std::string> data;           ///< unpacked
+    std::vector<std::string> data;           ///< decompressed
     std::size_t scripts = 0;                 ///< elements of any kind that begin with <script
 };
 
@@ -62,7 +62,7 @@ inline std::string raw_inflated(std::string_view packed) {
     return bytes;
 }
 
-/// As the HTML standard cuts a page: an element ends at the first "</script".
+/// Divides a page by the HTML standard: an element ends at the first "</script".
 inline ReadPage read_page(std::string_view html) {
     ReadPage page;
     constexpr std::string_view open = "<script";
@@ -81,7 +81,7 @@ inline ReadPage read_page(std::string_view html) {
     return page;
 }
 
-/// The numbers of a piece of data.
+/// The numbers of one element of data.
 class PageNumbers {
   public:
     explicit PageNumbers(std::string_view bytes) : bytes_(bytes) {}
@@ -125,7 +125,7 @@ struct PageLayer {
     std::vector<Point2> crossings;
 };
 
-/// The layer of one piece of data, in mm.
+/// Returns the layer of one element of data, in mm.
 inline PageLayer page_layer(std::string_view bytes, std::size_t parts, double step,
                             const std::array<double, 2>& origin) {
     PageNumbers numbers(bytes);

@@ -1,6 +1,6 @@
 #pragma once
 
-// PNG files as an independent reader, libpng, has them.
+// PNG files as read by an independent reader, libpng.
 
 #include <png.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Layers that the tests of writers share.
+// Layers for tests of writers.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -14,10 +14,10 @@
 
 namespace lamella {
 
-/// In the place of the viewer that the program has.
+/// Replaces the viewer of the program.
 inline constexpr std::string_view test_viewer = "<title>before</title><!--lamella-data--><p>after</p>";
 
-/// Options with which any format can be written.
+/// Returns options with which any format can be written.
 inline LayerWriteOptions options_for_any() {
     LayerWriteOptions options;
     options.page.viewer = test_viewer;
@@ -32,7 +32,7 @@ inline void add_contour(LayerBuilder& builder, std::initializer_list<Point2> poi
     builder.add_contour(points, closed);
 }
 
-/// Two layers of 0.5 mm: a square of 10 mm with a square hole of 2 mm; 96 mm^2.
+/// Returns two layers of 0.5 mm: a square of 10 mm with a square hole of 2 mm; 96 mm^2.
 inline LayerStack square_with_hole() {
     LayerStack layers;
     for (std::uint64_t i = 0; i < 2; ++i) {
@@ -59,8 +59,8 @@ inline LayerFileInfo info_of(const LayerStack& layers) {
     return info;
 }
 
-/// Star-shaped rings of both directions, and with `chains` some open ones, in a field of `size` mm about
-/// `centre`; heights that no decimal fraction hits.
+/// Returns star-shaped rings of both directions, and with `chains` some open ones, in a field of `size` mm
+/// around `centre`; the heights are no decimal fractions.
 inline LayerStack random_layers(std::uint64_t seed, std::size_t count, double size, Point2 centre,
                                 bool chains) {
     std::mt19937_64 random(seed);

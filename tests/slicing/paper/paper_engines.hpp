@@ -16,7 +16,8 @@
 
 namespace lamella::test {
 
-/// Those that sort intersections into lists, by name; "conventional" sorts by points.
+/// Returns the engines by name. All sort intersections into lists except "conventional", which sorts by
+/// points.
 inline const std::vector<std::string>& paper_engines() {
     static const std::vector<std::string> names{"conventional", "ecc", "ecc-edge-match", "eecc"};
     return names;
@@ -26,7 +27,7 @@ inline const std::vector<std::string>& list_engines() {
     return names;
 }
 
-/// For a parameterised test: "ecc_edge_match".
+/// Returns the name of a parameterised test, such as "ecc_edge_match".
 inline std::string engine_test_name(const testing::TestParamInfo<std::string>& info) {
     std::string name = info.param;
     std::replace(name.begin(), name.end(), '-', '_');
@@ -38,7 +39,7 @@ inline LayerStack slice_with(std::string_view name, const Mesh& mesh, const Plan
     return slice(mesh, plan, {}, report, engine(name));
 }
 
-/// What the engine itself does: vertices that are equal stay apart where the mesh lists them twice.
+/// Slices with the engine alone: equal vertices stay distinct if the mesh lists them twice.
 inline LayerStack slice_as_listed(std::string_view name, const Mesh& mesh, const Plan& plan,
                                   SliceReport* report = nullptr) {
     LayerStack stack;
@@ -57,14 +58,14 @@ inline MatchingCounts counts_of(std::string_view name, const Mesh& mesh, const P
     return report.matching.value();
 }
 
-/// Whether contours meet in a point, as in Fig. 2 of the paper: there sorting by points may go astray.
+/// Returns whether contours touch in a point, as in Fig. 2 of the paper. Sorting by points may then fail.
 inline bool contours_touch(const Layer& layer) {
     std::set<Point2> points;
     return !std::all_of(layer.points.begin(), layer.points.end(),
                         [&](const Point2& p) { return points.insert(p).second; });
 }
 
-/// The same layers, bit for bit, but for those where contours touch when the engine sorts by points.
+/// Expects the same layers, bit for bit, except those in which contours touch if the engine sorts by points.
 inline void expect_same_where_it_can(std::string_view name, const LayerStack& found,
                                      const LayerStack& expected) {
     ASSERT_EQ(found.size(), expected.size());

@@ -1,6 +1,6 @@
 #pragma once
 
-// The cut graph of a mesh, for tests of what works on it.
+// The cut graph of a mesh, for tests of functions on it.
 
 #include "lamella/mesh/triangle_soup.hpp"
 
@@ -21,7 +21,7 @@ inline CutGraph<FloatEnds> graph_of(const TriangleSoup& soup, const Ranks& ranks
     return build_cut_graph(soup, ranks, executor, progress);
 }
 
-/// The nodes in use that begin on the plane, ascending.
+/// Returns the nodes in use that begin on the plane, ascending.
 inline std::vector<std::uint32_t> nodes_beginning_on(const CutGraph<FloatEnds>& graph, std::uint32_t plane) {
     std::vector<std::uint32_t> nodes;
     for (std::uint32_t id = 0; id < graph.count; ++id)
@@ -30,7 +30,7 @@ inline std::vector<std::uint32_t> nodes_beginning_on(const CutGraph<FloatEnds>& 
     return nodes;
 }
 
-/// The nodes that the plane cuts, ascending.
+/// Returns the nodes that the plane cuts, ascending.
 inline std::vector<std::uint32_t> nodes_alive_on(const CutGraph<FloatEnds>& graph, std::uint32_t plane) {
     std::vector<std::uint32_t> nodes;
     for (std::uint32_t id = 0; id < graph.count; ++id)
