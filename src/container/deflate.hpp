@@ -19,7 +19,7 @@ namespace lamella {
 /// bytes give equal chunks, whichever deflater makes them. For one thread at a time.
 class Deflater {
   public:
-    /// Uses the fast setting, because formatting a layer takes about as long as compressing it.
+    /// Uses the fast setting, so that compressing a layer is not much slower than formatting it.
     Deflater();
     ~Deflater();
     Deflater(const Deflater&) = delete;

@@ -196,7 +196,7 @@ class Parse {
     /// Feeds everything up to the last sequence of skimmed elements, except these sequences.
     void skim_through() {
         std::size_t from = 0;
-        // An unsuccessful request costs time, so each one doubles the distance to the next.
+        // An unsuccessful request costs time, so the distance to the next one doubles.
         std::size_t patience = std::size_t{1} << 16;
         while (const std::optional<std::size_t> tag = find_tag(from)) {
             std::size_t blanks = *tag;

@@ -112,7 +112,7 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
     sort_by_height(content.layers, file.warnings);
     const RawLayer& first = content.layers.front();
     // The heights of a box specify where the part begins. Some programs write the heights of the first and
-    // the last plane instead; these do not.
+    // the last plane there instead; such heights are ignored.
     const auto lies_at = [&](std::size_t corner, double z) {
         return std::abs((*header.dimension)[corner] - z) <= one_height * std::max(1.0, std::abs(z));
     };

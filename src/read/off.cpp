@@ -71,7 +71,7 @@ class OffHead : public Words {
     /// Returns whether there is another word on this line.
     [[nodiscard]] bool line_goes_on() { return skip_blanks_in_line() && *position() != '#'; }
 
-    /// Returns whether the next line without a comment contains one word. A row never does.
+    /// Returns whether the next line that is not a comment contains only one word. A row never does.
     [[nodiscard]] bool next_line_is_one_word() const {
         OffHead ahead = *this;
         ahead.skip_line();

@@ -13,7 +13,7 @@ namespace lamella {
 
 namespace {
 
-/// A package with more relationships is refused, because each takes memory.
+/// Largest number of relationships of a part; each takes memory.
 constexpr std::size_t most_relationships = std::size_t{1} << 20;
 
 constexpr std::string_view relationships_space =

@@ -67,9 +67,9 @@ struct ThreeMfElement {
 
     /// Returns the unit of a <model> in millimetres.
     [[nodiscard]] double unit_mm() const;
-    /// Returns the placement of a component or an item of the build, in the unit of the model: twelve
-    /// numbers, row by row of a matrix by which row vectors are multiplied. Without numbers it is the
-    /// identity.
+    /// Returns the placement of a component or an item of the build, in the unit of the model; the identity
+    /// if there is none. The attribute has twelve numbers, row by row of a matrix by which row vectors are
+    /// multiplied.
     [[nodiscard]] Transform transform() const;
 
     /// Returns the extensions that a <model> requires. Refuses those that readers of meshes and slices do not
