@@ -92,6 +92,23 @@ double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept
                                                 : hatch_depth(contours, hatch_of(strategy, exposure.region));
 }
 
+/// Returns how far inside of the outline of the part the lines of a contour are at most.
+double deepest_line(const Exposure& exposure, const ScanStrategy& strategy) noexcept {
+    const ContourRule& contours = contours_of(strategy, exposure.region);
+    double depth = depth_of(exposure, strategy);
+    if (exposure.contour != 0 && exposure.contour < contours.count)
+        return depth; // of 0 the number is not known
+    const auto too_thin_for = [&](const HatchRule& hatch) {
+        depth = std::max(depth, hatch_depth(contours, hatch) + surely_hatched(hatch) / 2);
+    };
+    too_thin_for(hatch_of(strategy, exposure.region));
+    if (exposure.region != ScanRegion::support)
+        for (const SkinRule* const skin : {&strategy.upskin, &strategy.downskin})
+            if (skin->layers > 0)
+                too_thin_for(skin->hatch);
+    return depth;
+}
+
 /// Findings about the contours of one number.
 struct ContourRow {
     Finding missing;
@@ -375,11 +392,15 @@ class VectorCheck {
         for (const LayerPart* const part : group.exposures) {
             const double depth =
                 options_.strategy ? depth_of(*part->exposure, *options_.strategy) - bounds.depth : 0;
-            // Lines of a contour run along the middle of walls that are too thin for it.
+            // Lines of a contour run along the middle of walls that are too thin for it, those of the
+            // innermost one also of what is too thin for a hatch.
             const bool in_walls = part->exposure->kind == VectorKind::contour;
             if (in_walls && options_.strategy)
-                find_in_thick(edges, std::max(0.0, depth) + grown + tolerance_, part->layers[plane],
-                              found.misplaced);
+                find_in_thick(
+                    edges,
+                    std::max(0.0, deepest_line(*part->exposure, *options_.strategy) - bounds.depth) + grown +
+                        tolerance_,
+                    part->layers[plane], found.misplaced);
             if (part == group.outermost && !options_.mesh)
                 continue;
             const Layer& vectors = part->layers[plane];

@@ -34,6 +34,9 @@ Layer with_head_of(const Layer& head, Layer layer) {
     return layer;
 }
 
+/// What is wider than contours reach from both sides by so much has a line in the middle.
+constexpr double more_than_reached = 1.01;
+
 /// By how much the material of a layer is to be moved, the least first.
 std::vector<double> distances_of(const ScanStrategy& strategy) {
     std::vector<double> distances;
@@ -75,7 +78,7 @@ struct ScanMemory::Insets {
             for (std::uint32_t i = 0; i < contours.count; ++i)
                 lines.push_back(i == 0 ? middle_lines(narrow[i], 2 * contours.beam_offset, contours.thinnest)
                                        : middle_lines(narrow[i], 2 * contours.distance,
-                                                      2 * contour_reach(contours) + contours.thinnest / 2));
+                                                      2 * contour_reach(contours) * more_than_reached));
         lines.resize(contours.count);
     }
 
@@ -161,6 +164,16 @@ std::vector<Stroke> strokes_of(const std::vector<Layer>& vectors, std::span<cons
     return strokes;
 }
 
+/// Lines along the middle of what is too narrow for a hatch: of those places of which its lines and the
+/// contours leave more than next to nothing bare.
+std::vector<std::vector<Point2>> lines_amid_bare(const Layer& places, std::span<const Stroke> strokes,
+                                                 const ContourRule& contours, const HatchRule& hatch) {
+    const double border = hatch_depth(contours, hatch) - contour_depth(contours, contours.count);
+    const double widest = std::max(2 * border, surely_hatched(hatch));
+    return middle_lines(bare_places(places, strokes), widest * more_than_reached,
+                        contour_reach(contours) * (more_than_reached - 1));
+}
+
 /// What of some places is of a region: of what is both, downskin counts.
 Layer in_region(const Layer& places, ScanRegion region, const Skin& downskin, const Skin& upskin) {
     const auto cut = [](const Layer& layer, const Skin& skin, bool inside) {
@@ -230,6 +243,7 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
     const std::vector<Exposure> all = exposures(strategy, {});
     std::vector<Layer> result;
     std::vector<Layer> bare(all.size()); // places that each exposure may not reach
+    std::size_t innermost = all.size();  // of the contours whose lines go where hatches leave places bare
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Exposure& exposure = all[i];
         if (exposure.kind == VectorKind::contour) {
@@ -237,13 +251,14 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
             result.push_back(followed(rings, strategy.contours, exposure.contour, strategy.seed));
             result.back().hatches = pieces_of(insets->lines[exposure.contour - 1]);
             bare[i] = insets->narrow[exposure.contour - 1];
+            if (exposure.contour == strategy.contours.count &&
+                strategy.contours.thin_walls == ThinWalls::line)
+                innermost = i;
             continue;
         }
         bool may_be_bare = false;
         result.push_back(with_head_of(layer, {}));
         result.back().hatches = hatched(exposure.region, may_be_bare);
-        if (unreached == nullptr)
-            continue;
         Layer places = insets->narrow.back();
         if (may_be_bare) {
             const HatchRule& rule = hatch_of(strategy, exposure.region);
@@ -255,16 +270,27 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
         if (places.rings > 0)
             bare[i] = in_region(places, exposure.region, downskin, upskin);
     }
-    if (unreached == nullptr)
-        return result;
-    unreached->assign(all.size(), 0);
     std::vector<Stroke> strokes;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (bare[i].rings == 0)
-            continue;
-        if (strokes.empty())
+    if (std::any_of(bare.begin(), bare.end(), [](const Layer& places) { return places.rings > 0; }))
+        strokes = strokes_of(result, all, strategy);
+    if (innermost < all.size()) {
+        std::vector<std::vector<Point2>> lines;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (all[i].kind == VectorKind::hatch && bare[i].rings > 0)
+                for (auto& line :
+                     lines_amid_bare(bare[i], strokes, strategy.contours, hatch_of(strategy, all[i].region)))
+                    lines.push_back(std::move(line));
+        if (!lines.empty()) {
+            std::vector<std::vector<Point2>> walls = insets->lines[strategy.contours.count - 1];
+            walls.insert(walls.end(), lines.begin(), lines.end());
+            result[innermost].hatches = pieces_of(walls);
             strokes = strokes_of(result, all, strategy);
-        (*unreached)[i] = unreached_area(bare[i], strokes);
+        }
+    }
+    if (unreached != nullptr) {
+        unreached->assign(all.size(), 0);
+        for (std::size_t i = 0; i < all.size(); ++i)
+            (*unreached)[i] = unreached_area(bare[i], strokes);
     }
     return result;
 }

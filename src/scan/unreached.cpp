@@ -1,8 +1,10 @@
 #include "scan/unreached.hpp"
 
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/core/unit_circle.hpp"
 #include "lamella/polygon/boolean.hpp"
+#include "lamella/polygon/nesting.hpp"
 #include "lamella/polygon/offset.hpp"
 
 #include "polygon/box2.hpp"
@@ -14,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <tuple>
 #include <vector>
@@ -148,11 +151,20 @@ struct Reached {
     }
 };
 
+double least_reach(std::span<const Stroke> strokes) noexcept {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Stroke& stroke : strokes)
+        if (stroke.reach > 0)
+            least = std::min(least, stroke.reach);
+    return least;
+}
+
+constexpr double next_to_nothing = 1.0 / 2; // of the square of a distance
+
 } // namespace
 
 Layer narrow_places(const Layer& material, const Layer& inset, double by) {
-    constexpr double next_to_nothing = 1.0 / 2; // of the square of the distance
-    constexpr double more = 1 + 1e-3;           // so that no slivers are left
+    constexpr double more = 1 + 1e-3; // so that no slivers are left
     if (!(by > 0) || material.rings == 0)
         return {};
     if (inset.rings == 0)
@@ -206,10 +218,7 @@ double unreached_area(const Layer& places, std::span<const Stroke> strokes) {
         return 0;
     const double area = measure(places).area_mm2;
     const Box2 box = box_of(places.points.span());
-    double least = std::numeric_limits<double>::infinity();
-    for (const Stroke& stroke : strokes)
-        if (stroke.reach > 0)
-            least = std::min(least, stroke.reach);
+    const double least = least_reach(strokes);
     if (!std::isfinite(least))
         return std::max(0.0, area);
     // Aslant to what walls and hatches run along, mostly.
@@ -274,6 +283,32 @@ double unreached_area(const Layer& places, std::span<const Stroke> strokes) {
         }
     }
     return all > 0 ? std::max(0.0, area) * (left / all) : 0;
+}
+
+Layer bare_places(const Layer& places, std::span<const Stroke> strokes) {
+    const double reach = least_reach(strokes);
+    const double accepted = std::isfinite(reach) ? reach * reach / 32 : 0; // many of them are not nothing
+    if (!(unreached_area(places, strokes) > accepted))
+        return {};
+    Occupied occupied(places);
+    for (std::size_t i = 0; i < places.rings; ++i)
+        occupied.add(box_of(places.contour(i)));
+    std::vector<Stroke> near;
+    std::copy_if(strokes.begin(), strokes.end(), std::back_inserter(near), [&](const Stroke& stroke) {
+        return occupied.any_within(Box2::of(stroke.from, stroke.to).grown(stroke.reach));
+    });
+    LayerBuilder bare;
+    for (const Polygon& body : polygons(nesting(places))) {
+        std::vector<std::uint32_t> rings{body.outer};
+        rings.insert(rings.end(), body.holes.begin(), body.holes.end());
+        LayerBuilder one;
+        for (const std::uint32_t ring : rings)
+            one.add_contour(places.contour(ring), true);
+        if (unreached_area(one.finish(places.index, places.z, places.bottom, places.top), near) > accepted)
+            for (const std::uint32_t ring : rings)
+                bare.add_contour(places.contour(ring), true);
+    }
+    return normal_form(bare.finish(places.index, places.z, places.bottom, places.top));
 }
 
 } // namespace lamella

@@ -39,4 +39,9 @@ void add_strokes(const Layer& vectors, double reach, std::vector<Stroke>& stroke
 /// that it comes near to.
 [[nodiscard]] double unreached_area(const Layer& places, std::span<const Stroke> strokes);
 
+/// Those of the places, each a body with its holes, of which strokes leave more bare than a 32nd of the square
+/// of the shortest reach; in normal form. Costs as `unreached_area`, and for each body a look at the strokes
+/// that come near to any.
+[[nodiscard]] Layer bare_places(const Layer& places, std::span<const Stroke> strokes);
+
 } // namespace lamella

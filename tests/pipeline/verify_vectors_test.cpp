@@ -251,15 +251,20 @@ TEST_F(VerifyVectors, FindsWhatIsWrongWithContours) {
 }
 
 TEST_F(VerifyVectors, FindsLinesOfExposuresThatHaveNone) {
-    const std::vector<Point2> line = [&] {
+    const auto line_at = [&](std::size_t i) {
         const PointArray& lines = part("core hatch").layers[4].hatches;
-        return std::vector<Point2>{lines[0], lines[1]};
-    }();
+        return std::vector<Point2>{lines[2 * i], lines[2 * i + 1]};
+    };
+    const std::vector<Point2> line = line_at(0);
+    const std::vector<Point2> amid = line_at(part("core hatch").layers[4].hatches.size() / 4);
     const std::vector<LayerPart> sound = parts_;
-    part("core contour 2").layers[4].hatches = PointArray(line);
-    EXPECT_EQ(with_all().misplaced, 1U);
-    EXPECT_EQ(with_strategy().misplaced, 1U);
-    parts_ = sound;
+    // The innermost contour has lines of what is too narrow for a hatch.
+    for (const auto& [contour, points] : {std::pair{"core contour 1", line}, {"core contour 2", amid}}) {
+        part(contour).layers[4].hatches = PointArray(points);
+        EXPECT_EQ(with_all().misplaced, 1U) << contour;
+        EXPECT_EQ(with_strategy().misplaced, 1U) << contour;
+        parts_ = sound;
+    }
     part("upskin hatch").layers[4].hatches = PointArray(line);
     EXPECT_EQ(with_all().misplaced, 0U);
     strategy_.upskin.layers = 0;
@@ -308,6 +313,10 @@ TEST_F(VerifyVectors, FindsMaterialThatNoVectorReaches) {
 TEST_F(VerifyVectors, FindsThatTheMiddleOfAWallIsNotFilled) {
     mesh_ = test::box_mesh({0, 0, 0}, {20, 0.25F, 1});
     strategy_ = {};
+    parts_ = scanned(slice(mesh_, plan_), strategy_, "wall");
+    EXPECT_TRUE(with_all().ok()) << "where the hatch has no lines there is one along the middle";
+    EXPECT_LT(with_all().unreached_mm2, 0.01);
+    strategy_.contours.thin_walls = ThinWalls::leave_out;
     parts_ = scanned(slice(mesh_, plan_), strategy_, "wall");
     const VectorVerification found = with_all();
     EXPECT_GT(found.unreached_layers, 3U);

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -130,14 +131,26 @@ TEST(Scan, ReachesAllOfWhatIsWide) {
     }
 }
 
+/// A wall with its middle at (3, -2).
+Layer wall_at(double degrees, double length, double thick, std::uint64_t index) {
+    const double angle = degrees * std::numbers::pi / 180;
+    Contour ring = rectangle(-length / 2, -thick / 2, length / 2, thick / 2);
+    for (Point2& p : ring)
+        p = {p.x * std::cos(angle) - p.y * std::sin(angle) + 3,
+             p.x * std::sin(angle) + p.y * std::cos(angle) - 2};
+    Layer wall = normal_layer({ring});
+    wall.index = index;
+    return wall;
+}
+
 // Between its contours 0.05 mm are left: some lines are too short there, and some directions have none.
 TEST(Scan, MeasuresWhatIsLeftInTheMiddleOfAWallWhereLinesDoNotFit) {
     ScanStrategy strategy;
+    strategy.contours.thin_walls = ThinWalls::leave_out;
     double least = 9;
     double most = 0;
     for (std::uint64_t index = 0; index < 12; ++index) {
-        Layer wall = normal_layer({rectangle(0, 0, 10, 0.25)});
-        wall.index = index;
+        const Layer wall = wall_at(0, 10, 0.25, index);
         const double area = unreached(wall, strategy);
         least = std::min(least, area);
         most = std::max(most, area);
@@ -147,11 +160,59 @@ TEST(Scan, MeasuresWhatIsLeftInTheMiddleOfAWallWhereLinesDoNotFit) {
     }
     EXPECT_LT(least, 0.01);
     EXPECT_NEAR(most, 0.05 * 9.8, 1e-4);
-    strategy.contours.count = 2; // no second contour fits: there is a line instead
-    Layer wall = normal_layer({rectangle(0, 0, 10, 0.25)});
-    const std::vector<Layer> vectors = scan(wall, {}, {}, strategy);
-    EXPECT_EQ(vectors[1].rings, 0U);
-    EXPECT_EQ(vectors[1].hatches.size(), 2U);
+}
+
+// Whatever the direction of the hatch in a layer: where it has no lines, one runs along the middle.
+TEST(Scan, LeavesNothingBareInWallsOfAnyThickness) {
+    constexpr double length = 10;
+    for (const std::uint32_t contours : {1U, 2U, 3U})
+        for (const HatchPattern pattern : {HatchPattern::stripes, HatchPattern::chessboard}) {
+            ScanStrategy strategy;
+            strategy.contours.count = contours;
+            strategy.hatch.pattern = pattern;
+            for (double thick = 0.2; thick < 0.2 * contours + 0.21; thick += 0.015)
+                for (const double degrees : {0.0, 17.0, 45.0, 90.0, 151.0}) {
+                    std::size_t with_lines = 0;
+                    for (std::uint64_t index = 0; index < 12; ++index) {
+                        const Layer wall = wall_at(degrees, length, thick, index);
+                        EXPECT_LT(unreached(wall, strategy), strategy.accepted_mm2)
+                            << contours << " contours, " << thick << " mm, turned by " << degrees
+                            << ", layer " << index;
+                        const std::vector<Layer> vectors = scan(wall, {}, {}, strategy);
+                        double lines = 0;
+                        for (const Layer& exposed : vectors)
+                            if (exposed.rings > 0 || exposed.hatches.size() > 0)
+                                lines += marked(exposed);
+                        with_lines += lines > 2 * length ? 1 : 0;
+                    }
+                    if (thick > 0.21 && contours == 1) {
+                        EXPECT_EQ(with_lines, 12U) << thick << " mm, turned by " << degrees;
+                    }
+                }
+        }
+}
+
+TEST(Scan, GivesALineOnlyToWallsThatItsHatchLeavesBare) {
+    ScanStrategy strategy;
+    Layer layer = normal_layer({rectangle(0, 0, 10, 10), rectangle(20, 0, 30, 0.25)});
+    for (layer.index = 0; layer.index < 12; ++layer.index) {
+        strategy.contours.thin_walls = ThinWalls::leave_out;
+        const bool bare = unreached(layer, strategy) > strategy.accepted_mm2;
+        const std::vector<Layer> before = scan(layer, {}, {}, strategy);
+        strategy.contours.thin_walls = ThinWalls::line;
+        const std::vector<Layer> vectors = scan(layer, {}, {}, strategy);
+        EXPECT_TRUE(std::equal(vectors[0].hatches.begin(), vectors[0].hatches.end(),
+                               before[0].hatches.begin(), before[0].hatches.end()))
+            << "the hatch stays as it is";
+        ASSERT_EQ(vectors[1].hatches.size(), bare ? 2U : 0U) << layer.index;
+        for (const Point2& end : vectors[1].hatches)
+            EXPECT_NEAR(end.y, 0.125, 1e-6);
+        EXPECT_LT(unreached(layer, strategy), strategy.accepted_mm2);
+    }
+    strategy.contours.count = 2; // no second contour fits: there is a line instead, whatever the hatch
+    const Layer wall = wall_at(0, 10, 0.25, 0);
+    EXPECT_EQ(scan(wall, {}, {}, strategy)[1].rings, 0U);
+    EXPECT_EQ(scan(wall, {}, {}, strategy)[1].hatches.size(), 2U);
     EXPECT_LT(unreached(wall, strategy), 1e-3);
 }
 

@@ -83,7 +83,8 @@ struct ContourRule {
     StartPoint start = StartPoint::aligned;
     double start_direction_degrees = 90; ///< of StartPoint::aligned
     /// Of walls thinner than twice the beam's offset: of those, lines are for the ones that are at least so
-    /// wide. They follow the outermost contour, as its hatches, two points each.
+    /// wide. They follow the outermost contour, as its hatches, two points each. Further contours have lines
+    /// where they do not fit, and the innermost one also where a hatch leaves narrow places bare.
     ThinWalls thin_walls = ThinWalls::line;
     double thinnest = 0.05;
     ParameterSet parameters{.name = "contour", .power_w = 120, .speed_mm_s = 500};
