@@ -17,31 +17,17 @@ namespace {
 // A signal handler takes no arguments of ours, and must not allocate memory.
 std::atomic<ProgressStyle> told_as = ProgressStyle::none;
 
-struct LastWords {
-    std::string_view for_people; ///< begins with a line break: a progress bar may be on the current line
-    std::string_view for_programs;
-};
-constexpr LastWords lost_input{
-    "\nlamella: error: a file became shorter while it was read, or its disk failed\n",
-    "{\"error\":\"a file became shorter while it was read, or its disk failed\",\"exit_code\":3}\n"};
-constexpr LastWords time_is_up{
-    "\nlamella: error: the processor time that a process may take is used up (see ulimit -t)\n",
+// Begins with a line break: a progress bar may be on the current line.
+constexpr std::string_view time_is_up =
+    "\nlamella: error: the processor time that a process may take is used up (see ulimit -t)\n";
+constexpr std::string_view time_is_up_json =
     "{\"error\":\"the processor time that a process may take is used up (see ulimit "
-    "-t)\",\"exit_code\":5}\n"};
-
-[[noreturn]] void leave_with(const LastWords& words, int exit_code) noexcept {
-    const ProgressStyle style = told_as;
-    leave_at_once(style == ProgressStyle::silent ? std::string_view()
-                  : style == ProgressStyle::json ? words.for_programs
-                                                 : words.for_people,
-                  exit_code);
-}
+    "-t)\",\"exit_code\":5}\n";
 
 extern "C" void at_crash(int number) {
-    if (number == SIGBUS)
-        leave_with(lost_input, lost_input_exit_code);
-    if (number == SIGXCPU && told_as != ProgressStyle::silent)
-        leave_with(time_is_up, limit_exit_code);
+    const ProgressStyle style = told_as;
+    if (number == SIGXCPU && style != ProgressStyle::silent)
+        leave_at_once(style == ProgressStyle::json ? time_is_up_json : time_is_up, limit_exit_code);
     remove_unfinished();
     raise(number); // the default action follows when this handler returns
 }

@@ -14,8 +14,6 @@ namespace lamella::app {
 
 /// Installs handlers for crashes. From then on:
 /// - A crash removes the temporary files of outputs before it ends the program as usual.
-/// - A lost page of an input, because the file was shortened while it was read or its disk failed, is
-///   reported as such on standard error and ends the program with the exit code of unreadable inputs.
 /// - A pipe without a reader and a file that is too large are errors of writing.
 /// - Exceeding the processor time limit ends the program with the exit code of limits; a worker, which
 ///   reports nothing, ends by that signal.
@@ -23,10 +21,7 @@ namespace lamella::app {
 /// Signals with an existing handler (such as that of a sanitizer) are left alone.
 void prepare_for_crashes() noexcept;
 
-/// Sets the style of reports of a lost page and of exceeded processor time; by default they are for people.
+/// Sets the style of the report of exceeded processor time; by default it is for people.
 void tell_crashes(ProgressStyle style) noexcept;
-
-/// Exit code of a program that lost a page of its input.
-constexpr int lost_input_exit_code = 3;
 
 } // namespace lamella::app

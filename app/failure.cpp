@@ -2,8 +2,6 @@
 
 #include "lamella/core/error.hpp"
 
-#include "crash.hpp"
-
 #include <fmt/format.h>
 #include <sys/wait.h>
 
@@ -114,10 +112,6 @@ Failure failure_of_process(int status, const std::string& path) {
         return failure(ErrorKind::limit, fmt::format("{}: stopped by --timeout while it was stuck", path));
     if (WIFEXITED(status) && WEXITSTATUS(status) == 130)
         return failure(ErrorKind::cancelled, "cancelled");
-    if (WIFEXITED(status) && WEXITSTATUS(status) == lost_input_exit_code)
-        return failure(
-            ErrorKind::input,
-            fmt::format("{}: the file became shorter while it was read, or its disk failed", path));
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
         return failure(
             ErrorKind::limit,

@@ -2,7 +2,6 @@
 
 #include "core/byte_source.hpp"
 #include "core/executor.hpp"
-#include "core/pages.hpp"
 #include "parts/shapes.hpp"
 #include "slicing/ranks.hpp"
 #include "slicing/sweep/cut_graph.hpp"
@@ -13,7 +12,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <numeric>
 #include <string>
 #include <vector>
 
@@ -40,27 +38,19 @@ Execution on(const benchmark::State& state) {
     return {.threads = static_cast<unsigned>(state.range(0))};
 }
 
-/// Reads the bytes of an STL file where they are mapped, or copies them into memory first, as meshes are
-/// read. The pages are in the system's cache.
-void read_file(benchmark::State& state, bool copied) {
+/// Copies the bytes of an STL file into memory, as text formats are read. The pages are in the system's
+/// cache.
+void read_file(benchmark::State& state) {
     const std::string path = std::filesystem::temp_directory_path() / "lamella-kernels.stl";
     write_stl(path, torus());
-    const auto sum = [](std::span<const std::byte> bytes) {
-        const auto* const words = reinterpret_cast<const std::uint64_t*>(bytes.data());
-        return std::accumulate(words, words + bytes.size() / sizeof *words, std::uint64_t{0});
-    };
     for ([[maybe_unused]] const auto _ : state) {
-        const ByteSource source = open_bytes(path);
-        const PageArray<std::byte> memory(copied ? source.bytes.size() : 0);
-        if (copied)
-            copy_out(source, 0, memory.span());
-        benchmark::DoNotOptimize(sum(copied ? memory.span() : source.bytes));
+        const ByteSource source = open_bytes(path, on(state));
+        benchmark::DoNotOptimize(source.bytes.data());
     }
     state.SetBytesProcessed(state.iterations() * static_cast<std::int64_t>(std::filesystem::file_size(path)));
     std::filesystem::remove(path);
 }
-BENCHMARK_CAPTURE(read_file, copied, true)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(read_file, mapped, false)->Unit(benchmark::kMillisecond);
+BENCHMARK(read_file)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void rank(benchmark::State& state) {
     const Ranks ranks(planes_of(torus(), static_cast<double>(state.range(0))));

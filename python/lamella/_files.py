@@ -145,8 +145,9 @@ def read(
     threads: number of threads; 0 is one for each processor.
     progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
-    Returns a Mesh or a Stack. A binary STL file that would take more than a quarter of `max_memory` is not copied but
-    mapped: while its Mesh exists, the file may be replaced or deleted, but must not be modified or truncated.
+    Returns a Mesh or a Stack. The file is copied before it is parsed and may change afterwards; if it becomes shorter
+    while it is copied, that is an InputError. The copy of a file larger than a quarter of `max_memory` is on disk, in
+    $TMPDIR or /var/tmp, without a name.
 
     Raises InputError that names the file, the location in it, the invalid content and the expected one, and
     UsageError if `unit_mm` is given for a slice file.

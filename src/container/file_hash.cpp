@@ -3,13 +3,17 @@
 #include "lamella/core/error.hpp"
 
 #include "core/byte_source.hpp"
+#include "core/memory_size.hpp"
+#include "core/pages.hpp"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <memory>
 #include <new>
+#include <span>
 
 namespace lamella {
 
@@ -26,16 +30,17 @@ std::uint64_t file_hash(const std::string& path, const Execution& execution) {
     if (!state)
         throw std::bad_alloc();
     XXH3_64bits_reset(state.get());
-    const ByteSource source = open_bytes(path, execution);
-    constexpr std::size_t at_once = std::size_t{1} << 22;
-    for (std::size_t at = 0; at < source.bytes.size(); at += at_once) {
+    const ByteSource source = open_bytes(path, execution, memory_of_file(0),
+                                         [](std::span<const std::byte>, std::uint64_t) { return true; });
+    constexpr std::uint64_t at_once = std::uint64_t{1} << 20;
+    const PageArray<std::byte> window(std::min(at_once, source.size()));
+    for (std::uint64_t at = 0; at < source.size(); at += at_once) {
         if (execution.cancelled())
             throw Error(ErrorKind::cancelled, "cancelled");
-        const auto piece = source.bytes.subspan(at, std::min(at_once, source.bytes.size() - at));
-        XXH3_64bits_update(state.get(), piece.data(), piece.size());
-        release(source, piece);
+        const std::span<std::byte> chunk = window.span().first(std::min(at_once, source.size() - at));
+        copy_out(source, at, chunk);
+        XXH3_64bits_update(state.get(), chunk.data(), chunk.size());
     }
-    check_length(source);
     return XXH3_64bits_digest(state.get());
 }
 

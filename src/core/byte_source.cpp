@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/executor.hpp"
 #include "core/growing_memory.hpp"
 #include "core/pages.hpp"
 #include "core/spill_file.hpp"
@@ -12,12 +13,16 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
+#include <memory>
+#include <new>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 namespace lamella {
 
@@ -44,88 +49,86 @@ namespace {
     }
 }
 
-[[noreturn]] void fail_cut_off(const ByteSource& source, std::uint64_t end) {
-    fail(source.name, "was cut off while it was read: it had " + std::to_string(source.bytes.size()) +
-                          " bytes, and ends after " + std::to_string(end) + " now");
-}
+} // namespace
 
-/// A file descriptor that is closed at the end, but for one that was lent (standard input).
-class Descriptor {
+/// A regular file, and how many bytes it had when it was opened. It is closed at the end.
+class OpenFile {
   public:
-    Descriptor(int number, bool owned) : number_(number), owned_(owned) {}
-    ~Descriptor() {
-        if (owned_)
-            close(number_);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
+    explicit OpenFile(int descriptor) : descriptor_(descriptor) {}
+    ~OpenFile() { close(descriptor_); }
+    OpenFile(const OpenFile&) = delete;
+    OpenFile& operator=(const OpenFile&) = delete;
 
-    [[nodiscard]] int number() const noexcept { return number_; }
+    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
+    /// False if the process has so many open files that others will need the rest.
+    [[nodiscard]] bool may_stay_open() const noexcept { return descriptor_ < sysconf(_SC_OPEN_MAX) / 2; }
+
+    std::uint64_t size = 0;
 
   private:
-    int number_;
-    bool owned_;
+    int descriptor_;
 };
 
-/// Memory that the system mapped, and the file that it comes from, if that is kept open.
+std::uint64_t ByteSource::size() const noexcept {
+    return file ? file->size : bytes.size();
+}
+
+namespace {
+
+/// Memory that the system mapped.
 class Mapping {
   public:
-    Mapping(void* data, std::size_t bytes, int descriptor)
-        : data_(data), bytes_(bytes), descriptor_(descriptor) {}
-    ~Mapping() {
-        munmap(data_, bytes_);
-        if (descriptor_ >= 0)
-            close(descriptor_);
-    }
+    Mapping(void* data, std::size_t bytes) : data_(data), bytes_(bytes) {}
+    ~Mapping() { munmap(data_, bytes_); }
     Mapping(const Mapping&) = delete;
     Mapping& operator=(const Mapping&) = delete;
-
-    [[nodiscard]] std::byte* data() const noexcept { return static_cast<std::byte*>(data_); }
-    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
 
   private:
     void* data_;
     std::size_t bytes_;
-    int descriptor_;
 };
 
-/// Another descriptor of the same file; -1 where so many are in use that others will need the rest.
-int keep_open(int descriptor) {
-    const int kept = fcntl(descriptor, F_DUPFD_CLOEXEC, 0);
-    if (kept < 0 || kept < sysconf(_SC_OPEN_MAX) / 2)
-        return kept;
-    close(kept);
-    return -1;
-}
-
-std::shared_ptr<Mapping> map_file(int descriptor, std::size_t bytes) {
-    void* data = mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, descriptor, 0);
+/// The file has no name: nobody else can shorten it.
+ByteSource map_spilled(std::string name, const SpillFile& file, std::size_t bytes) {
+    void* const data = mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
     if (data == MAP_FAILED)
-        return nullptr;
-    // Readers go through a file from front to back; on a cold disk this doubles the window of read-ahead.
-    madvise(data, bytes, MADV_SEQUENTIAL);
-    posix_fadvise(descriptor, 0, 0, POSIX_FADV_SEQUENTIAL);
-    return std::make_shared<Mapping>(data, bytes, keep_open(descriptor));
+        throw std::bad_alloc();
+    const auto mapping = std::make_shared<Mapping>(data, bytes);
+    madvise(data, bytes, MADV_SEQUENTIAL); // readers go from front to back
+    return {std::move(name), {static_cast<const std::byte*>(data), bytes}, mapping, true};
 }
 
-ByteSource mapped_bytes(std::string name, const std::shared_ptr<Mapping>& mapping, std::size_t bytes) {
-    return {std::move(name), {mapping->data(), bytes}, mapping, true, mapping->descriptor()};
+[[noreturn]] void fail_cut_off(const ByteSource& source, std::uint64_t offset) {
+    struct stat status {};
+    std::uint64_t end = offset;
+    if (fstat(source.file->descriptor(), &status) == 0)
+        end = std::min(end, static_cast<std::uint64_t>(status.st_size));
+    fail(source.name, "was cut off while it was read: it had " + std::to_string(source.size()) +
+                          " bytes, and ends after " + std::to_string(end) + " now");
 }
 
-/// A small regular file, to its end as it is now: some files of the system have fewer bytes than they say.
-ByteSource read_whole(int descriptor, std::string name, std::size_t most) {
-    const auto memory = std::make_shared<Pages>(most);
-    auto* const data = static_cast<std::byte*>(memory->data());
-    std::size_t bytes = 0;
-    while (bytes < most) {
-        const ssize_t got = pread(descriptor, data + bytes, most - bytes, static_cast<off_t>(bytes));
+/// Reads until `to` is full or the file ends. How many bytes there were.
+std::size_t read_at(int descriptor, std::uint64_t offset, std::span<std::byte> to, const std::string& name) {
+    std::size_t done = 0;
+    while (done < to.size()) {
+        const ssize_t got =
+            pread(descriptor, to.data() + done, to.size() - done, static_cast<off_t>(offset + done));
         if (got == 0)
             break;
         if (got > 0)
-            bytes += static_cast<std::size_t>(got);
+            done += static_cast<std::size_t>(got);
         else if (errno != EINTR)
             fail_with_errno(name, errno);
     }
+    return done;
+}
+
+/// The first bytes of a regular file, `most` of them if it has as many: some files of the system have fewer
+/// bytes than they say.
+ByteSource read_beginning(int descriptor, std::string name, std::size_t most) {
+    const auto memory = std::make_shared<Pages>(most);
+    auto* const data = static_cast<std::byte*>(memory->data());
+    const std::size_t bytes = read_at(descriptor, 0, {data, most}, name);
     if (bytes == 0)
         fail(name, "is empty, expected a file with content");
     return {std::move(name), {data, bytes}, memory};
@@ -169,10 +172,7 @@ ByteSource spool(int descriptor, std::string name, std::span<const std::byte> be
         file.write(size, room.first(got));
         size += got;
     }
-    const auto mapping = map_file(file.descriptor(), size);
-    if (!mapping)
-        fail_with_errno(name, errno);
-    return mapped_bytes(std::move(name), mapping, size);
+    return map_spilled(std::move(name), file, size);
 }
 
 ByteSource read_to_end(int descriptor, std::string name, std::uint64_t most_in_memory,
@@ -189,73 +189,90 @@ ByteSource read_to_end(int descriptor, std::string name, std::uint64_t most_in_m
     return {std::move(name), memory->bytes(), memory};
 }
 
-ByteSource take(const Descriptor& descriptor, std::string name, std::uint64_t most_in_memory,
-                const Execution& execution) {
-    const int flags = fcntl(descriptor.number(), F_GETFL);
+ByteSource take(std::shared_ptr<OpenFile> file, std::string name, std::uint64_t most_in_memory,
+                WindowTest* in_windows, const Execution& execution) {
+    const int descriptor = file->descriptor();
+    const int flags = fcntl(descriptor, F_GETFL);
     if (flags < 0 || (flags & O_PATH) != 0 || (flags & O_ACCMODE) == O_WRONLY)
         fail_with_errno(name, EBADF);
     struct stat status {};
-    if (fstat(descriptor.number(), &status) != 0)
+    if (fstat(descriptor, &status) != 0)
         fail_with_errno(name, errno);
     if (S_ISDIR(status.st_mode))
         fail_with_errno(name, EISDIR);
     // Devices may have no end; a terminal has one when its user says so.
-    if (S_ISBLK(status.st_mode) || (S_ISCHR(status.st_mode) && isatty(descriptor.number()) == 0))
+    if (S_ISBLK(status.st_mode) || (S_ISCHR(status.st_mode) && isatty(descriptor) == 0))
         fail(name, "is a device, expected a file or a pipe");
     // Some files of the system claim to have no bytes, and standard input may be half read: those are read.
-    if (S_ISREG(status.st_mode) && status.st_size > 0 && lseek(descriptor.number(), 0, SEEK_CUR) == 0) {
-        const auto size = static_cast<std::size_t>(status.st_size);
-        // To map and unmap a small file costs more than to read it: see the batch of bench/small_parts.
-        constexpr std::size_t worth_mapping = std::size_t{1} << 16;
-        if (size < worth_mapping)
-            return read_whole(descriptor.number(), std::move(name), size);
-        if (const auto mapping = map_file(descriptor.number(), size))
-            return mapped_bytes(std::move(name), mapping, size);
-    }
-    return read_to_end(descriptor.number(), std::move(name), most_in_memory, execution);
+    if (!S_ISREG(status.st_mode) || status.st_size <= 0 || lseek(descriptor, 0, SEEK_CUR) != 0)
+        return read_to_end(descriptor, std::move(name), most_in_memory, execution);
+    file->size = static_cast<std::uint64_t>(status.st_size);
+    ByteSource source =
+        read_beginning(descriptor, std::move(name), std::min<std::uint64_t>(file->size, window_beginning));
+    if (file->size < window_beginning && file->size <= most_in_memory)
+        return source;
+    posix_fadvise(descriptor, 0, 0, POSIX_FADV_SEQUENTIAL); // reads twice as much ahead from a cold disk
+    const std::size_t expected = std::min<std::uint64_t>(file->size, window_beginning);
+    source.file = std::move(file);
+    if (source.bytes.size() < expected)
+        fail_cut_off(source, source.bytes.size());
+    if (in_windows != nullptr && source.file->may_stay_open() && in_windows(source.bytes, source.size()))
+        return source;
+    return whole(source, execution, most_in_memory);
 }
 
 } // namespace
 
-ByteSource open_bytes(const std::string& path, const Execution& execution, std::uint64_t most_in_memory) {
-    if (path == "-")
-        return take(Descriptor(STDIN_FILENO, false), "standard input", most_in_memory, execution);
+ByteSource open_bytes(const std::string& path, const Execution& execution, std::uint64_t most_in_memory,
+                      WindowTest* in_windows) {
+    const bool standard_input = path == "-";
+    std::string name = standard_input ? "standard input" : path;
     // Not blocking: a pipe that nobody writes to yet must not hold up a request to stop.
-    const int number = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (number < 0)
-        fail_with_errno(path, errno);
-    return take(Descriptor(number, true), path, most_in_memory, execution);
+    const int descriptor = standard_input ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+                                          : open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor < 0)
+        fail_with_errno(name, errno);
+    return take(std::make_shared<OpenFile>(descriptor), std::move(name), most_in_memory, in_windows,
+                execution);
 }
 
-void copy_out(const ByteSource& source, std::uint64_t place, std::span<std::byte> to) {
-    assert(place <= source.bytes.size() && to.size() <= source.bytes.size() - place);
-    if (source.descriptor < 0) {
+ByteSource whole(const ByteSource& source, const Execution& execution, std::uint64_t most_in_memory) {
+    if (!source.file)
+        return source;
+    constexpr std::uint64_t window = std::uint64_t{1} << 20;
+    Executor executor(execution);
+    if (source.size() <= most_in_memory) {
+        const auto memory = std::make_shared<PageArray<std::byte>>(source.size());
+        executor.for_chunks(source.size(), window, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+            copy_out(source, begin, memory->span().subspan(begin, end - begin));
+        });
+        return {source.name, memory->span(), memory};
+    }
+    SpillFile file(source.size());
+    std::vector<PageArray<std::byte>> windows(executor.workers());
+    executor.for_chunks(source.size(), window, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+        if (windows[worker].size() == 0)
+            windows[worker] = PageArray<std::byte>(window);
+        const std::span<std::byte> bytes = windows[worker].span().first(end - begin);
+        copy_out(source, begin, bytes);
+        file.write(begin, bytes);
+    });
+    return map_spilled(source.name, file, source.size());
+}
+
+void copy_out(const ByteSource& source, std::uint64_t offset, std::span<std::byte> to) {
+    assert(offset <= source.size() && to.size() <= source.size() - offset);
+    if (!source.file) {
         if (!to.empty())
-            std::memcpy(to.data(), source.bytes.data() + place, to.size());
+            std::memcpy(to.data(), source.bytes.data() + offset, to.size());
         return;
     }
-    while (!to.empty()) {
-        const ssize_t got = pread(source.descriptor, to.data(), to.size(), static_cast<off_t>(place));
-        if (got < 0 && errno != EINTR)
-            fail_with_errno(source.name, errno);
-        if (got == 0)
-            fail_cut_off(source, place);
-        if (got > 0) {
-            place += static_cast<std::uint64_t>(got);
-            to = to.subspan(static_cast<std::size_t>(got));
-        }
-    }
-}
-
-void check_length(const ByteSource& source) {
-    struct stat status {};
-    if (source.mapped && source.descriptor >= 0 && fstat(source.descriptor, &status) == 0 &&
-        static_cast<std::uint64_t>(status.st_size) < source.bytes.size())
-        fail_cut_off(source, static_cast<std::uint64_t>(status.st_size));
+    if (const std::size_t got = read_at(source.file->descriptor(), offset, to, source.name); got < to.size())
+        fail_cut_off(source, offset + got);
 }
 
 void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept {
-    if (!source.mapped)
+    if (!source.on_disk)
         return;
     // The first and the last page may be in use by others: then those bring them back.
     static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));

@@ -16,5 +16,9 @@ namespace lamella {
 [[nodiscard]] inline std::uint64_t memory_limit(std::uint64_t wished) {
     return wished != 0 ? wished : usual_memory();
 }
+/// How much of that a file may take while it is read; a longer one is read through a temporary file.
+[[nodiscard]] inline std::uint64_t memory_of_file(std::uint64_t wished) {
+    return memory_limit(wished) / 4;
+}
 
 } // namespace lamella

@@ -148,12 +148,14 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
                     "standard input reaches one of the processes only; give the name of a file");
     const unsigned threads = thread_count(execution);
     std::vector<MeshInput> inputs;
+    std::uint64_t room = memory_.of_input(threads); // for all texts together: they wait to be read
     std::uint64_t bytes = 0;
     std::string not_streamed;
     bool divisible = true;
     in_agreement(processes, [&] {
         for (const PlateInput& input : job.inputs) {
-            const MeshInput& file = inputs.emplace_back(input.path, memory_.of_input(threads), execution);
+            const MeshInput& file = inputs.emplace_back(input.path, room, execution);
+            room -= std::min(room, file.bytes_in_memory());
             const bool placed = input.placement != Transform{} || input.unit_mm.value_or(1) != 1;
             if (file.can_stream())
                 bytes += memory_.of_whole(file, placed, threads);
@@ -277,9 +279,6 @@ std::uint64_t Feed::bytes_of(const File& file, const std::optional<RecordRange>&
 MeshFile Feed::stream(const File& file, const TriangleSink& sink, const Execution& execution,
                       const std::optional<RecordRange>& part) {
     const Stopwatch reading;
-    // A pass over a file that has become another one would read what is not there.
-    if (file.input.records() != file.records)
-        throw changed_while_read(file.input.path());
     Execution counted = execution;
     if (execution.progress)
         counted.progress = [&](const Progress& progress) {
@@ -478,10 +477,12 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
         .points_in_flight = memory_.points_in_flight(threads)};
     if (plate_.parts.size() > 1 || neighbours_) // then all layers of a share are held
         slab.points_in_flight = ~std::uint64_t{0};
-    const std::uint64_t overhead =
+    std::uint64_t overhead =
         JobMemory::overhead(threads, plan.layers.size(), plate_.shapes.size(), measure_volume_) +
         memory_.of_messages(processes_.size()) +
         most_points(survey, neighbours_.value_or(0)) * sizeof(Point2);
+    for (const File& file : files_)
+        overhead += file.input.bytes_in_memory();
     std::uint64_t largest = 0;
     std::uint32_t where = 0;
     for (std::uint32_t p = 0; p < survey.planes(); ++p)

@@ -11,6 +11,7 @@
 #include "contour/same_height.hpp"
 #include "core/atomic_file.hpp"
 #include "core/byte_source.hpp"
+#include "core/memory_size.hpp"
 #include "write/layer_writers.hpp"
 
 #include <fmt/format.h>
@@ -218,8 +219,12 @@ std::size_t end_of_first_layer(std::string_view text, std::size_t begin, const s
 CommonLayerFile take_apart(const ShardFile& shard, const LayerReadOptions& reading,
                            const Execution& execution) {
     const std::string& path = shard.path;
-    CommonLayerFile file{
-        unpacked(open_bytes(path, execution), reading.max_memory, execution), {}, {}, {}, {}};
+    CommonLayerFile file{unpacked(open_bytes(path, execution, memory_of_file(reading.max_memory)),
+                                  reading.max_memory, execution),
+                         {},
+                         {},
+                         {},
+                         {}};
     const std::string_view text = file.source.text();
     // The number of layers ends the header. In a header with comments, a line that looks like a key need not
     // be one; and files of other programs may have data of their own.
@@ -296,7 +301,6 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
             check_bytes(output, out.bytes(), options.most_bytes);
             release(file.source, std::as_bytes(std::span(piece)));
         }
-        check_length(file.source);
         if (i + 1 == shards.size())
             out.append(file.tail);
     }

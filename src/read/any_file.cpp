@@ -17,7 +17,8 @@ std::variant<MeshFile, LayerFile> read_opened(const ByteSource& opened, const st
     const MeshFormatRow* const format = recognised_format(source, options);
     if ((format != nullptr && format->read_layers != nullptr) || is_zip(source.text())) {
         try {
-            return read_unpacked_layers(source, {.max_memory = options.max_memory}, execution);
+            return read_unpacked_layers(whole(source, execution, memory_of_file(options.max_memory)),
+                                        {.max_memory = options.max_memory}, execution);
         } catch (const NoLayers&) {
             // Then it is a package of meshes. One whose layers are damaged is not: its meshes may be
             // stand-ins.
@@ -32,7 +33,7 @@ std::variant<MeshFile, LayerFile> read_opened(const ByteSource& opened, const st
 
 std::variant<MeshFile, LayerFile> read_any(const std::string& path, const MeshReadOptions& options,
                                            const Execution& execution) {
-    return read_opened(open_bytes(path, execution, memory_limit(options.max_memory)), path, options,
+    return read_opened(open_mesh(path, execution, memory_of_file(options.max_memory)), path, options,
                        execution);
 }
 

@@ -6,6 +6,7 @@
 #include "container/text_place.hpp"
 #include "container/zip_reader.hpp"
 #include "core/byte_source.hpp"
+#include "core/memory_size.hpp"
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/read_limits.hpp"
@@ -62,9 +63,7 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
 LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions& options,
                                const Execution& execution) {
     ReadLimits limits(source, options);
-    LayerFile file = read_source(source, options, limits, execution);
-    check_length(source);
-    return file;
+    return read_source(source, options, limits, execution);
 }
 
 LayerStack LayerFile::merged() const {
@@ -89,7 +88,7 @@ LayerStack LayerFile::merged() const {
 }
 
 LayerFile read_layers(const std::string& path, const LayerReadOptions& options, const Execution& execution) {
-    const ByteSource opened = open_bytes(path, execution, memory_limit(options.max_memory));
+    const ByteSource opened = open_bytes(path, execution, memory_of_file(options.max_memory));
     return read_unpacked_layers(unpacked(opened, options.max_memory, execution), options, execution);
 }
 

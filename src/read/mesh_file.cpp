@@ -25,18 +25,29 @@ Mesh MeshFile::mesh(const Execution& execution) const {
     return joined(all, execution);
 }
 
+ByteSource open_mesh(const std::string& path, const Execution& execution, std::uint64_t most_in_memory) {
+    const auto in_windows = [](std::span<const std::byte> beginning, std::uint64_t size) {
+        const ByteSource source{"", beginning, nullptr};
+        return is_likely_stl_binary(beginning, size) && !is_gzip(beginning) && !is_zip(source.text()) &&
+               (recognised_format(source, {}) == nullptr || is_stl(source));
+    };
+    return open_bytes(path, execution, most_in_memory, in_windows);
+}
+
 MeshFile read_unpacked_mesh(const ByteSource& source, const MeshReadOptions& options,
                             const Execution& execution) {
     const MeshFormatRow& format = mesh_format_of(source, options);
-    MeshFile file = format.read(source, options, execution);
-    check_length(source);
+    // Readers of other formats need the whole file.
+    MeshFile file = format.read(
+        format.stream != nullptr ? source : whole(source, execution, memory_of_file(options.max_memory)),
+        options, execution);
     if (file.format.empty()) // STL sets which of its two forms the file has
         file.format = format.extension;
     return file;
 }
 
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options, const Execution& execution) {
-    const ByteSource opened = open_bytes(path, execution, memory_limit(options.max_memory));
+    const ByteSource opened = open_mesh(path, execution, memory_of_file(options.max_memory));
     MeshFile file = read_unpacked_mesh(unpacked(opened, options.max_memory, execution), options, execution);
     file.path = path;
     return file;
@@ -50,11 +61,17 @@ MeshFile read_mesh(std::span<const std::byte> bytes, const std::string& name, co
     return file;
 }
 
-MeshInput::MeshInput(const std::string& path, std::uint64_t most_in_memory, const Execution& execution)
-    : path_(path), source_(std::make_shared<const ByteSource>(open_bytes(path, execution, most_in_memory))) {}
+MeshInput::MeshInput(const std::string& path, std::optional<std::uint64_t> most_in_memory,
+                     const Execution& execution)
+    : path_(path), source_(std::make_shared<const ByteSource>(
+                       open_mesh(path, execution, most_in_memory.value_or(memory_of_file(0))))) {}
 
 std::uint64_t MeshInput::bytes() const noexcept {
-    return source_->bytes.size();
+    return source_->size();
+}
+
+std::uint64_t MeshInput::bytes_in_memory() const noexcept {
+    return source_->bytes_in_memory();
 }
 
 bool MeshInput::can_stream() const {
@@ -79,7 +96,6 @@ MeshFile MeshInput::stream(const TriangleSink& sink, const MeshReadOptions& opti
             ErrorKind::usage,
             fmt::format("{}: only STL files that are not packed can be read batch by batch", source_->name));
     MeshFile file = mesh_format_of(*source_, options).stream(*source_, sink, options, execution, share);
-    check_length(*source_);
     file.path = path_;
     return file;
 }

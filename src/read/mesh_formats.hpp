@@ -11,6 +11,7 @@
 #include "core/byte_source.hpp"
 #include "read/mesh_readers.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -52,6 +53,10 @@ struct MeshFormatRow {
 /// The format to read a file with: that of its content, where that tells, else that of its name. Throws
 /// Error{input} for what is no mesh file, with advice.
 [[nodiscard]] const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOptions& options);
+
+/// Opens a file that may hold a mesh (core/byte_source): binary STL is read in windows.
+[[nodiscard]] ByteSource open_mesh(const std::string& path, const Execution& execution,
+                                   std::uint64_t most_in_memory);
 
 /// Reads what has been opened, and unpacked where gzip had packed it: the contract of read_mesh, but for
 /// MeshFile::path.

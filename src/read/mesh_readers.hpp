@@ -9,6 +9,7 @@
 
 #include "core/byte_source.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -20,6 +21,9 @@ using ReadMesh = MeshFile(const ByteSource& source, const MeshReadOptions& optio
 
 /// STL beyond doubt: rules 1 and 2 of read_stl.
 [[nodiscard]] bool is_stl(const ByteSource& source);
+/// Whether a file of `size` bytes that begins like this is a binary STL file, unless it is of a format that
+/// has a signature. It can be read in windows.
+[[nodiscard]] bool is_likely_stl_binary(std::span<const std::byte> beginning, std::uint64_t size);
 /// STL of either form. The content decides, because many binary files begin with "solid" as the ASCII form
 /// does:
 ///   1. a size of exactly 84 + 50 * count bytes: binary;

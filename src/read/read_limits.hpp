@@ -41,7 +41,7 @@ inline constexpr std::uint64_t node_bytes = 80;
 /// which names the place up to which was counted, where that is given.
 class ReadLimits {
   public:
-    /// What is in memory of the file counts from the start, such as all of one that was packed.
+    /// What is in memory of the file counts from the start.
     ReadLimits(const ByteSource& source, const MeshReadOptions& options)
         : ReadLimits(source, options.max_triangles, options.max_memory) {}
     ReadLimits(const ByteSource& source, const LayerReadOptions& options)
@@ -92,8 +92,7 @@ class ReadLimits {
     ReadLimits(const ByteSource& source, std::uint64_t max_triangles, std::uint64_t max_memory)
         : file_name_(source.name), max_triangles_(max_triangles), asked_(max_memory != 0),
           max_memory_(asked_ ? max_memory : usual_memory()) {
-        if (!source.mapped)
-            add_bytes(source.bytes.size());
+        add_bytes(source.bytes_in_memory());
     }
 
     [[noreturn]] void refuse_bytes(std::string_view place) const {

@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
+#include "core/memory_size.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/stl_ascii.hpp"
 #include "read/stl_binary.hpp"
@@ -15,6 +16,7 @@
 #include <cstdint>
 #include <cstring>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace lamella {
@@ -31,10 +33,9 @@ bool looks_like_text(std::string_view text) {
     });
 }
 
-bool has_stl_size(const ByteSource& source) {
-    const std::uint64_t size = source.bytes.size();
+bool has_stl_size(std::span<const std::byte> beginning, std::uint64_t size) {
     return size >= stl_head_bytes &&
-           size == stl_head_bytes + std::uint64_t{stl_record_bytes} * stl_declared_count(source.bytes);
+           size == stl_head_bytes + std::uint64_t{stl_record_bytes} * stl_declared_count(beginning);
 }
 
 /// Whether most corners could be those of a part. Of bytes that mean something else, such as packed ones,
@@ -42,6 +43,7 @@ bool has_stl_size(const ByteSource& source) {
 bool has_likely_corners(std::span<const std::byte> bytes) {
     constexpr std::size_t enough = 1000;      // triangles
     constexpr std::size_t corners_begin = 12; // behind the normal
+    static_assert(stl_head_bytes + enough * stl_record_bytes <= window_beginning);
     const std::size_t count = std::min((bytes.size() - stl_head_bytes) / stl_record_bytes, enough);
     std::size_t likely = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -68,16 +70,19 @@ bool is_likely(std::span<const std::byte> record) {
 
 /// Whether the first records make sense and most of the others do not: then bytes were lost or added between.
 /// Or the last ones do so only as they lie from the end of the file back.
-bool is_shifted(std::span<const std::byte> bytes) {
+bool is_shifted(const ByteSource& source) {
     constexpr std::size_t few = 5; // where bytes are lost or added every now and then
     constexpr std::size_t enough = 1000;
-    const std::size_t stored = (bytes.size() - stl_head_bytes) / stl_record_bytes;
-    const std::uint32_t declared = stl_declared_count(bytes);
+    const std::size_t stored = (source.size() - stl_head_bytes) / stl_record_bytes;
+    const std::uint32_t declared = stl_declared_count(source.bytes);
     const std::size_t records = declared == 0 ? stored : std::min<std::size_t>(stored, declared);
     const auto likely = [&](std::size_t count, const auto& offset_of) {
         std::size_t found = 0;
-        for (std::size_t i = 0; i < count; ++i)
-            found += is_likely(bytes.subspan(offset_of(i), stl_record_bytes)) ? 1 : 0;
+        std::array<std::byte, stl_record_bytes> bytes{};
+        for (std::size_t i = 0; i < count; ++i) {
+            copy_out(source, offset_of(i), bytes);
+            found += is_likely(bytes) ? 1 : 0;
+        }
         return found;
     };
     const auto record = [&](std::size_t i) {
@@ -90,7 +95,7 @@ bool is_shifted(std::span<const std::byte> bytes) {
     if (2 * likely(sample, [&](std::size_t i) { return record(i * records / sample); }) < sample)
         return true;
     const auto from_end = [&](std::size_t i) {
-        return bytes.size() - (i + 1) * stl_record_bytes;
+        return source.size() - (i + 1) * stl_record_bytes;
     };
     return likely(ends, from_end) == ends &&
            2 * likely(ends, [&](std::size_t i) { return record(records - 1 - i); }) < ends;
@@ -100,10 +105,11 @@ bool is_shifted(std::span<const std::byte> bytes) {
 std::string_view text_mode_damage(const ByteSource& source) {
     constexpr std::size_t enough = std::size_t{1} << 20;
     constexpr std::size_t many = 4; // bytes that are as they are by chance once in 256 times
-    const std::string_view text = source.text().substr(0, enough);
+    std::string text(std::min<std::uint64_t>(source.size(), enough), '\0');
+    copy_out(source, 0, std::as_writable_bytes(std::span(text)));
     std::size_t line_feeds = 0;
     std::size_t without_return = 0;
-    for (std::size_t at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1)) {
+    for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) {
         ++line_feeds;
         without_return += at == 0 || text[at - 1] != '\r' ? 1 : 0;
     }
@@ -114,7 +120,7 @@ std::string_view text_mode_damage(const ByteSource& source) {
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto byte = static_cast<unsigned char>(text[i]);
         high += byte >= 0x80 ? 1 : 0;
-        if (text.substr(i, 3) == "\xEF\xBF\xBD")
+        if (text.compare(i, 3, "\xEF\xBF\xBD") == 0)
             replaced += 3;
         else if ((byte == 0xC2 || byte == 0xC3) && i + 1 < text.size() &&
                  (static_cast<unsigned char>(text[i + 1]) & 0xC0U) == 0x80U)
@@ -122,16 +128,16 @@ std::string_view text_mode_damage(const ByteSource& source) {
     }
     if (high >= many && 10 * replaced >= 9 * high)
         return "bytes from 0x80 on were taken for characters and encoded anew";
-    if (is_shifted(source.bytes))
+    if (is_shifted(source))
         return "bytes were added or lost in it";
     return {};
 }
 
 /// Whether it is of the binary form, else of the ASCII one. Throws Error{input} when it is neither.
 bool is_binary(const ByteSource& source) {
-    const std::uint64_t size = source.bytes.size();
+    const std::uint64_t size = source.size();
     const std::string_view text = source.text();
-    if (has_stl_size(source))
+    if (has_stl_size(source.bytes, size))
         return true;
     if (is_stl_ascii(text))
         return false;
@@ -168,19 +174,27 @@ bool is_binary(const ByteSource& source) {
 
 } // namespace
 
+bool is_likely_stl_binary(std::span<const std::byte> beginning, std::uint64_t size) {
+    if (has_stl_size(beginning, size))
+        return true;
+    const std::string_view text(reinterpret_cast<const char*>(beginning.data()), beginning.size());
+    return size >= stl_head_bytes && !looks_like_text(text) && has_likely_corners(beginning);
+}
+
 bool is_stl(const ByteSource& source) {
-    return has_stl_size(source) || is_stl_ascii(source.text());
+    return has_stl_size(source.bytes, source.size()) || is_stl_ascii(source.text());
 }
 
 MeshFile read_stl(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
-    return is_binary(source) ? read_stl_binary(source, options, execution)
-                             : read_stl_ascii(source, options, execution);
+    if (is_binary(source))
+        return read_stl_binary(source, options, execution);
+    return read_stl_ascii(whole(source, execution, memory_of_file(options.max_memory)), options, execution);
 }
 
 std::optional<std::uint64_t> stl_records(const ByteSource& source) {
     if (!is_binary(source))
         return std::nullopt;
-    return stl_extent(source.bytes.size(), stl_declared_count(source.bytes)).triangles;
+    return stl_extent(source.size(), stl_declared_count(source.bytes)).triangles;
 }
 
 MeshFile stream_stl(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
@@ -192,7 +206,8 @@ MeshFile stream_stl(const ByteSource& source, const TriangleSink& sink, const Me
                     fmt::format("{}: is an ASCII STL file, which can be read as a whole only; a share of "
                                 "its triangles can be read of a binary one",
                                 source.name));
-    return stream_stl_ascii(source, sink, options, execution);
+    return stream_stl_ascii(whole(source, execution, memory_of_file(options.max_memory)), sink, options,
+                            execution);
 }
 
 } // namespace lamella

@@ -109,16 +109,19 @@ struct Records {
     NonFinite nonfinite;
 };
 
-/// Reads them, unless they are in memory already, or would take more of it than they are worth: then they are
-/// viewed where the file is mapped.
+/// Of a file that is read in windows, they are looked at as they come, unless they would take too much
+/// memory. Else they are viewed where they are.
 Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOptions& options,
-                     Executor& executor, ProgressMeter& progress) {
+                     const Execution& execution, Executor& executor, ProgressMeter& progress) {
     const std::size_t size = n * stl_record_bytes - normal_bytes;
-    const std::uint64_t most = memory_limit(options.max_memory) / 4;
+    const std::uint64_t most = memory_of_file(options.max_memory);
     std::shared_ptr<PageArray<std::byte>> memory;
-    if (source.descriptor >= 0 && size <= most)
+    ByteSource viewed = source;
+    if (source.file && size <= most)
         memory = std::make_shared<PageArray<std::byte>>(size);
-    const std::byte* const corners = memory ? memory->data() : source.bytes.data() + corners_at;
+    else
+        viewed = whole(source, execution, most);
+    const std::byte* const corners = memory ? memory->data() : viewed.bytes.data() + corners_at;
     NonFinite found;
     found.per_chunk.resize((n + chunk_triangles - 1) / chunk_triangles);
     std::vector<Box3> boxes(executor.workers());
@@ -146,7 +149,7 @@ Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOp
             ++found.first;
     if (memory)
         return {memory, corners, std::move(found)};
-    return {source.owner, corners, std::move(found)};
+    return {viewed.owner, corners, std::move(found)};
 }
 
 /// The triangles with finite corners, in order, in memory of their own.
@@ -216,13 +219,13 @@ namespace {
 /// How many triangles the head promises and the file has.
 std::uint64_t check_head(const ByteSource& source, const MeshReadOptions& options, Remarks& remarks) {
     const std::uint32_t declared = stl_declared_count(source.bytes);
-    const auto [stored, remark] = stl_extent(source.bytes.size(), declared);
+    const auto [stored, remark] = stl_extent(source.size(), declared);
     if (stored == 0)
         throw Error(
             ErrorKind::input,
             fmt::format("{}: holds no triangle: a binary STL file whose count is {} and that ends after "
                         "{} bytes (its first triangle would end at byte {})",
-                        source.name, declared, source.bytes.size(), stl_head_bytes + stl_record_bytes));
+                        source.name, declared, source.size(), stl_head_bytes + stl_record_bytes));
     ReadLimits(source, options).add_triangles(stored);
     if (!remark.empty())
         remarks.add(remark);
@@ -265,8 +268,9 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
     Remarks remarks(source.name, options.strict);
     const std::uint64_t stored = check_head(source, options, remarks);
     Executor executor(execution);
-    ProgressMeter progress(execution, Stage::read, source.bytes.size());
-    const auto [owner, corners, nonfinite] = read_records(source, stored, options, executor, progress);
+    ProgressMeter progress(execution, Stage::read, source.size());
+    const auto [owner, corners, nonfinite] =
+        read_records(source, stored, options, execution, executor, progress);
     judge_nonfinite(nonfinite.total, nonfinite.first, stored, remarks);
     if (nonfinite.total != 0) // the others are copied
         ReadLimits(source, options).add_bytes((stored - nonfinite.total) * sizeof(Triangle3f));

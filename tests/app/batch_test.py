@@ -315,8 +315,6 @@ class Workers(ProgramTest):
 
     def test_one_that_dies_takes_nobody_along(self):
         deaths = [(signal.SIGSEGV, "crash", 1), (signal.SIGKILL, "limit", 5), (signal.SIGXCPU, "limit", 5)]
-        if "LAMELLA_SANITIZED" not in os.environ:
-            deaths.append((signal.SIGBUS, "input", 3))
         for number, kind, code in deaths:
             with self.subTest(number):
                 process = self.start(["box1", "pipe", "box2", "box3"], "--jobs", "2")

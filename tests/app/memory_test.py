@@ -86,7 +86,7 @@ class Memory(ProgramTest):
     def test_points_of_a_slice_file_are_held_once(self):
         points = self.slice(self.lattice(), "--layer-height", "0.02", "-o", "layers.cli")["points"]
         self.slice("lattice.stl", "--layer-height", "10", "-o", "few.cli")
-        file = self.path("layers.cli").stat().st_size  # which is mapped
+        file = self.path("layers.cli").stat().st_size  # of which there is a copy
         self.assertLess(self.peak("info", "layers.cli") - self.peak("info", "few.cli"), file + 1.7 * 16 * points)
 
     def test_slabs_give_the_same_bytes(self):

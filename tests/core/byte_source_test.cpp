@@ -11,12 +11,16 @@
 
 #include <array>
 #include <chrono>
-#include <cstring>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <future>
+#include <iterator>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 namespace lamella {
@@ -72,10 +76,16 @@ TEST_F(ByteSourceTest, GivesTheBytesOfAFile) {
     const ByteSource source = open_bytes(write("part", "seven b"));
     EXPECT_EQ(text_of(source), "seven b");
     EXPECT_EQ(source.name, path("part"));
-    for (const std::size_t bytes : {1, 65'535, 65'536, 100'000}) { // read at once, and mapped
-        const std::string text = some_text(bytes);
-        EXPECT_EQ(text_of(open_bytes(write("part", text))), text) << bytes;
-    }
+    // Read at once, and by several threads; in memory, and on disk.
+    for (const std::size_t bytes : {1, 65'535, 65'536, 3'333'333})
+        for (const std::uint64_t most : {bytes, bytes - 1}) {
+            const std::string text = some_text(bytes);
+            const ByteSource copy = open_bytes(write("part", text), {.threads = 3}, most);
+            EXPECT_EQ(text_of(copy), text) << bytes;
+            EXPECT_EQ(copy.size(), bytes);
+            EXPECT_EQ(copy.on_disk, most < bytes);
+            EXPECT_EQ(copy.bytes_in_memory(), most < bytes ? 0 : bytes);
+        }
 }
 
 TEST_F(ByteSourceTest, KeepsTheBytesOfADeletedFileAsLongAsACopyLives) {
@@ -94,17 +104,48 @@ TEST_F(ByteSourceTest, KeepsTheBytesOfADeletedFileAsLongAsACopyLives) {
     }
 }
 
-TEST_F(ByteSourceTest, KeepsAFileOpenAsLongAsItsBytesLive) {
-    const std::string file = write("part", some_text(100'000)); // long enough to be mapped
-    const auto open_descriptors = [] {
-        return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
+bool always(std::span<const std::byte>, std::uint64_t) {
+    return true;
+}
+
+constexpr std::uint64_t all_memory = ~std::uint64_t{0};
+
+std::ptrdiff_t open_descriptors() {
+    return std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator());
+}
+
+TEST_F(ByteSourceTest, ReadsAFileInWindowsWhereThatIsAskedFor) {
+    const std::string text = some_text(100'000);
+    const std::string file = write("part", text);
+    const auto begins_so = [](std::span<const std::byte> beginning, std::uint64_t size) {
+        return size == 100'000 && beginning.size() >= 84 && beginning[0] == std::byte{'a'};
     };
+    const ByteSource source = open_bytes(file, {}, 0, begins_so);
+    ASSERT_TRUE(source.file);
+    EXPECT_EQ(source.size(), text.size());
+    EXPECT_FALSE(source.on_disk);
+    std::string copy(99'000, ' ');
+    copy_out(source, 1'000, std::as_writable_bytes(std::span(copy)));
+    EXPECT_EQ(copy, text.substr(1'000));
+    EXPECT_EQ(text_of(whole(source, {}, all_memory)), text);
+    EXPECT_FALSE(open_bytes(write("part", "b" + text), {}, all_memory, begins_so).file);
+}
+
+TEST_F(ByteSourceTest, KeepsAFileThatIsReadInWindowsOpenAsLongAsItsBytesLive) {
+    const std::string file = write("part", some_text(100'000));
     const auto before = open_descriptors();
     {
-        const ByteSource source = open_bytes(file);
+        const ByteSource source = open_bytes(file, {}, all_memory, always);
         error_of([&] { (void)open_bytes(path("")); });
         EXPECT_EQ(open_descriptors(), before + 1);
     }
+    EXPECT_EQ(open_descriptors(), before);
+}
+
+TEST_F(ByteSourceTest, KeepsNoFileOpenThatIsCopied) {
+    const std::string file = write("part", some_text(100'000));
+    const auto before = open_descriptors();
+    const std::vector<ByteSource> sources{open_bytes(file), open_bytes(file, {}, 1'000)};
     EXPECT_EQ(open_descriptors(), before);
 }
 
@@ -118,34 +159,46 @@ TEST_F(ByteSourceTest, LeavesDescriptorsToOthersWhereManyAreOpen) {
     ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
     std::vector<ByteSource> sources;
     for (int i = 0; i < 100; ++i)
-        sources.push_back(open_bytes(file));
+        sources.push_back(open_bytes(file, {}, i % 2 == 0 ? 0 : all_memory, always));
     for (const ByteSource& source : sources) {
         std::string copy(99'000, ' ');
         copy_out(source, 1'000, std::as_writable_bytes(std::span(copy)));
         EXPECT_EQ(copy, text.substr(1'000));
     }
-    EXPECT_EQ(sources.back().descriptor, -1);
+    EXPECT_FALSE(sources.back().file);
     ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
 }
 
-TEST_F(ByteSourceTest, SaysThatAFileWasCutOffWhileItWasRead) {
-    const std::string file = write("part", some_text(100'000));
-    const ByteSource source = open_bytes(file);
+TEST_F(ByteSourceTest, ReportsBothSizesOfAFileThatWasCutOffWhileItWasRead) {
+    const std::string file = write("part", some_text(3'000'000));
+    const ByteSource source = open_bytes(file, {}, all_memory, always);
     fs::resize_file(file, 4'000);
+    const std::string expected =
+        file + ": was cut off while it was read: it had 3000000 bytes, and ends after 4000 now";
     std::string copy(9'000, ' ');
-    const std::string error =
-        error_of([&] { copy_out(source, 1'000, std::as_writable_bytes(std::span(copy))); });
-    EXPECT_NE(error.find("it had 100000 bytes, and ends after 4000 now"), std::string::npos) << error;
+    EXPECT_EQ(error_of([&] { copy_out(source, 1'000, std::as_writable_bytes(std::span(copy))); }), expected);
+    for (const std::uint64_t most : {all_memory, std::uint64_t{1'000}}) // whichever thread finds it out
+        EXPECT_EQ(error_of([&] { (void)whole(source, {.threads = 4}, most); }), expected);
 }
 
-TEST_F(ByteSourceTest, SaysThatTheLastPageOfAFileWasCutOff) {
-    const std::string file = write("part", some_text(100'000));
-    const ByteSource source = open_bytes(file);
-    check_length(source);
-    fs::resize_file(file, 99'990);
-    const std::string error = error_of([&] { check_length(source); });
-    EXPECT_NE(error.find("it had 100000 bytes, and ends after 99990 now"), std::string::npos) << error;
-    check_length(copy_bytes(std::as_bytes(std::span("seven b", 7)), "text"));
+TEST_F(ByteSourceTest, GivesTheBytesOfAFileThatWasCutOffOrOverwrittenSince) {
+    const std::string text = some_text(100'000);
+    for (const std::uint64_t most : {all_memory, std::uint64_t{1'000}}) {
+        const std::string file = write("part", text);
+        const ByteSource source = open_bytes(file, {}, most);
+        fs::resize_file(file, 10);
+        EXPECT_EQ(text_of(source), text);
+        write("part", std::string(100'000, 'x'));
+        EXPECT_EQ(text_of(source), text);
+    }
+}
+
+TEST_F(ByteSourceTest, TakesOfAFileThatGrowsWhatItHadWhenItWasOpened) {
+    const std::string text = some_text(100'000);
+    const std::string file = write("part", text);
+    const ByteSource source = open_bytes(file, {}, all_memory, always);
+    std::ofstream(file, std::ios::app) << "more";
+    EXPECT_EQ(text_of(whole(source, {}, all_memory)), text);
 }
 
 TEST_F(ByteSourceTest, CopiesBytesThatAreInMemoryAlready) {
@@ -167,10 +220,13 @@ TEST_F(ByteSourceTest, OpensFilesBeyondFourGigabytes) {
         out.seekp(static_cast<std::streamoff>(size - 4));
         out << "last";
     }
-    const ByteSource source = open_bytes(file);
-    ASSERT_EQ(source.bytes.size(), size);
-    EXPECT_EQ(std::memcmp(source.bytes.data(), "first", 5), 0);
-    EXPECT_EQ(std::memcmp(source.bytes.data() + size - 4, "last", 4), 0);
+    const ByteSource source = open_bytes(file, {}, 0, always);
+    ASSERT_EQ(source.size(), size);
+    std::string end(5, ' ');
+    copy_out(source, 0, std::as_writable_bytes(std::span(end)));
+    EXPECT_EQ(end, "first");
+    copy_out(source, size - 5, std::as_writable_bytes(std::span(end)));
+    EXPECT_EQ(end, std::string_view("\0last", 5));
 }
 
 TEST_F(ByteSourceTest, ReadsAPipeToItsEnd) {

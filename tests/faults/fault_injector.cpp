@@ -4,7 +4,7 @@
 // from 1, 0 means each of them. The action is the name of an error (EIO, ENOSPC, ...), which the call returns
 // without having done anything, or
 //     short      the call does the half of it (read, write)
-//     shrink     once it is done, the file has lost its content (mmap)
+//     shrink     before it is done, the file loses its content (read at a position)
 //     kill       the process is killed before the call
 //     killed     the process is killed after the call
 //     jump       the clock of the day is off by a month, back and forth (clock)
@@ -160,6 +160,10 @@ ssize_t read(int descriptor, void* to, std::size_t bytes) {
 ssize_t pread(int descriptor, void* to, std::size_t bytes, off_t place) {
     ORIGINAL(pread);
     const bool struck = strikes("read", descriptor);
+    if (struck && fault().action == "shrink") {
+        const std::string path = "/proc/self/fd/" + std::to_string(descriptor);
+        static_cast<void>(!truncate(path.c_str(), 0));
+    }
     return made<ssize_t>(struck, -1, [&] { return real(descriptor, to, some_of(struck, bytes), place); });
 }
 
@@ -226,14 +230,8 @@ void* mmap(void* at, std::size_t bytes, int protection, int flags, int descripto
     if (descriptor < 0 || real == nullptr)
         // NOLINTNEXTLINE(performance-no-int-to-ptr): that is how the system tells it
         return reinterpret_cast<void*>(syscall(SYS_mmap, at, bytes, protection, flags, descriptor, place));
-    const bool struck = strikes("mmap", descriptor);
-    void* const memory = made<void*>(struck, MAP_FAILED,
-                                     [&] { return real(at, bytes, protection, flags, descriptor, place); });
-    if (struck && fault().action == "shrink") {
-        const std::string path = "/proc/self/fd/" + std::to_string(descriptor);
-        static_cast<void>(!truncate(path.c_str(), 0));
-    }
-    return memory;
+    return made<void*>(strikes("mmap", descriptor), MAP_FAILED,
+                       [&] { return real(at, bytes, protection, flags, descriptor, place); });
 }
 
 int clock_gettime(clockid_t clock, timespec* time) noexcept {

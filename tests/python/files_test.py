@@ -1,9 +1,11 @@
 """Files in and out: the bytes of the program, and what it finds."""
 
+import gzip
 import json
 import os
 import pickle
 import threading
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -44,6 +46,57 @@ def test_slice_files_read_back(rook, tmp_path, name):
         assert back == stack and back.resolution == 0 and comparison.same == len(stack)
     assert np.allclose(back.area, stack.area, rtol=1e-3)
     assert lamella.compare(stack, back) and lamella.verify(back, rook).ok
+
+
+@pytest.mark.parametrize("name", ["part.obj", "part.ply", "part.stl", "part.stl.gz", "layers.json", "layers.cli"])
+def test_a_file_that_loses_its_content_while_it_is_parsed_is_read_whole(program, tmp_path, name):
+    part = tmp_path / name.removesuffix(".gz")
+    if name.startswith("layers"):
+        lamella.write(part, lamella.slice(box_arrays(), 0.001))
+    else:
+        program.succeed("make", "torus", "--segments", "60", *(["--ascii"] if part.suffix == ".stl" else []), "-o", part)
+    if name.endswith(".gz"):
+        (tmp_path / name).write_bytes(gzip.compress(part.read_bytes(), 0))
+    path = tmp_path / name
+    assert path.stat().st_size > 1 << 16  # a smaller one is read at once
+    expected = lamella.read(path)
+    calls = []
+
+    def progress(*call):
+        calls.append(call)
+        os.truncate(path, 0)
+
+    found = lamella.read(path, progress=progress)
+    assert calls and path.stat().st_size == 0
+    if isinstance(expected, lamella.Stack):
+        assert found == expected
+    else:
+        assert np.array_equal(found.vertices, expected.vertices) and np.array_equal(found.faces, expected.faces)
+
+
+def test_a_file_that_another_thread_shortens_is_read_or_is_an_error(program, tmp_path):
+    part = tmp_path / "part.stl"
+    program.succeed("make", "torus", "--segments", "150", "--ascii", "-o", part)
+    content = part.read_bytes()
+    expected = lamella.read(part)
+    ended = threading.Event()
+
+    def shorten():
+        while not ended.is_set():
+            os.truncate(part, len(content) // 2)
+            part.write_bytes(content)
+
+    other = threading.Thread(target=shorten)
+    other.start()
+    for _ in range(20):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of what was read while it was written
+            try:
+                assert len(lamella.read(part).faces) <= len(expected.faces)
+            except lamella.InputError as error:
+                assert str(part) in str(error)
+    ended.set()
+    other.join()
 
 
 def test_numpy_arrays_in_single_precision_are_compared_as_such(tmp_path):

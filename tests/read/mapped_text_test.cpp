@@ -1,4 +1,4 @@
-// A file that is read from front to back does not stay in the memory of the program.
+// A file that is larger than the memory meant for it is read from front to back, and does not stay there.
 
 #include "container/zip_reader.hpp"
 #include "container/zip_writer.hpp"
@@ -60,7 +60,7 @@ std::size_t resident_bytes(const void* mapping) {
 
 template <class Use>
 void expect_released_by(const Use& use, const std::string& path) {
-    const ByteSource source = open_bytes(path);
+    const ByteSource source = open_bytes(path, {}, 0); // on disk
     const std::size_t size = source.bytes.size();
     std::size_t sum = 0;
     for (std::size_t i = 0; i < size; i += 1024) // so that all of it is there

@@ -207,7 +207,7 @@ TEST_F(StlOnDisk, NeedsABinaryFileNoLongerOnceItIsRead) {
     EXPECT_EQ(triangles_of(file), many);
 }
 
-TEST_F(StlOnDisk, ViewsABinaryFileWithoutCopyingItWhereMemoryIsShort) {
+TEST_F(StlOnDisk, ViewsACopyOfABinaryFileOnDiskWhereMemoryIsShort) {
     const Triangles more = some_triangles(2'000); // small files are read at once
     write(binary(more));
     const MeshFile file = read_mesh(path(), {.max_memory = 100});

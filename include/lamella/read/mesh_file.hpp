@@ -94,10 +94,10 @@ struct MeshFile {
 /// Reads a mesh file; its content says of which format it is. "-" reads standard input. Parallel; O(bytes);
 /// the same result for any number of threads. docs/formats.md has what is accepted of each format.
 ///
-/// The file is not needed once this has returned. But a binary STL file that would take more than a quarter
-/// of `max_memory` is memory-mapped and viewed, not copied (but where triangles are dropped): while the mesh
-/// lives, that file must not be written to or cut shorter (touching what was cut off ends the program with
-/// SIGBUS); replacing it under its name, or deleting it, does no harm.
+/// The file is not needed once this has returned, and may change while it is read: the bytes are copied. One
+/// that becomes shorter while it is copied is Error{input}. Of a file that would take more than a quarter of
+/// `max_memory` the copy is in a temporary file without a name (in $TMPDIR, else /var/tmp), and a mesh of
+/// binary STL is a view of that; Error{output} when there is no room for it.
 ///
 /// Corners are single precision in both forms: a number in an ASCII file is rounded once, to the nearest, so
 /// the ASCII and the binary form of a part give the same slices, bit for bit. Stored normals are ignored. All

@@ -8,7 +8,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,17 +32,18 @@ struct RecordRange {
 /// A mesh file that is open. Cheap to copy; copies are the same file.
 class MeshInput {
   public:
-    static constexpr std::uint64_t unlimited = std::numeric_limits<std::uint64_t>::max();
-
-    /// "-" is standard input. Of what is no regular file, such as a pipe, no more than `most_in_memory` bytes
-    /// are kept in memory: what is longer goes to a temporary file without a name (in $TMPDIR, else
-    /// /var/tmp), once. Throws Error{input} when there is no such file or it may not be read, Error{output}
-    /// when there is no room for the temporary file, Error{cancelled}.
-    explicit MeshInput(const std::string& path, std::uint64_t most_in_memory = unlimited,
+    /// "-" is standard input. A binary STL file stays open and is read in windows.
+    /// Any other input is copied here: no more than `most_in_memory` bytes to memory (unless given, a quarter
+    /// of what MeshReadOptions::max_memory is by default), a longer one to a temporary file without a name
+    /// (in $TMPDIR, else /var/tmp). Throws Error{input} when there is no such file or it may not be read,
+    /// Error{output} when there is no room for the temporary file, Error{cancelled}.
+    explicit MeshInput(const std::string& path, std::optional<std::uint64_t> most_in_memory = {},
                        const Execution& execution = {});
 
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
     [[nodiscard]] std::uint64_t bytes() const noexcept;
+    /// How many of them are in memory.
+    [[nodiscard]] std::uint64_t bytes_in_memory() const noexcept;
 
     /// Whether `stream` can read it: STL that is not packed, even with a wrong count or cut off.
     /// Throws what `read` throws for files of unknown formats.
