@@ -207,13 +207,43 @@ Layer nested_on_a_line(int n, double angle, bool holes) {
 }
 
 /// Nested kites that share one corner.
-Layer nested_at_an_end(int n, bool left) {
+Layer nested_at_an_end(int n, bool left, bool holes = false) {
     const int count = n / 4;
     std::vector<Contour> rings;
     for (int i = 1; i <= count; ++i) {
         const double r = (left ? 50.0 : -50.0) * i / count;
         const double h = r * i / count;
         rings.push_back({{0, 0}, {r, -h}, {2 * r, 0}, {r, h}});
+        if (holes && (count - i) % 2 != 0)
+            std::reverse(rings.back().begin(), rings.back().end());
+    }
+    return layer_of(rings);
+}
+
+/// Octagons around one another that touch in one point.
+Layer nested_at_a_point(int n) {
+    constexpr int corners = 8;
+    const int count = n / corners;
+    std::vector<Contour> rings;
+    for (int i = 1; i <= count; ++i) {
+        const double radius = 50.0 * i / count;
+        Contour& ring = rings.emplace_back();
+        for (int k = 0; k < corners; ++k) {
+            const Point2 p = polar(radius, turn * k / corners);
+            ring.push_back({p.x - radius, p.y});
+        }
+    }
+    return layer_of(rings);
+}
+
+/// Kites side by side around one point, with half of the angle between them free.
+Layer petals(int n) {
+    const int count = n / 4;
+    std::vector<Contour> rings;
+    for (int i = 0; i < count; ++i) {
+        const double angle = turn * i / count;
+        const double half = turn / count / 4;
+        rings.push_back({{0, 0}, polar(60, angle - half), polar(100, angle), polar(60, angle + half)});
     }
     return layer_of(rings);
 }
@@ -301,6 +331,16 @@ Timed grow(const Layer& layer, const Expected& expected) {
     const auto start = Clock::now();
     const Layer grown = offset(layer, 1e-9);
     return {seconds_since(start), layer.points.size(), is(grown, expected)};
+}
+
+/// Outwards by `by`: the result has no crossings and, filled, stays as it is.
+Timed grow_by(const Layer& layer, double by) {
+    const auto start = Clock::now();
+    const Layer grown = offset(layer, by);
+    const double seconds = seconds_since(start);
+    return {seconds, layer.points.size(),
+            measure(grown).area_mm2 > measure(layer).area_mm2 && !has_crossings(grown) &&
+                !fill(grown, FillRule::nonzero).changed()};
 }
 
 /// Makes the vectors of all regions of the default strategy; checks the hatched area, mm^2.
@@ -430,10 +470,12 @@ int report(int argc, char** argv) {
     const Expected octagon{1, 100 * 100 * 2 * std::numbers::sqrt2};
     const Expected rectangle{1, 200 * 100};
     const Expected kite{1, 2 * 50 * 50};
+    const Expected small_octagon{1, 50 * 50 * 2 * std::numbers::sqrt2};
     for (const auto& [what, layer_of_points, expected] :
          {Family{"rings around one another", [](int i) { return concentric(i, false); }, octagon},
           Family{"rings on a line", [](int i) { return nested_on_a_line(i, 0, false); }, rectangle},
           Family{"rings on a line aslant", [](int i) { return nested_on_a_line(i, 0.3, false); }, rectangle},
+          Family{"rings that touch in one point", nested_at_a_point, small_octagon},
           Family{"rings that share their left end", [](int i) { return nested_at_an_end(i, true); }, kite},
           Family{"rings that share their right end", [](int i) { return nested_at_an_end(i, false); },
                  kite}}) {
@@ -459,6 +501,10 @@ int report(int argc, char** argv) {
         return grow(concentric(i, true),
                     {static_cast<std::size_t>(i / 8), measure(concentric(i, true)).area_mm2});
     });
+    report.add("offset: bodies and holes that share an end, crossings of all pairs", few / 8,
+               [](int i) { return grow_by(nested_at_an_end(i, true, true), 0.1); });
+    report.add("offset: petals, crossings of all pairs", few / 32,
+               [](int i) { return grow_by(petals(i), 0.1); });
     report.add("compare: fins side by side", n, compare_fins);
     report.add("gaps: chains in a column", n, join_hooks);
     std::cout << report.text();

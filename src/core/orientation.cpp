@@ -50,9 +50,39 @@ bool integer_orientation(const Point3& a, const std::array<const Point3*, 3>& ot
     return true;
 }
 
+/// The sign for coordinates that are whole multiples of one power of two, with at most 62 bits, as those of
+/// similar size are. False where they are not.
+bool integer_orientation(const Point2& a, const Point2& b, const Point2& c, int& sign) noexcept {
+    const std::array<double, 6> coordinates{a.x, a.y, b.x, b.y, c.x, c.y};
+    double largest = 0;
+    for (const double x : coordinates)
+        largest = std::max(largest, std::abs(x));
+    if (!(largest > 0x1p-900 && largest < 0x1p900))
+        return false;
+    const double scale = std::ldexp(1, 61 - std::ilogb(largest));
+    std::array<std::int64_t, 6> whole; // NOLINT: filled below
+    for (std::size_t i = 0; i < 6; ++i) {
+        const double scaled = coordinates[i] * scale;
+        whole[i] = static_cast<std::int64_t>(scaled);
+        if (static_cast<double>(whole[i]) != scaled || (whole[i] == 0) != (coordinates[i] == 0))
+            return false;
+    }
+    // Differences have 63 bits, their products 126.
+    const auto gap = [&](std::size_t i, std::size_t j) {
+        return SignedWide{whole[i]} - whole[j];
+    };
+    const SignedWide l = gap(0, 4) * gap(3, 5);
+    const SignedWide r = gap(1, 5) * gap(2, 4);
+    sign = (l > r) - (l < r);
+    return true;
+}
+
 } // namespace
 
 int exact_orientation(const Point2& a, const Point2& b, const Point2& c) noexcept {
+    int sign = 0;
+    if (integer_orientation(a, b, c, sign))
+        return sign;
     // D expanded; the two terms c.x c.y cancel.
     return sign_of_sum(std::array<SignedProduct<2>, 6>{{{{a.x, b.y}, false},
                                                         {{a.x, c.y}, true},

@@ -19,6 +19,7 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -47,11 +48,14 @@ void merge(Arrangement& arrangement) {
 /// How close sides can be that others are drawn to when these are cut: each end and each piece moves by less
 /// than the diagonal of a unit square.
 constexpr double reach_of_cuts = 4;
+/// The same if sides were joined to bundles before: see `join_bundles`.
+constexpr double reach_of_bundles = 12;
 
 /// The sides of rings, not yet cut.
 class Uncut {
   public:
-    Uncut(std::span<const WoundRing> rings, const ClippingGrid& grid) {
+    /// `reach`: from how close on sides are cut.
+    Uncut(std::span<const WoundRing> rings, const ClippingGrid& grid, double reach) {
         std::vector<Point2> places;
         for (const WoundRing& ring : rings) {
             for (const Point2& p : ring.points)
@@ -60,7 +64,7 @@ class Uncut {
         }
         layer_.rings = rings.size();
         layer_.points = PointArray(std::move(places));
-        close_ = close_sides(layer_, reach_of_cuts);
+        close_ = close_sides(layer_, reach);
         OpenRuns runs;
         for (std::size_t i = 0; i < rings.size(); ++i)
             add(rings[i], i, runs);
@@ -203,7 +207,7 @@ class Places {
     }
 
     /// Calls visit(place) for those, but for the ends of the segment, for which `on(segment, place)`; they
-    /// lie within a unit of it.
+    /// lie within two units of it.
     template <class On, class Visit>
     void for_places_on(const Segment& s, const On& on, const Visit& visit) const {
         cells_.for_cells_along(s, [&](std::size_t cell) {
@@ -224,8 +228,9 @@ class Places {
 
   private:
     static constexpr std::size_t crowd = 128;
-    /// Of cells so large that a segment's margin covers the unit squares into which it comes.
-    static constexpr double least_size = 1 / Grid::margin;
+    /// Of cells so large that a segment's margin covers the unit squares into which it comes, and those
+    /// beside them.
+    static constexpr double least_size = 2 / Grid::margin;
 
     static double cell_size(std::span<const Point2> places) {
         return std::max(least_size, Grid::cell_size(box_of(places), static_cast<double>(places.size()), 0));
@@ -255,21 +260,163 @@ constexpr std::uint64_t most_crossings = std::uint64_t{1} << 22;
 /// What a crossing takes: its place on the grid, and the pieces of both sides.
 constexpr std::uint64_t bytes_of_crossing = 4 * sizeof(Side) + 8 * sizeof(Point2);
 
-void add_crossings(std::span<const Side> sides, std::vector<Point2>& places, const LayerBudget& budget) {
+using CrossingPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// Of more than `most` crossings, more than `most`.
+CrossingPairs crossings_of(std::span<const Side> sides, std::uint64_t most, const LayerBudget& budget) {
     std::vector<Segment> lines;
     lines.reserve(sides.size());
     for (const Side& side : sides)
         lines.push_back(side.line);
-    const std::uint64_t most = most_crossings + 64 * lines.size();
-    const auto pairs = crossing_pairs(lines, most, bytes_of_crossing, budget);
-    if (pairs.size() > most)
+    return crossing_pairs(lines, most, budget);
+}
+
+CrossingPairs all_crossings_of(std::span<const Side> sides, const LayerBudget& budget) {
+    const std::uint64_t most = most_crossings + 64 * sides.size();
+    const std::uint64_t room = budget.room(bytes_of_crossing);
+    CrossingPairs pairs = crossings_of(sides, std::min(most, room), budget);
+    if (pairs.size() > most && most <= room)
         throw Error(
             ErrorKind::limit,
             fmt::format("layer {}: {} sides of contours in contact cross more than {} times, the limit; "
                         "leave out some of the bodies, or offset by less",
-                        budget.layer(), lines.size(), most));
-    for (const auto& [a, b] : pairs)
-        places.push_back(crossing_place(lines[a], lines[b]));
+                        budget.layer(), sides.size(), most));
+    return pairs;
+}
+
+/// From how many on, crossings and cuts are too many to be those of most layers.
+std::uint64_t many(std::span<const Side> sides) noexcept {
+    return 16 * sides.size() + 65536;
+}
+
+/// Sides that lie within 1.5 units of the longest of them, between its ends. Their own ends are places on it.
+struct Bundle {
+    /// What lies between a place and the next one, as the difference from what lies before.
+    struct Step {
+        SideCount step;
+        std::int64_t forth = 0; ///< of steps to the left, those above 0, and below
+        std::int64_t back = 0;
+    };
+    std::vector<Point2> places;
+    std::vector<Step> steps;
+
+    void add(std::size_t first, std::size_t last, SideCount step) {
+        if (last < first)
+            return add(last, first, -1 * step);
+        steps[first].step += step;
+        steps[last].step += -1 * step;
+        std::int64_t Step::*const way = step.left > 0 ? &Step::forth : &Step::back;
+        steps[first].*way += step.left;
+        steps[last].*way -= step.left;
+    }
+};
+
+constexpr double reach_of_bundle = 1.5;
+
+bool is_beside(const Segment& s, const Point2& place) noexcept {
+    const GridVector way = from_to(s.lo, s.hi);
+    const GridVector to = from_to(s.lo, place);
+    const Wide along = Wide{way.x} * to.x + Wide{way.y} * to.y;
+    const Wide squared = Wide{way.x} * way.x + Wide{way.y} * way.y;
+    return along > 0 && along < squared &&
+           std::abs(static_cast<double>(cross(way, to))) <=
+               reach_of_bundle * std::sqrt(static_cast<double>(squared));
+}
+
+/// Where thousands of sides lie on one line but for the rounding to the grid, each crosses most of the others
+/// anywhere. Here each is led through the ends of the others that it lies beside: as they all are then, what
+/// lies upon one another adds up as in `join_collinear`. A side moves by at most twice the reach of a bundle,
+/// with its ends where they were, so rings stay closed. O(n log n) for n sides in few bundles; in the worst
+/// case, some cuts for each.
+void join_bundles(Arrangement& arrangement, const LayerBudget& budget) {
+    std::vector<Side>& sides = arrangement.sides;
+    const auto squared_length = [](const Side& side) {
+        const GridVector way = from_to(side.line.lo, side.line.hi);
+        return Wide{way.x} * way.x + Wide{way.y} * way.y;
+    };
+    std::sort(sides.begin(), sides.end(), [&](const Side& a, const Side& b) {
+        const Wide length_a = squared_length(a);
+        const Wide length_b = squared_length(b);
+        return length_a != length_b ? length_a > length_b
+                                    : std::tie(a.line.lo, a.line.hi) < std::tie(b.line.lo, b.line.hi);
+    });
+    std::vector<Point2> ends;
+    add_ends(sides, ends);
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    const Places places = distinct(ends);
+    struct Seat {
+        std::uint32_t bundle;
+        std::uint32_t place;
+    };
+    std::vector<std::vector<Seat>> seats(ends.size()); // of each end, by ascending bundles
+    const auto seats_of = [&](const Point2& end) -> std::vector<Seat>& {
+        return seats[static_cast<std::size_t>(std::lower_bound(ends.begin(), ends.end(), end) -
+                                              ends.begin())];
+    };
+    std::vector<Bundle> bundles;
+    const std::uint64_t most = many(sides);
+    std::uint64_t cuts = 0;
+    for (const Side& side : sides) {
+        budget.check();
+        const auto& [lo, hi] = side.line;
+        const std::vector<Seat>& low = seats_of(lo);
+        const std::vector<Seat>& high = seats_of(hi);
+        const std::vector<Seat>& fewer = low.size() <= high.size() ? low : high;
+        const std::vector<Seat>& others = low.size() <= high.size() ? high : low;
+        bool joined = false;
+        for (const Seat& seat : fewer) {
+            const auto other =
+                std::lower_bound(others.begin(), others.end(), seat,
+                                 [](const Seat& a, const Seat& b) { return a.bundle < b.bundle; });
+            if (other == others.end() || other->bundle != seat.bundle)
+                continue;
+            const bool seat_is_low = &fewer == &low;
+            bundles[seat.bundle].add(seat_is_low ? seat.place : other->place,
+                                     seat_is_low ? other->place : seat.place, side.step);
+            joined = true;
+            break;
+        }
+        if (joined)
+            continue;
+        const auto number = static_cast<std::uint32_t>(bundles.size());
+        Bundle& bundle = bundles.emplace_back();
+        if (cuts <= most)
+            places.for_places_on(side.line, is_beside,
+                                 [&](const Point2& place) { bundle.places.push_back(place); });
+        cuts += bundle.places.size();
+        const GridVector way = from_to(lo, hi);
+        const auto along = [&](const Point2& place) {
+            const GridVector to = from_to(lo, place);
+            return Wide{way.x} * to.x + Wide{way.y} * to.y;
+        };
+        std::sort(bundle.places.begin(), bundle.places.end(), [&](const Point2& a, const Point2& b) {
+            const Wide along_a = along(a);
+            const Wide along_b = along(b);
+            return along_a != along_b ? along_a < along_b : a < b;
+        });
+        bundle.places.insert(bundle.places.begin(), lo);
+        bundle.places.push_back(hi);
+        bundle.steps.resize(bundle.places.size());
+        bundle.add(0, bundle.places.size() - 1, side.step);
+        for (std::uint32_t i = 0; i < bundle.places.size(); ++i)
+            seats_of(bundle.places[i]).push_back({number, i});
+    }
+    sides.clear();
+    for (const Bundle& bundle : bundles) {
+        Bundle::Step here;
+        for (std::size_t i = 0; i + 1 < bundle.places.size(); ++i) {
+            here.step += bundle.steps[i].step;
+            here.forth += bundle.steps[i].forth;
+            here.back += bundle.steps[i].back;
+            arrangement.walls = arrangement.walls || (here.forth > 0 && here.back < 0);
+            const Point2& a = bundle.places[i];
+            const Point2& b = bundle.places[i + 1];
+            if (here.step != SideCount{})
+                sides.push_back({.line = segment_between(a, b), .step = (a < b ? 1 : -1) * here.step});
+        }
+    }
+    merge(arrangement);
 }
 
 /// A line through places of the grid: sides on it have the same one, exactly.
@@ -412,7 +559,7 @@ constexpr std::uint64_t most_pieces = std::uint64_t{1} << 27;
 template <class On>
 bool cut(Arrangement& arrangement, const Places& places, const On& on, const LayerBudget& budget) {
     bool any = false;
-    if (try_to_cut(arrangement, places, on, 16 * arrangement.sides.size() + 65536, any, budget))
+    if (try_to_cut(arrangement, places, on, many(arrangement.sides), any, budget))
         return any;
     join_collinear(arrangement); // which cuts what would be cut anyway
     if (!try_to_cut(arrangement, places, on, most_pieces, any, budget))
@@ -503,12 +650,20 @@ bool bounds(const Arrangement& arrangement, const Material& material, const Wind
 
 Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, const ClippingGrid& grid,
                      const LayerBudget& budget) {
-    Uncut uncut(rings, grid);
-    Arrangement arrangement = std::move(uncut.arrangement);
+    std::optional<Uncut> uncut(std::in_place, rings, grid, reach_of_cuts);
+    CrossingPairs pairs = crossings_of(uncut->arrangement.sides, many(uncut->arrangement.sides), budget);
+    if (pairs.size() > many(uncut->arrangement.sides)) {
+        uncut.emplace(rings, grid, reach_of_bundles);
+        join_bundles(uncut->arrangement, budget);
+        pairs = all_crossings_of(uncut->arrangement.sides, budget);
+    }
+    budget.need(pairs.size(), bytes_of_crossing, "crossings of contours, or more,");
+    Arrangement arrangement = std::move(uncut->arrangement);
     if (!arrangement.sides.empty()) {
         std::vector<Point2> hot;
         add_ends(arrangement.sides, hot);
-        add_crossings(arrangement.sides, hot, budget);
+        for (const auto& [a, b] : pairs)
+            hot.push_back(crossing_place(arrangement.sides[a].line, arrangement.sides[b].line));
         if (cut(arrangement, distinct(std::move(hot)), comes_into, budget) && !arrangement.sides.empty()) {
             // What was bent may run through ends that it did not come near to.
             std::vector<Point2> ends;
@@ -521,7 +676,7 @@ Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, c
                 budget);
         }
     }
-    arrangement.sides.insert(arrangement.sides.end(), uncut.alone.begin(), uncut.alone.end());
+    arrangement.sides.insert(arrangement.sides.end(), uncut->alone.begin(), uncut->alone.end());
     arrangement.around = around;
     wind(arrangement, budget);
     return arrangement;

@@ -12,11 +12,9 @@
 
 namespace lamella {
 
-/// The numbers of the segments of each pair that crosses properly, the smaller one first, in no order. Costs
-/// as `find_crossings`; ends when there are more than `most`. Throws Error{limit} for more of them than the
-/// budget has room for, each of `bytes_each`, as soon as that is known.
+/// Returns the numbers of the segments of each pair that crosses properly, the smaller one first, in no
+/// order; of more than `most` pairs, more than `most`, but not all. Costs as `find_crossings`.
 [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>>
-crossing_pairs(std::span<const Segment> segments, std::uint64_t most, std::uint64_t bytes_each,
-               const LayerBudget& budget);
+crossing_pairs(std::span<const Segment> segments, std::uint64_t most, const LayerBudget& budget);
 
 } // namespace lamella

@@ -365,10 +365,8 @@ bool has_crossings(const Layer& layer) {
     return found_in(layer, 0, 1).count > 0;
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(std::span<const Segment> segments,
-                                                                    std::uint64_t most,
-                                                                    std::uint64_t bytes_each,
-                                                                    const LayerBudget& budget) {
+std::vector<std::pair<std::uint32_t, std::uint32_t>>
+crossing_pairs(std::span<const Segment> segments, std::uint64_t most, const LayerBudget& budget) {
     if (segments.empty())
         return {};
     std::vector<SegmentId> ids(segments.size());
@@ -376,9 +374,7 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> crossing_pairs(std::span<co
     Box2 box = Box2::of(segments.front().lo, segments.front().hi);
     for (const Segment& segment : segments)
         box.add(Box2::of(segment.lo, segment.hi));
-    const std::uint64_t room = std::min(budget.room(bytes_each), most);
-    CrossingSearch found(segments, ids, box, std::numeric_limits<std::size_t>::max(), room + 1, budget);
-    budget.need(found.count(), bytes_each, "crossings of contours, or more,");
+    CrossingSearch found(segments, ids, box, std::numeric_limits<std::size_t>::max(), most + 1, budget);
     return std::move(found.pairs());
 }
 

@@ -101,7 +101,7 @@ std::int64_t EdgeColumn::count_equal(double x, const RingEdge& edge) const {
     ++after.order;
     auto result = static_cast<std::int64_t>(first_not_below(x, after) - first_not_below(x, edge));
     for (const RingEdge& e : loose_)
-        result += below(x, e, after) && !below(x, e, edge) ? 1 : 0;
+        result += e.order == edge.order && compare_right_of(x, e.line, edge.line) == 0 ? 1 : 0;
     return result;
 }
 

@@ -320,6 +320,64 @@ TEST(Fill, AddsUpSidesOnOneLine) {
     }
 }
 
+/// Octagons within one another that touch at the origin.
+std::vector<Contour> nested_at_a_point(int count) {
+    std::vector<Contour> rings;
+    for (int i = 1; i <= count; ++i) {
+        const double radius = 50.0 * i / count;
+        Contour& ring = rings.emplace_back(test::regular_polygon(8, radius));
+        const double by = ring.front().x;
+        for (Point2& p : ring)
+            p.x -= by;
+    }
+    return rings;
+}
+
+// But for the rounding of coordinates: on the grid almost all of these sides cross one another.
+TEST(Fill, AddsUpSidesThatNearlyLieOnOneLine) {
+    for (const std::vector<Contour>& rings : {nested_at_a_point(4000), nested_on_a_line(1000, 0.3)}) {
+        const std::size_t count = rings.size();
+        std::vector<Contour> alternating = rings;
+        double area = 0; // of every other ring without the one inside it
+        for (std::size_t i = 0; i < count; ++i) {
+            const double ring = measure(layer_of({rings[i]})).area_mm2;
+            area += (count - i) % 2 == 1 ? ring : -ring;
+            if ((count - i) % 2 == 0)
+                std::reverse(alternating[i].begin(), alternating[i].end());
+        }
+        const double whole = measure(layer_of({rings.back()})).area_mm2;
+        const Layer one = united(rings);
+        EXPECT_EQ(one.rings, 1U);
+        EXPECT_NEAR(measure(one).area_mm2, whole, 1e-9 * whole);
+        const Layer odd = united(rings, FillRule::evenodd);
+        EXPECT_NEAR(measure(odd).area_mm2, area, 1e-8 * whole);
+        EXPECT_FALSE(has_crossings(odd));
+        EXPECT_NEAR(measure(united(alternating)).area_mm2, area, 1e-8 * whole);
+    }
+}
+
+TEST(Fill, AddsUpNearlyCollinearSidesAmidOthersThatCrossThem) {
+    Random random(47);
+    for (int round = 0; round < 3; ++round) {
+        const std::vector<Contour> nested = nested_on_a_line(1000, random.real(0.1, 1.4));
+        std::vector<Contour> others;
+        for (int i = 0; i < 200; ++i) {
+            const double x = random.real(-900, 900);
+            const double y = random.real(-900, 900);
+            others.push_back(rectangle(x, y, x + random.real(1, 190), y + random.real(1, 190)));
+        }
+        std::vector<Contour> all = nested;
+        all.insert(all.end(), others.begin(), others.end());
+        const Layer material = united(all, FillRule::positive);
+        EXPECT_FALSE(has_crossings(material));
+        std::reverse(all.begin(), all.end());
+        EXPECT_TRUE(same_contours(united(all, FillRule::positive), material));
+        others.push_back(nested.back()); // the others of these lie within it
+        const double area = measure(united(others, FillRule::positive)).area_mm2;
+        EXPECT_NEAR(measure(material).area_mm2, area, 1e-9 * area);
+    }
+}
+
 TEST(Fill, JoinsThousandsOfSidesThatMeetInOnePoint) {
     std::vector<Contour> apart;
     std::vector<Contour> overlapping;
