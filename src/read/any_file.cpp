@@ -20,8 +20,8 @@ std::variant<MeshFile, LayerFile> read_opened(const ByteSource& opened, const st
             return read_unpacked_layers(whole(source, execution, memory_of_file(options.max_memory)),
                                         {.max_memory = options.max_memory}, execution);
         } catch (const NoLayers&) {
-            // Then it is a package of meshes. One whose layers are damaged is not: its meshes may be
-            // stand-ins.
+            // The package contains meshes only. If its layers are damaged its meshes are not read, because
+            // they may only represent the layers.
         }
     }
     MeshFile file = read_unpacked_mesh(source, options, execution);

@@ -40,12 +40,12 @@ bool holds(const ZipReader& zip, std::string_view ending) {
                        [&](const ZipEntry& entry) { return lower_case(entry.name).ends_with(ending); });
 }
 
-/// What may be a 3MF package.
+/// Returns whether the archive may be a 3MF package.
 bool holds_model(const ZipReader& zip) {
     return holds(zip, ".rels") || holds(zip, ".model");
 }
 
-/// Also a packed file, perhaps of another name, but no 3MF package.
+/// Returns whether this is AMF, perhaps compressed under another name, but not a 3MF package.
 bool is_plain_or_packed_amf(const ByteSource& source, const MeshReadOptions& options) {
     if (!is_zip(source.text()))
         return is_amf(source.text());
@@ -56,12 +56,12 @@ bool is_plain_or_packed_amf(const ByteSource& source, const MeshReadOptions& opt
            (zip.entries().size() == 1 && is_amf(zip.first_bytes(zip.entries().front(), amf_mark_within)));
 }
 
-/// Such as a job for a resin printer.
+/// Returns whether the archive contains images, such as a job for a resin printer.
 bool holds_pictures(const ZipReader& zip) {
     return holds(zip, ".png") && !holds_model(zip);
 }
 
-/// By the checksum of its first header, which all kinds of tar have.
+/// Checks the checksum of the first header, which all kinds of tar have.
 bool is_tar(std::string_view text) {
     constexpr std::size_t header_bytes = 512;
     constexpr std::size_t checksum_at = 148;
@@ -93,8 +93,8 @@ constexpr std::string_view surfaces =
 constexpr std::string_view scene =
     "is a kind of mesh file that is not read here; save it as STL, 3MF, OBJ or PLY";
 
-/// The first row that recognises a file has it. Where nothing tells what a file is, it is of the first row:
-/// STL has no mark of its own.
+/// The first row that recognises a file applies. A file that no row recognises has the first one, because STL
+/// has no signature.
 constexpr std::array rows = {
     MeshFormatRow{.extension = "stl", .recognises = is_any_stl, .read = read_stl, .stream = stream_stl},
     // Zip archives.
@@ -124,14 +124,14 @@ constexpr std::array rows = {
                   .layer_mark = "Open Vector Format (LVF!)"},
     MeshFormatRow{.recognises = by_text<is_tar>,
                   .advice = "is a tar archive, no mesh file; unpack it, and take the mesh that is in it"},
-    // Texts, or binary behind a head of text.
+    // Texts, and binary files with a text header.
     MeshFormatRow{.extension = "ply", .recognises = by_text<is_ply>, .goes_by_name = true, .read = read_ply},
     MeshFormatRow{.extension = "off", .recognises = by_text<is_off>, .goes_by_name = true, .read = read_off},
     MeshFormatRow{.extension = "obj", .goes_by_name = true, .resembles = looks_like_obj, .read = read_obj},
     // Slice files, and web pages, which may hold SVG.
     MeshFormatRow{.first_bytes = "<!doctype html"sv, .advice = web_page},
     MeshFormatRow{.first_bytes = "<html"sv, .advice = web_page},
-    // A text that holds the mark of the Common Layer Interface somewhere can still be of the two before it.
+    // A text that contains the signature of the Common Layer Interface can still be one of the two before.
     MeshFormatRow{.extension = "slc",
                   .first_bytes = "-slc"sv,
                   .recognises = by_text<is_slc>,
@@ -163,8 +163,8 @@ constexpr std::array rows = {
                             "layers as they are",
                   .read_layers = read_layered_svg,
                   .layer_mark = "layered SVG (<svg)"},
-    // What is often found under the name of a mesh file, or given by mistake. Binary ones would be taken for
-    // binary STL with a wrong count.
+    // Files that are often named like a mesh file, or given by mistake. Binary ones would be taken for binary
+    // STL with a wrong count.
     MeshFormatRow{.first_bytes = "\x1f\x8b"sv, .advice = "is packed with gzip twice; unpack it once first"},
     MeshFormatRow{.first_bytes = "<?xml"sv, .advice = "is an XML file of an unknown kind, no mesh file"},
     MeshFormatRow{.first_bytes = "version https://git-lfs"sv,
@@ -210,7 +210,7 @@ bool begins_with(std::string_view text, std::string_view first_bytes) {
                       [&](char expected, char byte) { return same(byte, expected); });
 }
 
-/// The extension of a name in lower case, without the one of gzip: "stl" of "PART.STL.gz".
+/// Returns the extension of a name in lower case, without that of gzip: "stl" of "PART.STL.gz".
 std::string extension_of(std::string name) {
     name = lower_case(name);
     if (name.ends_with(".gz"))
@@ -260,7 +260,7 @@ const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOpti
     if (named != nullptr)
         refuse(source, fmt::format("is neither a mesh file nor the slice file that its extension .{} says",
                                    extension));
-    // Whoever calls it something else does not mean its bytes for numbers.
+    // A file with another extension is not meant to be STL.
     if (first_row([&](const MeshFormatRow& row) {
             return row.read != nullptr && row.extension == extension && &row != rows.data();
         }) != nullptr)

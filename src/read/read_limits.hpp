@@ -1,6 +1,6 @@
 #pragma once
 
-// How much of a file a caller is ready to take: checked before memory is asked for.
+// Limits of the size of a file's contents, checked before memory is allocated.
 
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -22,10 +22,10 @@
 
 namespace lamella {
 
-/// What a node of a set or map takes besides its value, about.
+/// Approximate bytes of a node of a set or map in addition to its value.
 inline constexpr std::uint64_t node_bytes = 80;
 
-/// Say where something is, for errors that are yet to be made.
+/// Return functions that describe a position if an error occurs.
 [[nodiscard]] inline auto at_byte(std::uint64_t byte) {
     return [byte] {
         return fmt::format("byte {}", byte);
@@ -37,11 +37,11 @@ inline constexpr std::uint64_t node_bytes = 80;
     };
 }
 
-/// Adds up, from any thread, what a reader is about to make. The first that is too much is Error{limit},
-/// which names the place up to which was counted, where that is given.
+/// Counts, from any thread, the triangles and bytes that a reader is about to create. Throws Error{limit} if
+/// a limit is exceeded, with the position in the file if it is given.
 class ReadLimits {
   public:
-    /// What is in memory of the file counts from the start.
+    /// The bytes of the file in memory count from the start.
     ReadLimits(const ByteSource& source, const MeshReadOptions& options)
         : ReadLimits(source, options.max_triangles, options.max_memory) {}
     ReadLimits(const ByteSource& source, const LayerReadOptions& options)
@@ -50,7 +50,7 @@ class ReadLimits {
     void add_triangles(std::uint64_t count, std::string_view place = {}) {
         check_triangles(triangles_.fetch_add(count) + count, place);
     }
-    /// Of a sum of triangles that are not counted one by one.
+    /// Checks a sum of triangles that are not counted one by one.
     void check_triangles(std::uint64_t count, std::string_view place = {}) const {
         if (count > max_triangles_ && max_triangles_ != 0)
             throw Error(ErrorKind::limit,
@@ -60,14 +60,14 @@ class ReadLimits {
     void add_bytes(std::uint64_t count, std::string_view place = {}) {
         add_bytes_at(count, [&] { return place; });
     }
-    /// `place` is only made for the error.
+    /// `place` is called only for the error.
     template <class Place>
     void add_bytes_at(std::uint64_t count, const Place& place) {
         const std::uint64_t before = bytes_.fetch_add(count);
         if (before > max_memory_ || count > max_memory_ - before)
             refuse_bytes(place());
     }
-    /// Room for so many more items, counted before it is taken. It grows as it does for push_back.
+    /// Makes room for `more` items and counts it before. The capacity grows as by push_back.
     template <class T, class Place>
     void make_room(std::vector<T>& items, std::uint64_t more, const Place& place) {
         const std::uint64_t room = items.capacity();
@@ -77,13 +77,13 @@ class ReadLimits {
         add_bytes_at((wanted - room) * sizeof(T), place);
         items.reserve(wanted);
     }
-    /// What was counted and is not kept.
+    /// Subtracts triangles and bytes that were counted and are not kept.
     void give_back(std::uint64_t triangles, std::uint64_t bytes) noexcept {
         triangles_.fetch_sub(triangles);
         bytes_.fetch_sub(bytes);
     }
 
-    /// How many more may come.
+    /// Returns the number of triangles that the limit still allows.
     [[nodiscard]] std::uint64_t triangles_left() const noexcept {
         return max_triangles_ == 0 ? std::numeric_limits<std::uint64_t>::max() : max_triangles_ - triangles_;
     }

@@ -23,7 +23,7 @@ namespace lamella {
 
 namespace {
 
-/// Binary STL has control characters everywhere: in its numbers, and two in each attribute word.
+/// Binary STL contains control characters: in its numbers, and two in each attribute word.
 bool looks_like_text(std::string_view text) {
     constexpr std::size_t enough = 4096;
     text = text.substr(0, enough);
@@ -38,11 +38,11 @@ bool has_stl_size(std::span<const std::byte> beginning, std::uint64_t size) {
            size == stl_head_bytes + std::uint64_t{stl_record_bytes} * stl_declared_count(beginning);
 }
 
-/// Whether most corners could be those of a part. Of bytes that mean something else, such as packed ones,
-/// most are not: a float can be as large as 3e38, and as small as 1e-38.
+/// Returns whether most corners can be those of a part. Most corners in data of another kind, such as
+/// compressed data, cannot: a float can be as large as 3e38 and as small as 1e-38.
 bool has_likely_corners(std::span<const std::byte> bytes) {
     constexpr std::size_t enough = 1000;      // triangles
-    constexpr std::size_t corners_begin = 12; // behind the normal
+    constexpr std::size_t corners_begin = 12; // after the normal
     static_assert(stl_head_bytes + enough * stl_record_bytes <= window_beginning);
     const std::size_t count = std::min((bytes.size() - stl_head_bytes) / stl_record_bytes, enough);
     std::size_t likely = 0;
@@ -58,7 +58,8 @@ bool has_likely_corners(std::span<const std::byte> bytes) {
     return 2 * likely >= 9 * count;
 }
 
-/// Whether corners of a record could be those of a part: none is not finite, huge, or nearly but not quite 0.
+/// Returns whether the corners of a record can be those of a part: all are finite, none is huge, or nearly
+/// but not exactly 0.
 bool is_likely(std::span<const std::byte> record) {
     std::array<float, 9> corners{};
     std::memcpy(corners.data(), record.data() + 12, sizeof corners);
@@ -68,10 +69,11 @@ bool is_likely(std::span<const std::byte> record) {
     });
 }
 
-/// Whether the first records make sense and most of the others do not: then bytes were lost or added between.
-/// Or the last ones do so only as they lie from the end of the file back.
+/// Returns whether the first records are plausible and most others are not, or whether the last ones are
+/// plausible only if counted back from the end of the file. In both cases bytes were lost or added in
+/// between.
 bool is_shifted(const ByteSource& source) {
-    constexpr std::size_t few = 5; // where bytes are lost or added every now and then
+    constexpr std::size_t few = 5; // for files that lose or gain bytes repeatedly
     constexpr std::size_t enough = 1000;
     const std::size_t stored = (source.size() - stl_head_bytes) / stl_record_bytes;
     const std::uint32_t declared = stl_declared_count(source.bytes);
@@ -101,10 +103,11 @@ bool is_shifted(const ByteSource& source) {
            2 * likely(ends, [&](std::size_t i) { return record(records - 1 - i); }) < ends;
 }
 
-/// What a transfer as text has done to a binary file whose size does not fit its count; "" where it has not.
+/// Describes the damage by a transfer as text to a binary file whose size contradicts its count; "" if there
+/// is none.
 std::string_view text_mode_damage(const ByteSource& source) {
     constexpr std::size_t enough = std::size_t{1} << 20;
-    constexpr std::size_t many = 4; // bytes that are as they are by chance once in 256 times
+    constexpr std::size_t many = 4; // each byte would have this value by chance once in 256 times
     std::string text(std::min<std::uint64_t>(source.size(), enough), '\0');
     copy_out(source, 0, std::as_writable_bytes(std::span(text)));
     std::size_t line_feeds = 0;
@@ -115,7 +118,7 @@ std::string_view text_mode_damage(const ByteSource& source) {
     }
     if (line_feeds >= many && without_return == 0)
         return "each byte 0x0A has become 0x0D 0x0A";
-    std::size_t replaced = 0; // by U+FFFD, or spelled in two bytes
+    std::size_t replaced = 0; // by U+FFFD, or encoded in two bytes
     std::size_t high = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto byte = static_cast<unsigned char>(text[i]);
@@ -133,7 +136,7 @@ std::string_view text_mode_damage(const ByteSource& source) {
     return {};
 }
 
-/// Whether it is of the binary form, else of the ASCII one. Throws Error{input} when it is neither.
+/// Returns true for the binary form, false for the ASCII form. Throws Error{input} if it is neither.
 bool is_binary(const ByteSource& source) {
     const std::uint64_t size = source.size();
     const std::string_view text = source.text();
@@ -148,7 +151,7 @@ bool is_binary(const ByteSource& source) {
     const std::string_view begin = after_blanks(text);
     if (looks_like_text(text)) {
         if (begins_with_solid(text))
-            return false; // its reader names the line where it goes wrong
+            return false; // its reader reports the line of the error
         const std::string_view line = begin.substr(0, begin.find_first_of("\r\n"));
         fail(fmt::format("line {}: is a text, but no mesh file: found '{}', expected 'solid' of an "
                          "ASCII STL file, or the beginning of another mesh format",

@@ -28,17 +28,17 @@ static_assert(std::endian::native == std::endian::little, "binary STL is viewed 
 
 namespace {
 
-/// Bytes of the normal, which is not to be trusted, before the corners.
+/// Bytes of the normal before the corners; normals are often wrong and not used.
 constexpr std::size_t normal_bytes = 12;
 
-/// Where the corners of the first triangle begin in a file.
+/// Offset of the corners of the first triangle in a file.
 constexpr std::size_t corners_at = stl_head_bytes + normal_bytes;
 
-/// Some megabyte at a time: small enough to share out, large enough not to matter.
+/// About a megabyte: small enough to distribute to threads, large enough that overhead is negligible.
 constexpr std::uint64_t chunk_triangles = 20'000;
 
-/// In a batch of a stream: as many as in a piece of a fold, so that sums over batches have the same bits as
-/// sums over the whole; and pipeline/feed finds a batch again by its number.
+/// Triangles of a chunk of a stream: as many as in a chunk of a fold, so that sums over chunks of the stream
+/// have the same bits as sums over the whole. pipeline/feed uses the chunk's number to find it again.
 constexpr std::uint64_t batch_triangles = fold_piece;
 
 // A float is NaN or infinite when all bits of its exponent are set.
@@ -47,26 +47,26 @@ constexpr std::uint32_t exponent_bits = 0x7F800000;
 using FourWords [[gnu::vector_size(16)]] = std::uint32_t;
 using FourFloats [[gnu::vector_size(16)]] = float;
 
-/// What one pass over records tells.
+/// Result of one pass over records.
 struct Survey {
-    bool finite; ///< all corners are
-    Box3 box;    ///< of the corners; meaningful when all are finite
+    bool finite; ///< all corners are finite
+    Box3 box;    ///< of the corners; valid if all are finite
 };
 
-/// Runs as fast as memory delivers: three loads a record, no branch. `corners` is where the corners of the
-/// first record begin.
+/// Surveys records at the speed of memory: three loads per record, no branch. `corners` is the position of
+/// the corners of the first record.
 Survey survey(const std::byte* corners, std::uint64_t n) {
     constexpr FourWords mask = {exponent_bits, exponent_bits, exponent_bits, exponent_bits};
     constexpr float infinity = std::numeric_limits<float>::infinity();
     FourWords bad = {};
-    // Of each corner, x y z and one more value in the last lane, which counts for nothing.
+    // For each corner x, y, z and an unused value in the last lane.
     std::array<FourFloats, 3> low;
     std::array<FourFloats, 3> high;
     low.fill(FourFloats{infinity, infinity, infinity, infinity});
     high.fill(-low[0]);
     for (std::uint64_t i = 0; i < n; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
-            // The third load begins one value early: beyond its corner the file may end.
+            // The third load begins one value earlier, because the file may end after its corner.
             FourFloats corner;
             std::memcpy(&corner, corners + i * stl_record_bytes + (k == 2 ? 20 : 12 * k), sizeof corner);
             if (k == 2)
@@ -80,7 +80,7 @@ Survey survey(const std::byte* corners, std::uint64_t n) {
     }
     Survey result{(bad[0] | bad[1] | bad[2] | bad[3]) == 0, {}};
     for (std::size_t k = 0; k < 3 && n != 0; ++k) {
-        // Adding zero turns -0 into +0, as everywhere.
+        // Adding zero turns -0 into +0.
         result.box.add(Point3{low[k][0] + 0.0, low[k][1] + 0.0, low[k][2] + 0.0});
         result.box.add(Point3{high[k][0] + 0.0, high[k][1] + 0.0, high[k][2] + 0.0});
     }
@@ -94,23 +94,23 @@ bool is_finite(const std::byte* corners) {
                         [](std::uint32_t word) { return (word & exponent_bits) == exponent_bits; });
 }
 
-/// How many records of each chunk have a corner that is not finite, and the first of them all.
+/// Number of records of each chunk with a corner that is not finite, and index of the first one in the file.
 struct NonFinite {
     std::vector<std::uint32_t> per_chunk;
     std::uint64_t total = 0;
     std::uint64_t first = 0;
-    Box3 box; ///< of all corners; meaningful when all are finite
+    Box3 box; ///< of all corners; valid if all are finite
 };
 
-/// The records of all triangles, from the corners of the first one on, in memory.
+/// The records of all triangles in memory, from the corners of the first one on.
 struct Records {
     std::shared_ptr<const void> owner;
     const std::byte* corners;
     NonFinite nonfinite;
 };
 
-/// Of a file that is read in windows, they are looked at as they come, unless they would take too much
-/// memory. Else they are viewed where they are.
+/// Copies the records of a file that is read in windows to memory and surveys each chunk as it arrives,
+/// unless they would take too much memory. Otherwise surveys them in place.
 Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOptions& options,
                      const Execution& execution, Executor& executor, ProgressMeter& progress) {
     const std::size_t size = n * stl_record_bytes - normal_bytes;
@@ -152,7 +152,7 @@ Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOp
     return {viewed.owner, corners, std::move(found)};
 }
 
-/// The triangles with finite corners, in order, in memory of their own.
+/// Copies the triangles with finite corners, in order.
 TriangleSoup copy_finite(const std::byte* corners, std::uint64_t n, const NonFinite& dropped,
                          Executor& executor) {
     std::vector<std::uint64_t> first_kept(dropped.per_chunk.size());
@@ -172,7 +172,7 @@ TriangleSoup copy_finite(const std::byte* corners, std::uint64_t n, const NonFin
     return {TriangleSoup::KnownFinite{}, memory, first, sizeof(Triangle3f), kept};
 }
 
-/// The header's text: what stands before the first byte that no text has, without the blanks around it.
+/// Returns the header's text: the bytes before the first one that is not text, without blanks around them.
 std::string header_text(std::span<const std::byte> bytes) {
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), 80);
     const auto is_control = [](char c) {
@@ -216,7 +216,7 @@ StlExtent stl_extent(std::uint64_t file_bytes, std::uint32_t declared) {
 
 namespace {
 
-/// How many triangles the head promises and the file has.
+/// Returns the number of triangles, from the header and the size of the file.
 std::uint64_t check_head(const ByteSource& source, const MeshReadOptions& options, Remarks& remarks) {
     const std::uint32_t declared = stl_declared_count(source.bytes);
     const auto [stored, remark] = stl_extent(source.size(), declared);
@@ -232,7 +232,7 @@ std::uint64_t check_head(const ByteSource& source, const MeshReadOptions& option
     return stored;
 }
 
-/// Without its triangles.
+/// Describes the file without its triangles.
 MeshFile describe(const ByteSource& source, std::uint64_t stored, std::uint64_t nonfinite,
                   std::uint64_t first_nonfinite, Remarks& remarks) {
     MeshFile file;
@@ -272,7 +272,7 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
     const auto [owner, corners, nonfinite] =
         read_records(source, stored, options, execution, executor, progress);
     judge_nonfinite(nonfinite.total, nonfinite.first, stored, remarks);
-    if (nonfinite.total != 0) // the others are copied
+    if (nonfinite.total != 0) // the other triangles are copied
         ReadLimits(source, options).add_bytes((stored - nonfinite.total) * sizeof(Triangle3f));
 
     MeshFile file = describe(source, stored, nonfinite.total, nonfinite.first, remarks);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reading a mesh or layers, for whoever takes either.
+// Reads a mesh or layers, for callers that accept both.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -14,13 +14,13 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Reads a mesh file or a slice file, whichever it is by its content: what `read_mesh` or `read_layers` gives
-/// and throws. A package such as 3MF may hold both; then it is read for its layers, as its meshes are mostly
-/// stand-ins. "-" reads standard input. `max_memory` holds for layers, too.
+/// Reads a mesh file or a slice file, recognised by its content, with the results and errors of `read_mesh`
+/// or `read_layers`. If a package such as 3MF has both, its layers are read, because its meshes usually only
+/// represent them. "-" reads standard input. `max_memory` also applies to layers.
 [[nodiscard]] std::variant<MeshFile, LayerFile>
 read_any(const std::string& path, const MeshReadOptions& options = {}, const Execution& execution = {});
 
-/// The same from bytes in memory; `name` stands for the path in errors.
+/// Reads bytes in memory; `name` replaces the path in errors.
 [[nodiscard]] std::variant<MeshFile, LayerFile> read_any(std::span<const std::byte> bytes,
                                                          const std::string& name,
                                                          const MeshReadOptions& options = {},

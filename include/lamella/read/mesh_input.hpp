@@ -1,6 +1,7 @@
 #pragma once
 
-// Mesh files that may be larger than memory: opened first, looked at, and then read whole or batch by batch.
+// Mesh files that may be larger than memory: they are opened and inspected first, then read whole or in
+// chunks.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
@@ -17,10 +18,10 @@ namespace lamella {
 
 struct ByteSource;
 
-/// Receives the triangles of a file, some ten thousand at a time: from several threads at once and in any
-/// order. `number` counts the batches in the order of the file (a batch of which nothing is usable is left
-/// out). The batch is a view: its memory is let go of when the call returns. May throw: reading stops and the
-/// exception reaches the caller.
+/// Receives the triangles of a file in chunks of some ten thousand, from several threads at once and in any
+/// order. `number` is the index of the chunk in the file; a chunk without usable triangles is omitted. The
+/// chunk is a view that is valid during the call. May throw: reading stops and the exception reaches the
+/// caller.
 using TriangleSink = std::function<void(const TriangleSoup& batch, std::uint64_t number)>;
 
 /// Triangles [begin, end) of a binary STL file, as stored.
@@ -29,41 +30,41 @@ struct RecordRange {
     std::uint64_t end = 0;
 };
 
-/// A mesh file that is open. Cheap to copy; copies are the same file.
+/// An open mesh file. Copies are cheap and refer to the same file.
 class MeshInput {
   public:
-    /// "-" is standard input. A binary STL file stays open and is read in windows.
-    /// Any other input is copied here: no more than `most_in_memory` bytes to memory (unless given, a quarter
-    /// of what MeshReadOptions::max_memory is by default), a longer one to a temporary file without a name
-    /// (in $TMPDIR, else /var/tmp). Throws Error{input} when there is no such file or it may not be read,
-    /// Error{output} when there is no room for the temporary file, Error{cancelled}.
+    /// Opens a file; "-" is standard input. A binary STL file stays open and is read in windows. Any other
+    /// input is copied: at most `most_in_memory` bytes to memory (by default a quarter of the default of
+    /// MeshReadOptions::max_memory), a longer one to an anonymous temporary file (in $TMPDIR, else /var/tmp).
+    /// Throws Error{input} if the file does not exist or cannot be read, Error{output} if the temporary file
+    /// does not fit on the disk, Error{cancelled}.
     explicit MeshInput(const std::string& path, std::optional<std::uint64_t> most_in_memory = {},
                        const Execution& execution = {});
 
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
     [[nodiscard]] std::uint64_t bytes() const noexcept;
-    /// How many of them are in memory.
+    /// Returns the number of bytes that are in memory.
     [[nodiscard]] std::uint64_t bytes_in_memory() const noexcept;
 
-    /// Whether `stream` can read it: STL that is not packed, even with a wrong count or cut off.
-    /// Throws what `read` throws for files of unknown formats.
+    /// Returns whether `stream` can read the file: uncompressed STL, even with a wrong count or truncated.
+    /// Throws the errors of `read` for files of unknown formats.
     [[nodiscard]] bool can_stream() const;
-    /// How many triangles a binary STL file holds, as far as its head and its length tell, usable or not;
-    /// nothing for other files.
+    /// Returns the number of triangles of a binary STL file, usable or not, according to its header and its
+    /// length; none for other files.
     [[nodiscard]] std::optional<std::uint64_t> records() const;
 
-    /// Reads all of it: see read_mesh.
+    /// Reads the whole file: see read_mesh.
     [[nodiscard]] MeshFile read(const MeshReadOptions& options = {}, const Execution& execution = {}) const;
 
-    /// Hands all triangles to the sink, in the memory of some batches for each thread, however large the file
-    /// is. The same checks, errors and warnings as in `read`; the result is the same but for the mesh of its
-    /// only object, which is empty. May be called any number of times. Progress counts bytes.
+    /// Passes all triangles to the sink. Needs memory for a few chunks per thread, for any size of file.
+    /// Checks, errors and warnings are those of `read`; so is the result, except that the mesh of its only
+    /// object is empty. May be called any number of times. Progress counts bytes.
     ///
-    /// `share`: only these triangles of a binary file; `nonfinite_triangles` and `first_nonfinite` are of
-    /// those. To warn of them, or that none of the file is usable, is left to whoever knows all shares.
-    /// `stored_triangles` and `max_triangles` are of the whole file, in which the head counts them. Throws
-    /// Error{usage} when the file has fewer, for a share of an ASCII file, and for a file that cannot be
-    /// streamed.
+    /// `share` selects a range of the triangles of a binary file; `nonfinite_triangles` and `first_nonfinite`
+    /// then refer to this range. The caller, who knows all ranges, must warn of them, and must check that a
+    /// triangle of the file is usable. `stored_triangles` and `max_triangles` refer to the number in the
+    /// header, which is that of the whole file. Throws Error{usage} if the file has fewer triangles than the
+    /// range, for a range of an ASCII file, and for a file that cannot be streamed.
     MeshFile stream(const TriangleSink& sink, const MeshReadOptions& options = {},
                     const Execution& execution = {}, const std::optional<RecordRange>& share = {}) const;
 
