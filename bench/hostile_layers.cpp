@@ -355,7 +355,8 @@ Timed make_vectors(const Layer& layer, double area_mm2) {
             length += std::hypot(exposed.hatches[i + 1].x - exposed.hatches[i].x,
                                  exposed.hatches[i + 1].y - exposed.hatches[i].y);
     const double hatched = length * strategy.hatch.distance;
-    return {seconds, layer.points.size(), hatched > 0.9 * area_mm2 && hatched <= area_mm2};
+    const double most = area_mm2 * (1 + strategy.hatch.overlap / strategy.hatch.cell); // stripes overlap
+    return {seconds, layer.points.size(), hatched > 0.9 * area_mm2 && hatched <= most};
 }
 
 /// Offsets inwards until nothing is left.
