@@ -5,11 +5,11 @@ PREFIX ?= /usr/local
 JOBS := $(shell nproc)
 # One more than there are processors: some tests mostly wait.
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
-ROOMS := core mesh parts contour container read slicing polygon raster scan write pipeline
+MODULES := core mesh parts contour slicing polygon scan system container read raster write pipeline
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include parts python src tests -name '*.[ch]pp' 2>/dev/null)
 
-# Where nothing was built before, the sources of a room are compiled together: in two thirds of the time.
+# Where nothing was built before, the sources of a module are compiled together: in two thirds of the time.
 ifeq ($(wildcard build/CMakeCache.txt),)
 RELEASE := -D CMAKE_UNITY_BUILD=ON
 endif
@@ -68,10 +68,10 @@ test-asan: packages-all
 
 test-tsan: packages-all
 	cmake --preset tsan
-	cmake --build build-tsan --target $(ROOMS:%=lamella_%_test)
-	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(ROOMS)))$$'
+	cmake --build build-tsan --target $(MODULES:%=lamella_%_test)
+	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(MODULES)))$$'
 
-# The rooms that compute, and the bodies that these are tried on.
+# The modules that compute, and the bodies that these are tried on.
 test-arm64: packages-all
 	@tools/install_packages.sh tools/packages-arm64.txt
 	cmake --preset arm64

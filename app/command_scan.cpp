@@ -1,10 +1,10 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/version.hpp"
-#include "lamella/core/whole_file.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/read/layer_file.hpp"
+#include "lamella/system/whole_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "command_line.hpp"

@@ -1,8 +1,8 @@
 #include "lamella/core/error.hpp"
-#include "lamella/core/whole_file.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/slice.hpp"
+#include "lamella/system/whole_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "batch.hpp"

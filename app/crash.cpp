@@ -1,6 +1,6 @@
 #include "crash.hpp"
 
-#include "lamella/core/whole_file.hpp"
+#include "lamella/system/whole_file.hpp"
 
 #include "failure.hpp"
 

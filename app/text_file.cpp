@@ -1,7 +1,7 @@
 #include "text_file.hpp"
 
 #include "lamella/core/error.hpp"
-#include "lamella/core/whole_file.hpp"
+#include "lamella/system/whole_file.hpp"
 
 #include "standard_streams.hpp"
 

@@ -7,7 +7,7 @@
 #include "experiment.hpp"
 
 #include <fmt/format.h>
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 #include <algorithm>
 #include <cmath>

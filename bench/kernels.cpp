@@ -1,14 +1,14 @@
 // Benchmarks of single kernels (Google Benchmark): read, rank, weld, link, walk, run, format.
 
-#include "core/byte_source.hpp"
 #include "core/executor.hpp"
 #include "parts/shapes.hpp"
 #include "slicing/ranks.hpp"
 #include "slicing/sweep/cut_graph.hpp"
 #include "slicing/sweep/point_kernels.hpp"
+#include "system/byte_source.hpp"
 
 #include <benchmark/benchmark.h>
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 #include <cmath>
 #include <filesystem>

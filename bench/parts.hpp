@@ -4,7 +4,7 @@
 
 #include "experiment.hpp"
 
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 #include <string>
 #include <vector>

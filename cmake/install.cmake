@@ -1,5 +1,4 @@
-# What `cmake --install` lays down, so that find_package(lamella) and pkg-config find it wherever the tree is
-# moved.
+# Installs both libraries so that find_package(lamella) and pkg-config find them wherever the tree is moved.
 
 include(CMakePackageConfigHelpers)
 
@@ -7,8 +6,10 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lamella)
 set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
 install(TARGETS lamella EXPORT lamella-targets)
+install(TARGETS lamella-io EXPORT lamella-io-targets)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/lamella DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT lamella-targets NAMESPACE lamella:: DESTINATION ${package_dir})
+install(EXPORT lamella-io-targets NAMESPACE lamella:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/LICENSES-third-party.txt
         DESTINATION ${CMAKE_INSTALL_DOCDIR})
 # The pages that headers refer to, with all that they show or link to, in the folders of the sources.
@@ -22,17 +23,9 @@ if(LAMELLA_VIEWER_HTML)
     install(FILES ${LAMELLA_VIEWER_HTML} DESTINATION ${CMAKE_INSTALL_DATADIR}/lamella RENAME viewer.html OPTIONAL)
 endif()
 
-set(pc_packages "expat fmt libdeflate zlib")
-# A static library leaves it to its user to link what it needs; a shared one has done so itself.
-get_target_property(library_type lamella TYPE)
-if(library_type STREQUAL "STATIC_LIBRARY")
+set(LAMELLA_IS_STATIC FALSE)
+if(NOT BUILD_SHARED_LIBS)
     set(LAMELLA_IS_STATIC TRUE)
-    set(pc_requires "Requires: ${pc_packages}")
-    set(pc_libs "-llamella -pthread")
-else()
-    set(LAMELLA_IS_STATIC FALSE)
-    set(pc_requires "Requires.private: ${pc_packages}")
-    set(pc_libs "-llamella\nLibs.private: -pthread")
 endif()
 
 configure_package_config_file(
@@ -43,9 +36,27 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/lamella-config-version.cm
 install(FILES ${PROJECT_BINARY_DIR}/lamella-config.cmake ${PROJECT_BINARY_DIR}/lamella-config-version.cmake
         DESTINATION ${package_dir})
 
-file(RELATIVE_PATH pc_to_prefix /prefix/${pkgconfig_dir} /prefix)
-configure_file(${PROJECT_SOURCE_DIR}/cmake/lamella.pc.in ${PROJECT_BINARY_DIR}/lamella.pc @ONLY)
-install(FILES ${PROJECT_BINARY_DIR}/lamella.pc DESTINATION ${pkgconfig_dir})
+# A static library leaves it to its user to link the libraries that it needs; a shared one has linked them.
+function(lamella_pkgconfig pc_name pc_description)
+    cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "LIBRARIES;PACKAGES")
+    list(JOIN arg_PACKAGES " " packages)
+    list(TRANSFORM arg_LIBRARIES PREPEND "-l")
+    list(JOIN arg_LIBRARIES " " libraries)
+    if(LAMELLA_IS_STATIC)
+        set(pc_requires "Requires: ${packages}")
+        set(pc_libs "${libraries} -pthread")
+    else()
+        list(GET arg_LIBRARIES 0 library)
+        set(pc_requires "Requires.private: ${packages}")
+        set(pc_libs "${library}\nLibs.private: -pthread")
+    endif()
+    file(RELATIVE_PATH pc_to_prefix /prefix/${pkgconfig_dir} /prefix)
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/lamella.pc.in ${PROJECT_BINARY_DIR}/${pc_name}.pc @ONLY)
+    install(FILES ${PROJECT_BINARY_DIR}/${pc_name}.pc DESTINATION ${pkgconfig_dir})
+endfunction()
+lamella_pkgconfig(lamella "${PROJECT_DESCRIPTION}" LIBRARIES lamella PACKAGES fmt)
+lamella_pkgconfig(lamella-io "Files, formats and jobs for Lamella" LIBRARIES lamella-io lamella
+                  PACKAGES expat fmt libdeflate zlib)
 
 file(RELATIVE_PATH bin_to_lib /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
 foreach(program lamella_app lamella_mpi)

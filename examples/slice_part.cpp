@@ -1,4 +1,4 @@
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 int main() {
     const lamella::MeshFile part = lamella::read_mesh("part.stl");

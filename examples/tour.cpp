@@ -1,5 +1,5 @@
-// The whole library in a hundred lines, one step per group of lamella/lamella.hpp, in its order.
-#include <lamella/lamella.hpp>
+// The whole library in a hundred lines, one step per group of lamella/io.hpp, in its order.
+#include <lamella/io.hpp>
 
 #include <iostream>
 #include <new>

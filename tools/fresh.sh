@@ -2,7 +2,7 @@
 # `make demo` and `make test` on a Debian 12 that is up to date and has git and make, and nothing else. Such a machine is
 # made in a folder, from the mirror that apt uses here, and removed at the end; the files are those that git tracks, as
 # they are now. Of this machine it knows only how to reach mirror and npm's registry. What has been done here with the very
-# same bytes is not done again: what a compiler cache has is not compiled, and test programs of rooms that passed are built
+# same bytes is not done again: what a compiler cache has is not compiled, and test programs of modules that passed are built
 # and compared instead of run. Where no machine can be made, this says why and ends well.
 # usage: tools/fresh.sh
 # shellcheck disable=SC2317 # functions are called by the shell that unshare starts
@@ -79,19 +79,19 @@ make_test() {
     on_it "$PWD" make test TESTS="$others"
 }
 
-# The rooms whose tests `make test` has run here, as the program that was built there, too, byte for byte.
+# The modules whose tests `make test` has run here, as the program that was built there, too, byte for byte.
 passed_here() {
-    local program room rooms=
+    local program module modules=
     for program in build/tests/*/lamella_*_test; do
-        room=${program#build/tests/}
-        room=${room%/*}
+        module=${program#build/tests/}
+        module=${module%/*}
         # That of the whole way stands for tests of the program, too, which differ by what a machine has.
-        if [ "$room" != agreement ] && [ "$program" = "build/tests/$room/lamella_${room}_test" ] &&
+        if [ "$module" != agreement ] && [ "$program" = "build/tests/$module/lamella_${module}_test" ] &&
             [ build/tests/passed -nt "$program" ] && cmp --quiet "$program" "$root$PWD/$program"; then
-            rooms=$rooms${rooms:+|}$room
+            modules=$modules${modules:+|}$module
         fi
     done
-    echo "$rooms"
+    echo "$modules"
 }
 
 run() {

@@ -4,7 +4,7 @@
 //
 // HEIGHTS has one z a line; RESULT is JSON as the other slicers write it.
 
-#include "lamella/lamella.hpp"
+#include "lamella/io.hpp"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 // A buffer for bytes that are read later.
 
-#include "core/spill_file.hpp"
+#include "system/spill_file.hpp"
 
 #include <cstddef>
 #include <cstdint>

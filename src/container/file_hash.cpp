@@ -2,9 +2,9 @@
 
 #include "lamella/core/error.hpp"
 
-#include "core/byte_source.hpp"
-#include "core/memory_size.hpp"
 #include "core/pages.hpp"
+#include "system/byte_source.hpp"
+#include "system/memory_size.hpp"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>

@@ -3,7 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/inflate.hpp"
-#include "core/growing_memory.hpp"
+#include "system/growing_memory.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>

@@ -2,7 +2,7 @@
 
 // Decompression of gzip files.
 
-#include "core/byte_source.hpp"
+#include "system/byte_source.hpp"
 
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 #include "container/inflate.hpp"
 
-#include "core/memory_size.hpp"
+#include "system/memory_size.hpp"
 
 #include <libdeflate.h>
 

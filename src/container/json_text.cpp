@@ -2,9 +2,9 @@
 
 #include "lamella/core/error.hpp"
 
+#include "container/parse_number.hpp"
 #include "container/text_place.hpp"
 #include "container/utf8.hpp"
-#include "core/parse_number.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 // Reads untrusted zip archives.
 
 #include "container/zip_format.hpp"
-#include "core/byte_source.hpp"
+#include "system/byte_source.hpp"
 
 #include <atomic>
 #include <cstddef>

@@ -3,7 +3,7 @@
 // Writes zip archives sequentially.
 
 #include "container/zip_format.hpp"
-#include "core/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 
 #include <cstdint>
 #include <string>

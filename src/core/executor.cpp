@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include <sched.h>
+#include "core/machine.hpp"
 
 #include <algorithm>
 #include <system_error>
@@ -13,11 +13,7 @@ namespace lamella {
 unsigned thread_count(const Execution& execution) noexcept {
     if (execution.threads != 0)
         return execution.threads;
-    // The affinity mask reflects taskset and containers; hardware_concurrency may not.
-    cpu_set_t set;
-    if (sched_getaffinity(0, sizeof set, &set) == 0)
-        return std::max(1, CPU_COUNT(&set));
-    return std::max(1U, std::thread::hardware_concurrency());
+    return usable_processors();
 }
 
 Executor::Executor(const Execution& execution)

@@ -1,7 +1,7 @@
 #include "pipeline/job_memory.hpp"
 
-#include "core/memory_size.hpp"
 #include "slicing/slabs.hpp"
+#include "system/memory_size.hpp"
 
 #include <algorithm>
 

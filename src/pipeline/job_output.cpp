@@ -2,9 +2,9 @@
 
 #include "lamella/core/error.hpp"
 
-#include "core/file_piece.hpp"
 #include "pipeline/agreement.hpp"
 #include "pipeline/packed.hpp"
+#include "system/file_piece.hpp"
 #include "write/layer_writers.hpp"
 
 #include <fmt/format.h>

@@ -9,7 +9,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "container/byte_store.hpp"
-#include "core/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 
 #include <cstdint>
 #include <functional>

@@ -9,9 +9,9 @@
 #include "container/common_layer_format.hpp"
 #include "container/gzip.hpp"
 #include "contour/same_height.hpp"
-#include "core/atomic_file.hpp"
-#include "core/byte_source.hpp"
-#include "core/memory_size.hpp"
+#include "system/atomic_file.hpp"
+#include "system/byte_source.hpp"
+#include "system/memory_size.hpp"
 #include "write/layer_writers.hpp"
 
 #include <fmt/format.h>

@@ -5,9 +5,9 @@
 
 #include "core/byte_amount.hpp"
 #include "core/counted.hpp"
-#include "core/memory_size.hpp"
 #include "pipeline/plate_builder.hpp"
 #include "pipeline/plate_names.hpp"
+#include "system/memory_size.hpp"
 
 #include <fmt/format.h>
 

@@ -7,8 +7,8 @@
 
 #include "core/executor.hpp"
 #include "core/pages.hpp"
-#include "core/spill_file.hpp"
 #include "slicing/slabs.hpp"
+#include "system/spill_file.hpp"
 
 #include <atomic>
 #include <cstddef>

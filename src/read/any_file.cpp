@@ -2,10 +2,10 @@
 
 #include "container/gzip.hpp"
 #include "container/zip_reader.hpp"
-#include "core/byte_source.hpp"
-#include "core/memory_size.hpp"
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
+#include "system/byte_source.hpp"
+#include "system/memory_size.hpp"
 
 namespace lamella {
 

@@ -1,7 +1,7 @@
 #include "read/coordinate_text.hpp"
 
+#include "container/parse_number.hpp"
 #include "core/lower_case.hpp"
-#include "core/parse_number.hpp"
 
 #include <limits>
 

@@ -2,7 +2,7 @@
 
 // Reads decimal numbers quickly, because most bytes of a mesh in a text file are digits.
 
-#include "core/parse_number.hpp"
+#include "container/parse_number.hpp"
 
 #include <cmath>
 #include <cstddef>

@@ -5,11 +5,11 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
 
-#include "core/byte_source.hpp"
 #include "read/face_mesh.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
 #include "read/text_pieces.hpp"
+#include "system/byte_source.hpp"
 
 #include <cstddef>
 #include <cstdint>

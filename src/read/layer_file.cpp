@@ -5,11 +5,11 @@
 #include "container/gzip.hpp"
 #include "container/text_place.hpp"
 #include "container/zip_reader.hpp"
-#include "core/byte_source.hpp"
-#include "core/memory_size.hpp"
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/read_limits.hpp"
+#include "system/byte_source.hpp"
+#include "system/memory_size.hpp"
 
 #include <fmt/format.h>
 

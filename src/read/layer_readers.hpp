@@ -9,7 +9,7 @@
 #include "lamella/read/layer_file.hpp"
 
 #include "container/zip_reader.hpp"
-#include "core/byte_source.hpp"
+#include "system/byte_source.hpp"
 
 #include <string>
 #include <string_view>

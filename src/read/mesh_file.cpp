@@ -5,10 +5,10 @@
 
 #include "container/gzip.hpp"
 #include "container/zip_reader.hpp"
-#include "core/byte_source.hpp"
-#include "core/memory_size.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/mesh_readers.hpp"
+#include "system/byte_source.hpp"
+#include "system/memory_size.hpp"
 
 #include <fmt/format.h>
 

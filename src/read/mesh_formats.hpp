@@ -8,8 +8,8 @@
 #include "lamella/read/mesh_file.hpp"
 #include "lamella/read/mesh_input.hpp"
 
-#include "core/byte_source.hpp"
 #include "read/mesh_readers.hpp"
+#include "system/byte_source.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -54,7 +54,7 @@ struct MeshFormatRow {
 /// Error{input} with advice if the file is not a mesh file.
 [[nodiscard]] const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOptions& options);
 
-/// Opens a file that may contain a mesh (core/byte_source); binary STL is read in windows.
+/// Opens a file that may contain a mesh (system/byte_source); binary STL is read in windows.
 [[nodiscard]] ByteSource open_mesh(const std::string& path, const Execution& execution,
                                    std::uint64_t most_in_memory);
 

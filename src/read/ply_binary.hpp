@@ -5,10 +5,10 @@
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
 
-#include "core/byte_source.hpp"
 #include "read/ply_header.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
+#include "system/byte_source.hpp"
 
 #include <array>
 

@@ -2,8 +2,8 @@
 
 // The header of a PLY file, which describes the rows.
 
-#include "core/byte_source.hpp"
 #include "read/remarks.hpp"
+#include "system/byte_source.hpp"
 
 #include <cstddef>
 #include <cstdint>

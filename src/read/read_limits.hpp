@@ -6,8 +6,8 @@
 #include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
 
-#include "core/byte_source.hpp"
-#include "core/memory_size.hpp"
+#include "system/byte_source.hpp"
+#include "system/memory_size.hpp"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_place.hpp"
-#include "core/memory_size.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/stl_ascii.hpp"
 #include "read/stl_binary.hpp"
 #include "read/text_pieces.hpp"
+#include "system/memory_size.hpp"
 
 #include <fmt/format.h>
 

@@ -16,7 +16,7 @@
 #include "lamella/read/mesh_file.hpp"
 #include "lamella/read/mesh_input.hpp"
 
-#include "core/byte_source.hpp"
+#include "system/byte_source.hpp"
 
 #include <string_view>
 

@@ -4,11 +4,11 @@
 
 #include "container/text_place.hpp"
 #include "core/executor.hpp"
-#include "core/memory_size.hpp"
 #include "core/pages.hpp"
 #include "mesh/folds.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
+#include "system/memory_size.hpp"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,10 @@
 
 // Parses texts in chunks, on many threads, with the result of a sequential parser.
 
-#include "core/byte_source.hpp"
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
 #include "read/coordinate_text.hpp"
+#include "system/byte_source.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -4,10 +4,10 @@
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
-#include "core/byte_source.hpp"
 #include "read/body_selection.hpp"
 #include "read/mesh_text.hpp"
 #include "read/three_mf_part.hpp"
+#include "system/byte_source.hpp"
 
 #include <cstddef>
 #include <cstdint>

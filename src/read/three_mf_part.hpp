@@ -6,9 +6,9 @@
 #include "lamella/mesh/transform.hpp"
 
 #include "container/xml.hpp"
-#include "core/byte_source.hpp"
 #include "read/opc_package.hpp"
 #include "read/read_limits.hpp"
+#include "system/byte_source.hpp"
 
 #include <cstddef>
 #include <cstdint>

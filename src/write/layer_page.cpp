@@ -10,7 +10,7 @@
 
 #include "container/base64.hpp"
 #include "container/deflate.hpp"
-#include "core/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 #include "write/ordered_writer.hpp"
 #include "write/page_bytes.hpp"
 #include "write/page_text.hpp"

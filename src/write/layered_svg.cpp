@@ -1,7 +1,7 @@
 #include "lamella/contour/measure.hpp"
 
-#include "core/atomic_directory.hpp"
 #include "core/counted.hpp"
+#include "system/atomic_directory.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"

@@ -1,10 +1,10 @@
 #include "lamella/write/layer_page.hpp"
 
 #include "container/deflate.hpp"
-#include "core/atomic_file.hpp"
 #include "core/executor.hpp"
 #include "mesh/edge_survey.hpp"
 #include "mesh/shells.hpp"
+#include "system/atomic_file.hpp"
 #include "write/page_bytes.hpp"
 #include "write/page_text.hpp"
 

@@ -2,9 +2,9 @@
 
 #include "lamella/core/error.hpp"
 
-#include "core/atomic_file.hpp"
 #include "mesh/measures.hpp"
 #include "mesh/triangle_contact.hpp"
+#include "system/atomic_file.hpp"
 #include "write/byte_buffer.hpp"
 
 #include <fmt/format.h>

@@ -7,7 +7,7 @@
 
 #include "container/ovf_format.hpp"
 #include "container/protobuf.hpp"
-#include "core/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/exposure_keys.hpp"
 #include "write/float_contour.hpp"

@@ -1,5 +1,5 @@
 #include "container/zip_writer.hpp"
-#include "core/atomic_directory.hpp"
+#include "system/atomic_directory.hpp"
 #include "write/display.hpp"
 #include "write/layer_pictures.hpp"
 #include "write/layer_writers.hpp"

@@ -2,7 +2,7 @@
 
 // Base of the writers of formats whose layers follow one another in one file.
 
-#include "core/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 #include "write/ordered_writer.hpp"
 
 #include <cstdint>

@@ -5,7 +5,7 @@
 #include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 #include <algorithm>
 #include <cmath>

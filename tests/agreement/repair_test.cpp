@@ -7,7 +7,7 @@
 #include "fixtures/shared_meshes.hpp"
 
 #include <gtest/gtest.h>
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 #include <algorithm>
 #include <array>

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 #include <atomic>
 #include <mutex>

@@ -3,7 +3,7 @@
 
 #include "parts/shapes.hpp"
 
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 #include <cstdio>
 #include <exception>

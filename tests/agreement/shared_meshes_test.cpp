@@ -6,7 +6,7 @@
 #include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 #include <array>
 #include <cmath>

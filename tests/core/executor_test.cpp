@@ -1,5 +1,5 @@
-#include "child_process.hpp"
 #include "core/executor.hpp"
+#include "fixtures/child_process.hpp"
 #include "fixtures/expect_error.hpp"
 #include "fixtures/rounds.hpp"
 

@@ -2,7 +2,7 @@
 
 // Contracts of the readers for any input.
 
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 #include <cmath>
 #include <cstddef>

@@ -59,22 +59,31 @@ class Documentation(unittest.TestCase):
         for example in examples:
             self.assertIn(example, shown)
 
-    def test_the_door_shows_the_example(self):
-        door = (ROOT / "include/lamella/lamella.hpp").read_text(encoding="utf-8")
-        shown = [line.strip() for line in re.findall(r"^// {5}(.*)$", door, re.MULTILINE)]
+    def test_the_main_header_shows_the_example(self):
+        header = (ROOT / "include/lamella/io.hpp").read_text(encoding="utf-8")
+        shown = [line.strip() for line in re.findall(r"^// {5}(.*)$", header, re.MULTILINE)]
         left_out = {"", "int main() {", "}"}
         self.assertEqual(shown, [line.strip() for line in self.example.splitlines() if line not in left_out])
 
-    def test_the_door_opens_all_rooms(self):
-        opened, coming = set(), ["lamella/lamella.hpp"]
+    def test_the_main_headers_include_the_modules_of_their_libraries(self):
+        self.assertEqual(self.included_by("lamella/io.hpp"),
+                         {str(path.relative_to(ROOT / "include")) for path in ROOT.glob("include/**/*.hpp")})
+        modules = {header.split("/")[1] for header in self.included_by("lamella/lamella.hpp") if header.count("/") > 1}
+        self.assertEqual(modules, {"core", "mesh", "contour", "slicing", "polygon", "scan"})
+
+    def included_by(self, header):
+        included, coming = set(), [header]
         while coming:
             header = coming.pop()
-            if header not in opened:
-                opened.add(header)
+            if header not in included:
+                included.add(header)
                 text = (ROOT / "include" / header).read_text(encoding="utf-8")
                 coming += re.findall(r'^#include "(lamella/[^"]+)"', text, re.MULTILINE)
-        headers = {str(path.relative_to(ROOT / "include")) for path in ROOT.glob("include/**/*.hpp")}
-        self.assertEqual(headers - opened, set())
+        return included
+
+    def test_the_example_of_the_engine_prints_its_contours(self):
+        printed = self.run_here(EXAMPLES / "lamella_example_slice_arrays")
+        self.assertIn(f"```\n{printed}```\n", (ROOT / "docs/howto/embedding.md").read_text(encoding="utf-8"))
 
     def test_the_example_slices_a_part(self):
         self.run_here(PROGRAM, "make", "rook", "-o", "part.stl")

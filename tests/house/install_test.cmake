@@ -20,31 +20,44 @@ run(${CMAKE_COMMAND} -S ${CONSUMER_DIR} -B ${WORK_DIR}/find_package -G Ninja -D 
     -D CMAKE_PREFIX_PATH=${prefix})
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/find_package)
 run(${CMAKE_COMMAND} -E chdir ${WORK_DIR} ${WORK_DIR}/find_package/consumer)
+run(${WORK_DIR}/find_package/engine_consumer)
 
 file(GLOB_RECURSE pc_file ${prefix}/lamella.pc)
 cmake_path(GET pc_file PARENT_PATH pc_dir)
 set(ENV{PKG_CONFIG_PATH} ${pc_dir})
-file(GLOB shared_library ${prefix}/lib*/liblamella.so ${prefix}/lib*/*/liblamella.so)
-if(NOT shared_library)
+file(GLOB shared_libraries ${prefix}/lib*/liblamella*.so ${prefix}/lib*/*/liblamella*.so)
+if(NOT shared_libraries)
     set(static --static)
 endif()
-execute_process(COMMAND pkg-config ${static} --cflags --libs lamella OUTPUT_VARIABLE flags COMMAND_ERROR_IS_FATAL ANY)
-separate_arguments(flags UNIX_COMMAND ${flags})
 # The headers are no system headers here: they warn of nothing, whatever the consumer asks for.
+set(packages lamella lamella-io)
+set(sources engine main)
 set(warnings -Werror -Wall -Wextra -Wpedantic -Wconversion -Wsign-conversion -Wshadow)
-run(${COMPILER} -std=c++20 ${warnings} ${CONSUMER_DIR}/main.cpp -o ${WORK_DIR}/pkg_config_consumer ${flags})
-if(shared_library)
-    # It shows what its public headers declare, and nothing of its own.
-    execute_process(COMMAND nm --dynamic --defined-only --demangle ${shared_library} OUTPUT_VARIABLE names
+foreach(package source IN ZIP_LISTS packages sources)
+    execute_process(COMMAND pkg-config ${static} --cflags --libs ${package} OUTPUT_VARIABLE flags
+                    COMMAND_ERROR_IS_FATAL ANY)
+    separate_arguments(flags UNIX_COMMAND ${flags})
+    run(${COMPILER} -std=c++20 ${warnings} ${CONSUMER_DIR}/${source}.cpp -o ${WORK_DIR}/pkg_config_${source} ${flags})
+endforeach()
+foreach(library ${shared_libraries})
+    # It exports what its public headers declare, and nothing of its own.
+    execute_process(COMMAND nm --dynamic --defined-only --demangle ${library} OUTPUT_VARIABLE names
                     COMMAND_ERROR_IS_FATAL ANY)
     if(NOT names MATCHES " lamella::slice\\(" OR NOT names MATCHES " lamella::Mesh::" OR names MATCHES "lamella::(Executor|CutGraph|AtomicFile)::")
-        message(FATAL_ERROR "the shared library shows too little or too much:\n${names}")
+        message(FATAL_ERROR "${library} exports too little or too much:\n${names}")
     endif()
-    cmake_path(GET shared_library PARENT_PATH lib_dir)
+    cmake_path(GET library PARENT_PATH lib_dir)
     set(ENV{LD_LIBRARY_PATH} ${lib_dir})
-endif()
-run(${CMAKE_COMMAND} -E chdir ${WORK_DIR} ${WORK_DIR}/pkg_config_consumer)
+endforeach()
+foreach(source ${sources})
+    run(${CMAKE_COMMAND} -E chdir ${WORK_DIR} ${WORK_DIR}/pkg_config_${source})
+endforeach()
 unset(ENV{LD_LIBRARY_PATH})
+# The engine needs no library of files.
+execute_process(COMMAND pkg-config --static --libs lamella OUTPUT_VARIABLE flags COMMAND_ERROR_IS_FATAL ANY)
+if(flags MATCHES "-l(lamella-io|expat|z|deflate)")
+    message(FATAL_ERROR "the engine links more than it needs: ${flags}")
+endif()
 
 # The installed pages show their pictures, and no link of theirs is dead.
 set(docs ${prefix}/share/doc/lamella)

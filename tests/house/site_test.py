@@ -38,8 +38,8 @@ class Site(unittest.TestCase):
         headers = list((ROOT / "include/lamella").glob("*/*.hpp"))
         self.assertGreater(len(headers), 20)
         for header in headers:
-            room = header.parent.name
-            self.assertIn(f"lamella/{room}/{header.name}", self.pages[f"reference/cpp/{room}.html"])
+            module = header.parent.name
+            self.assertIn(f"lamella/{module}/{header.name}", self.pages[f"reference/cpp/{module}.html"])
 
     def test_python_names_are_in_the_reference(self):
         page = self.pages["reference/python.html"]

@@ -1,8 +1,8 @@
 #include "lamella/write/mesh_writer.hpp"
 
-#include "core/memory_size.hpp"
 #include "parts/shapes.hpp"
 #include "pipeline/job_memory.hpp"
+#include "system/memory_size.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>

@@ -2,9 +2,9 @@
 
 #include "container/zip_reader.hpp"
 #include "container/zip_writer.hpp"
-#include "core/byte_source.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/stl_ascii.hpp"
+#include "system/byte_source.hpp"
 #include "temporary_folder.hpp"
 
 #include <fmt/format.h>

@@ -6,11 +6,11 @@
 #include "lamella/read/mesh_input.hpp"
 #include "lamella/write/layer_writer.hpp"
 
-#include "core/byte_source.hpp"
 #include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 #include "read/layer_readers.hpp"
 #include "read/packages.hpp"
+#include "system/byte_source.hpp"
 #include "temporary_folder.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
-"""Pages of the public headers, one for each room: every declaration with the comment that is its contract.
+"""Pages of the public headers, one for each module: every declaration with the comment that is its contract.
 
 Headers are regular enough to be read line by line: an introduction in `//` behind `#pragma once`, then, within the
-namespace, declarations with `///` before them. The floors' test sees to what headers may hold.
+namespace, declarations with `///` before them. The levels' test sees to what headers may hold.
 """
 
 import re
@@ -9,17 +9,18 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 TITLES = {
-    "core": "Words of all rooms: points, errors, execution",
+    "core": "Points, errors and execution",
     "mesh": "Meshes",
     "contour": "Layers and contours",
-    "container": "Files under way",
-    "read": "Reading",
     "slicing": "Slicing",
-    "polygon": "What is made of layers",
-    "raster": "Pictures",
+    "polygon": "Operations on layers",
     "scan": "Scan vectors",
+    "system": "Whole files",
+    "container": "Hashes of files",
+    "read": "Reading",
+    "raster": "Images",
     "write": "Writing",
-    "pipeline": "From file to file",
+    "pipeline": "Whole jobs",
 }
 
 
@@ -85,10 +86,10 @@ def declarations(lines, path):
     raise SystemExit(f"{path}: the namespace does not end")
 
 
-def room_page(room, headers):
-    text = [f"# {TITLES[room]}", ""]
+def module_page(module, headers):
+    text = [f"# {TITLES[module]}", ""]
     for header in headers:
-        text += [f"## `lamella/{room}/{header.path.name}`", "", header.introduction, ""]
+        text += [f"## `lamella/{module}/{header.path.name}`", "", header.introduction, ""]
         for one in header.declarations:
             text += [f"### {one.name}", "", *with_tables(one.comment), "", "```cpp", *one.code, "```", ""]
     return "\n".join(text)
@@ -103,20 +104,20 @@ def with_tables(comment):
 
 
 def write_pages(include, folder):
-    """Writes index.md and a page for each room; returns their names in the order of the house."""
+    """Writes index.md and a page for each module; returns their names in the order of TITLES."""
     folder.mkdir(parents=True, exist_ok=True)
     index = ["# C++ reference", "",
-             "The public headers, room by room; `#include <lamella/lamella.hpp>` opens all of them. Everything is in the "
+             "The public headers, by module. `lamella/lamella.hpp` includes those of the engine, `lamella/io.hpp` all. Everything is in the "
              "namespace `lamella`. Lengths are millimetres.", ""]
     pages = []
-    for room, title in TITLES.items():
-        headers = [read_header(path) for path in sorted((include / room).glob("*.hpp"))]
-        (folder / f"{room}.md").write_text(room_page(room, headers), encoding="utf-8")
-        pages.append(f"{room}.md")
-        index += [f"## [{title}]({room}.md)", "", "| | |", "|---|---|"]
+    for module, title in TITLES.items():
+        headers = [read_header(path) for path in sorted((include / module).glob("*.hpp"))]
+        (folder / f"{module}.md").write_text(module_page(module, headers), encoding="utf-8")
+        pages.append(f"{module}.md")
+        index += [f"## [{title}]({module}.md)", "", "| | |", "|---|---|"]
         for header in headers:
             names = ", ".join(f"`{name}`" for name in dict.fromkeys(one.name for one in header.declarations))
-            index.append(f"| `{room}/{header.path.name}` | {names} |")
+            index.append(f"| `{module}/{header.path.name}` | {names} |")
         index.append("")
     missing = {path.name for path in include.iterdir() if path.is_dir()} - set(TITLES)
     if missing:

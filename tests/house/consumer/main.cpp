@@ -1,4 +1,4 @@
-#include <lamella/lamella.hpp>
+#include <lamella/io.hpp>
 
 #include <iostream>
 #include <string>

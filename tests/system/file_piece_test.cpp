@@ -1,5 +1,5 @@
-#include "core/file_piece.hpp"
 #include "fixtures/expect_error.hpp"
+#include "system/file_piece.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>

@@ -2,7 +2,7 @@
 
 // The temporary names in use, for `remove_unfinished`.
 
-#include "lamella/core/whole_file.hpp"
+#include "lamella/system/whole_file.hpp"
 
 #include <string>
 

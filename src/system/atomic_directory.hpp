@@ -2,7 +2,7 @@
 
 // A folder of files that appears complete or not at all.
 
-#include "core/unfinished_name.hpp"
+#include "system/unfinished_name.hpp"
 
 #include <atomic>
 #include <cstdint>

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Checks the floors of the house (docs/architecture.md) against every #include of the sources, that types of
-all rooms have names of their own, and that public headers export what they declare.
+"""Checks the levels of the architecture (docs/architecture.md) against every #include of the sources, that types of
+all modules have distinct names, and that public headers export what they declare.
 
-usage: tools/check_floors.py [ROOT]
+usage: tools/check_levels.py [ROOT]
 
 Prints one line for each include that breaks a rule and exits with 1 if there is any.
 """
@@ -11,35 +11,39 @@ import re
 import sys
 from pathlib import Path
 
-# The floors, lowest first. A room may include itself and what ROOMS allows it, which lies on floors below.
-FLOORS = [
+# The levels, lowest first. A module may include itself and the modules that MODULES allows it, which are on levels below.
+LEVELS = [
     ["core"],
-    ["mesh", "contour", "container"],
-    ["read", "slicing", "polygon", "raster"],
-    ["scan", "write"],
+    ["mesh", "contour", "system"],
+    ["slicing", "polygon", "raster", "container"],
+    ["scan", "read", "write"],
     ["pipeline"],
 ]
 
-# What a room may include besides itself, and in the comment what it may not although it lies below.
-ROOMS = {
+# The modules of the engine. No other module may be included by them.
+ENGINE = ["core", "mesh", "contour", "slicing", "polygon", "scan"]
+
+# The modules that each module may include besides itself.
+MODULES = {
     "core": [],
     "mesh": ["core"],
     "contour": ["core"],
-    "container": ["core"],
-    "read": ["core", "container", "mesh", "contour"],
+    "system": ["core"],
+    "container": ["core", "system"],
+    "read": ["core", "system", "container", "mesh", "contour"],
     "slicing": ["core", "mesh", "contour"],  # not container: engines know no formats
     "polygon": ["core", "contour"],  # not mesh: layers, whoever made them
     "raster": ["core", "contour"],  # not container: what becomes of pixels is another matter
     "scan": ["core", "contour", "polygon"],  # not mesh: layers, whoever made them
-    "write": ["core", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
-    "pipeline": ["core", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "scan", "write"],
+    "write": ["core", "system", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
+    "pipeline": ["core", "system", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "scan", "write"],
 }
 
 # Third-party headers of the library: each is visible in one source (zlib in one that packs and one that unpacks,
 # the hash in one for layers and one for files), text formatting in all of them.
 THIRD_PARTY = {
     "expat.h": "src/container/xml.cpp",
-    "fast_float": "src/core/parse_number.cpp",
+    "fast_float": "src/container/parse_number.cpp",
     "libdeflate.h": "src/container/inflate.cpp",
     "xxhash.h": "src/container/file_hash.cpp src/contour/normal_form.cpp",
     "zlib.h": "src/container/deflate.cpp src/container/gzip.cpp",
@@ -67,10 +71,10 @@ STANDARD = set(
     valarray variant vector version""".split()
 )
 
-# The operating system: the sources of one room see it.
+# Headers of the operating system, which the sources of one module include.
 SYSTEM = re.compile(r"^((sys|linux|net|netinet|arpa)/.*|(unistd|fcntl|sched|pthread|poll|signal|spawn|dirent|dlfcn|"
                     r"malloc|errno|limits|stdlib|stdint)(\.h)?)$")
-SYSTEM_ROOM = "src/core/"
+SYSTEM_MODULE = "src/system/"
 
 # Types at the level of the namespace, as headers lay them out.
 TYPE = re.compile(r"^(?:template <[^\n]*>\n)?(?:class|struct|union|enum class) (\w+)(?: final)?(?: : [^{;\n]*)? \{", re.MULTILINE)
@@ -79,7 +83,7 @@ INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:<([^>\n]+)>|"([^"\n]+)")', 
 COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 
 
-class House:
+class Architecture:
     def __init__(self, root):
         self.root = Path(root).resolve()
         self.findings = []
@@ -95,7 +99,7 @@ class House:
         return self.findings
 
     def check_type_names(self):
-        """All rooms share one namespace: two types of one name are undefined, even where nobody sees both."""
+        """All modules share one namespace: two types of one name are undefined, even where nobody sees both."""
         known = {}
         for folder in ["include", "src"]:
             for path in sorted((self.root / folder).rglob("*.hpp")):
@@ -115,11 +119,13 @@ class House:
                 self.findings.append(f"{name}: the namespace must stand between LAMELLA_API_BEGIN and LAMELLA_API_END")
 
     def check_table(self):
-        floor = {room: level for level, rooms in enumerate(FLOORS) for room in rooms}
-        for room, below in ROOMS.items():
+        level = {module: level for level, modules in enumerate(LEVELS) for module in modules}
+        for module, below in MODULES.items():
             for other in below:
-                if floor[other] >= floor[room]:
-                    self.findings.append(f"check_floors: {room} may not be allowed {other}: not on a floor below")
+                if module in ENGINE and other not in ENGINE:
+                    self.findings.append(f"check_levels: {module} is part of the engine, {other} is not")
+                if level[other] >= level[module]:
+                    self.findings.append(f"check_levels: {module} may not be allowed {other}: not on a level below")
 
     def check_file(self, path):
         name = path.relative_to(self.root).as_posix()
@@ -159,20 +165,20 @@ class House:
         if name.startswith("include/"):
             return f"public headers need only the standard library, not <{header}>"
         if SYSTEM.match(header):
-            return None if name.startswith(SYSTEM_ROOM) else f"only {SYSTEM_ROOM} knows the operating system"
+            return None if name.startswith(SYSTEM_MODULE) else f"only {SYSTEM_MODULE} knows the operating system"
         library = header.split("/")[0]
         if library in THIRD_PARTY_ANYWHERE:
             return None
         home = THIRD_PARTY.get(library)
         if home is None:
-            return f"<{header}> belongs to no library that tools/check_floors.py knows"
+            return f"<{header}> belongs to no library that tools/check_levels.py knows"
         if name not in home.split():
             return f"<{header}> may be visible in {home} only"
         return None
 
     def judge_own(self, name, target):
         public = target.startswith("include/lamella/")
-        user, used = room_of(name), room_of(target)
+        user, used = module_of(name), module_of(target)
         parts = name.split("/")
 
         if target.startswith("tests/"):
@@ -180,36 +186,36 @@ class House:
         if target.startswith("parts/"):
             return "the library knows no test bodies" if parts[0] in ("include", "src") else None
         if parts[0] in ("include", "src"):
-            if user == "door":
-                return None if public else "the door shows public headers only"
-            if used == "door":
-                return "the door is for those outside; include the header of the room"
+            if user == "main header":
+                return None if public else "a main header includes public headers only"
+            if used == "main header":
+                return "a main header is for other programs; include the header of the module"
             if parts[0] == "include" and not public:
                 return f"a public header may not include the private {target}"
-            if used != user and used not in ROOMS[user]:
+            if used != user and used not in MODULES[user]:
                 return f"{user} may not include {target}: {used} is not below it"
             return self.judge_folder(name, target)
         if public or not target.startswith("src/") or name == KERNEL_BENCHMARK:
             return None
-        if parts[0] == "tests" and user in ROOMS:
-            if used == user or used in ROOMS[user]:
+        if parts[0] == "tests" and user in MODULES:
+            if used == user or used in MODULES[user]:
                 return None
             return f"tests of {user} may not open {target}: {used} is not below it"
         return f"only public headers may be included here, not {target}"
 
     def judge_folder(self, name, target):
-        """What lies in a folder of a room is known there only: engines of different folders do not know each other."""
+        """What lies in a folder of a module is known there only: engines of different folders do not know each other."""
         folder = Path(target).parent
         if target.startswith("src/") and len(folder.parts) > 2 and Path(name).parent != folder:
             return f"only sources of {folder.as_posix()} may include {target}"
         return None
 
 
-def room_of(name):
-    """The room that a path belongs to: "core", ..., "door", or None outside the library and its tests."""
+def module_of(name):
+    """The module that a path belongs to: "core", ..., "main header", or None outside the library and its tests."""
     parts = name.split("/")
     if parts[0] == "include":
-        return parts[2] if len(parts) > 3 else "door"
+        return parts[2] if len(parts) > 3 else "main header"
     if parts[0] in ("src", "tests") and len(parts) > 2:
         return parts[1]
     return None
@@ -217,7 +223,7 @@ def room_of(name):
 
 def main(arguments):
     root = arguments[1] if len(arguments) > 1 else Path(__file__).resolve().parent.parent
-    findings = House(root).check()
+    findings = Architecture(root).check()
     for finding in findings:
         print(finding)
     return 1 if findings else 0

@@ -1,11 +1,11 @@
-#include "core/byte_source.hpp"
+#include "system/byte_source.hpp"
 
 #include "lamella/core/error.hpp"
 
 #include "core/executor.hpp"
-#include "core/growing_memory.hpp"
 #include "core/pages.hpp"
-#include "core/spill_file.hpp"
+#include "system/growing_memory.hpp"
+#include "system/spill_file.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

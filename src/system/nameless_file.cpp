@@ -1,4 +1,4 @@
-#include "core/nameless_file.hpp"
+#include "system/nameless_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

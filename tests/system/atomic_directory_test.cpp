@@ -1,6 +1,6 @@
-#include "core/atomic_directory.hpp"
-#include "core/child_process.hpp"
+#include "fixtures/child_process.hpp"
 #include "fixtures/expect_error.hpp"
+#include "system/atomic_directory.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>

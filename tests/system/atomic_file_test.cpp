@@ -1,10 +1,10 @@
-#include "lamella/core/whole_file.hpp"
+#include "lamella/system/whole_file.hpp"
 
-#include "core/atomic_file.hpp"
-#include "core/child_process.hpp"
-#include "core/nameless_file.hpp"
+#include "fixtures/child_process.hpp"
 #include "fixtures/expect_error.hpp"
 #include "fixtures/rounds.hpp"
+#include "system/atomic_file.hpp"
+#include "system/nameless_file.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>

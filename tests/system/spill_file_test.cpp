@@ -1,6 +1,6 @@
-#include "child_process.hpp"
-#include "core/spill_file.hpp"
+#include "fixtures/child_process.hpp"
 #include "fixtures/expect_error.hpp"
+#include "system/spill_file.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>

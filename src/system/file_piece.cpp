@@ -1,6 +1,6 @@
-#include "core/file_piece.hpp"
+#include "system/file_piece.hpp"
 
-#include "core/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 
 #include <fcntl.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
-#include "core/byte_source.hpp"
-#include "core/child_process.hpp"
+#include "fixtures/child_process.hpp"
 #include "fixtures/expect_error.hpp"
+#include "system/byte_source.hpp"
 #include "temporary_folder.hpp"
 
 #include <fcntl.h>

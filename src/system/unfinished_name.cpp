@@ -1,4 +1,4 @@
-#include "core/unfinished_name.hpp"
+#include "system/unfinished_name.hpp"
 
 #include "lamella/core/error.hpp"
 

@@ -1,4 +1,4 @@
-#include "core/parse_number.hpp"
+#include "container/parse_number.hpp"
 
 // Not std::from_chars: libc++ has it for integers only, and overflow and underflow give the same code.
 #include <fast_float/fast_float.h>

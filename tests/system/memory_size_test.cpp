@@ -1,4 +1,4 @@
-#include "core/memory_size.hpp"
+#include "system/memory_size.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

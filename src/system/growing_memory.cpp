@@ -1,4 +1,4 @@
-#include "core/growing_memory.hpp"
+#include "system/growing_memory.hpp"
 
 #include <sys/mman.h>
 

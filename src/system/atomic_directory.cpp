@@ -1,7 +1,7 @@
-#include "core/atomic_directory.hpp"
+#include "system/atomic_directory.hpp"
 
-#include "core/atomic_file.hpp"
-#include "core/nameless_file.hpp"
+#include "system/atomic_file.hpp"
+#include "system/nameless_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-"""The check of the floors passes a sound house and finds each kind of planted violation."""
+"""The check of the levels passes sound sources and finds each kind of planted violation."""
 
 import sys
 import tempfile
@@ -9,14 +9,15 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tools"))
 sys.dont_write_bytecode = True
 
-import check_floors  # noqa: E402
+import check_levels  # noqa: E402
 
 SOUND = {
-    "include/lamella/lamella.hpp": '#include "lamella/core/point.hpp"\n',
+    "include/lamella/io.hpp": '#include "lamella/core/point.hpp"\n',
     "include/lamella/core/point.hpp": "#include <limits>\n",
     "include/lamella/mesh/soup.hpp": '#include "lamella/core/point.hpp"\n',
     "include/lamella/slicing/slice.hpp": '#include "lamella/mesh/soup.hpp"\n',
-    "src/core/executor.hpp": "#include <thread>\n#include <sys/mman.h>\n",
+    "src/core/executor.hpp": "#include <thread>\n",
+    "src/system/files.hpp": '#include <sys/mman.h>\n#include "core/executor.hpp"\n',
     "src/container/xml.hpp": "",
     "parts/shapes.hpp": "",
     "src/contour/normal_form.cpp": "#include <xxhash.h>\n#include <fmt/format.h>\n",
@@ -27,9 +28,9 @@ SOUND = {
     "src/slicing/sweep/walk.hpp": "",
     "src/slicing/sweep/walk.cpp": '#include "slicing/sweep/walk.hpp"\n',
     "src/polygon/grid.hpp": "",
-    "app/main.cpp": "#include <lamella/lamella.hpp>\n#include <CLI/CLI.hpp>\n",
+    "app/main.cpp": "#include <lamella/io.hpp>\n#include <CLI/CLI.hpp>\n",
     "bench/kernels.cpp": '#include "slicing/sweep.hpp"\n',
-    "tests/fixtures/solids.hpp": "#include <lamella/lamella.hpp>\n",
+    "tests/fixtures/solids.hpp": "#include <lamella/io.hpp>\n",
     "tests/slicing/sweep_test.cpp": '#include "slicing/sweep.hpp"\n#include "fixtures/solids.hpp"\n',
 }
 
@@ -41,7 +42,7 @@ class CheckFloors(unittest.TestCase):
                 path = Path(folder) / name
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(text, encoding="utf-8")
-            return check_floors.House(folder).check()
+            return check_levels.Architecture(folder).check()
 
     def assert_found(self, changes, place, words):
         findings = self.findings(changes)
@@ -49,7 +50,7 @@ class CheckFloors(unittest.TestCase):
         self.assertTrue(findings[0].startswith(place), findings[0])
         self.assertIn(words, findings[0])
 
-    def test_passes_a_sound_house(self):
+    def test_passes_sound_sources(self):
         self.assertEqual(self.findings({}), [])
 
     def test_passes_what_is_only_mentioned_in_a_comment(self):
@@ -75,15 +76,15 @@ class CheckFloors(unittest.TestCase):
         for text in [inner, f"LAMELLA_API_BEGIN\n{inner}", f"{inner}LAMELLA_API_END\n"]:
             self.assert_found({header: include + text}, header, "between LAMELLA_API_BEGIN and LAMELLA_API_END")
 
-    def test_finds_a_room_that_includes_a_floor_above(self):
+    def test_finds_a_module_that_includes_a_level_above(self):
         self.assert_found({"src/mesh/a.cpp": '\n#include "slicing/cut_graph.hpp"\n'}, "src/mesh/a.cpp:2:",
                           "slicing is not below it")
 
-    def test_finds_a_room_that_includes_its_neighbour(self):
+    def test_finds_a_module_that_includes_its_neighbour(self):
         self.assert_found({"src/slicing/a.cpp": '#include "polygon/grid.hpp"\n'}, "src/slicing/a.cpp:1:",
                           "polygon is not below it")
 
-    def test_finds_a_room_that_includes_a_lower_room_it_has_no_business_with(self):
+    def test_finds_a_module_that_includes_a_lower_module_it_has_no_business_with(self):
         self.assert_found({"src/slicing/a.cpp": '#include "container/xml.hpp"\n'}, "src/slicing/a.cpp:1:",
                           "container is not below it")
 
@@ -108,29 +109,33 @@ class CheckFloors(unittest.TestCase):
         self.assert_found({"src/polygon/a.cpp": "#include <clipper2/clipper.h>\n"}, "src/polygon/a.cpp:1:",
                           "no library")
 
-    def test_finds_the_operating_system_outside_its_room(self):
-        self.assert_found({"src/polygon/a.cpp": "#include <unistd.h>\n"}, "src/polygon/a.cpp:1:", "only src/core/")
+    def test_finds_an_engine_that_includes_files(self):
+        self.assert_found({"src/slicing/a.cpp": '#include "system/files.hpp"\n'}, "src/slicing/a.cpp:1:",
+                          "slicing may not include")
+
+    def test_finds_the_operating_system_outside_its_module(self):
+        self.assert_found({"src/polygon/a.cpp": "#include <unistd.h>\n"}, "src/polygon/a.cpp:1:", "only src/system/")
 
     def test_finds_test_bodies_in_the_library(self):
         self.assert_found({"src/mesh/a.cpp": '#include "parts/shapes.hpp"\n'}, "src/mesh/a.cpp:1:", "no test bodies")
         self.assertEqual(self.findings({"app/a.cpp": '#include "parts/shapes.hpp"\n'}), [])
 
-    def test_finds_a_source_that_looks_into_a_folder_of_its_room(self):
+    def test_finds_a_source_that_looks_into_a_folder_of_its_module(self):
         for name in ("src/slicing/paper/eecc.cpp", "src/slicing/engines.cpp"):
             self.assert_found({name: '#include "slicing/sweep/walk.hpp"\n'}, f"{name}:1:",
                               "only sources of src/slicing/sweep may include")
 
-    def test_passes_a_test_that_opens_a_folder_of_its_room(self):
+    def test_passes_a_test_that_opens_a_folder_of_its_module(self):
         self.assertEqual(self.findings({"tests/slicing/sweep/walk_test.cpp": '#include "slicing/sweep/walk.hpp"\n'}), [])
 
-    def test_finds_a_room_that_walks_through_the_door(self):
-        self.assert_found({"src/slicing/a.cpp": '#include "lamella/lamella.hpp"\n'}, "src/slicing/a.cpp:1:", "door")
+    def test_finds_a_module_that_includes_a_main_header(self):
+        self.assert_found({"src/slicing/a.cpp": '#include "lamella/io.hpp"\n'}, "src/slicing/a.cpp:1:", "main header")
 
     def test_finds_a_consumer_that_opens_a_private_header(self):
         for name in ("app/a.cpp", "bench/a.cpp", "examples/a.cpp", "tests/app/a.cpp"):
             self.assert_found({name: '#include "slicing/sweep.hpp"\n'}, f"{name}:1:", "only public headers")
 
-    def test_finds_a_test_that_opens_a_room_above_its_own(self):
+    def test_finds_a_test_that_opens_a_module_above_its_own(self):
         self.assert_found({"tests/core/a_test.cpp": '#include "slicing/sweep.hpp"\n'}, "tests/core/a_test.cpp:1:",
                           "tests of core")
 

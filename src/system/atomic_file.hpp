@@ -4,7 +4,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "core/unfinished_name.hpp"
+#include "system/unfinished_name.hpp"
 
 #include <sys/types.h>
 

@@ -43,9 +43,9 @@ using WindowTest = bool(std::span<const std::byte> beginning, std::uint64_t size
 
 /// Opens a file of any size and copies its bytes, by all threads: whatever becomes of the file afterwards,
 /// the bytes stay as they were read, and no signal ends the program. No more than `most_in_memory` bytes are
-/// kept in memory: a longer file is copied to a temporary file without a name (core/spill_file.hpp), and that
-/// is mapped. A regular file of at least `window_beginning` for which `in_windows` is true is not copied but
-/// stays open, unless the process has many open files already. "-" is standard input.
+/// kept in memory: a longer file is copied to a temporary file without a name (system/spill_file.hpp), and
+/// that is mapped. A regular file of at least `window_beginning` for which `in_windows` is true is not copied
+/// but stays open, unless the process has many open files already. "-" is standard input.
 ///
 /// Throws Error{input} when the file is missing, empty, a folder, a device, may not be read or becomes
 /// shorter while it is read; Error{output} when there is no room for the temporary file; and Error{cancelled}

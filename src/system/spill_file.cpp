@@ -1,9 +1,9 @@
-#include "core/spill_file.hpp"
+#include "system/spill_file.hpp"
 
 #include "lamella/core/error.hpp"
 
 #include "core/byte_amount.hpp"
-#include "core/nameless_file.hpp"
+#include "system/nameless_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

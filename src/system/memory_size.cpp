@@ -1,4 +1,4 @@
-#include "core/memory_size.hpp"
+#include "system/memory_size.hpp"
 
 #include <unistd.h>
 

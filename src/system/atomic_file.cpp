@@ -1,8 +1,8 @@
-#include "core/atomic_file.hpp"
+#include "system/atomic_file.hpp"
 
-#include "lamella/core/whole_file.hpp"
+#include "lamella/system/whole_file.hpp"
 
-#include "core/nameless_file.hpp"
+#include "system/nameless_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,0 +1,39 @@
+#pragma once
+
+// Files, formats, images and jobs, on top of the engine. From a mesh file to a slice file:
+//
+//     #include <lamella/io.hpp>
+//
+//     const lamella::MeshFile part = lamella::read_mesh("part.stl");
+//     const lamella::Box3 box = lamella::bounding_box(part.mesh());
+//     const lamella::Plan plan = lamella::plan_uniform(box.min.z, box.max.z, {.layer_height = 0.1});
+//     const lamella::LayerStack layers = lamella::slice(part.mesh(), plan);
+//     lamella::write_layers("part.cli", layers);
+//
+// The only global state is the list of temporary names in use (see remove_unfinished).
+
+#include "lamella/lamella.hpp"
+
+// Read meshes and layers.
+#include "lamella/read/any_file.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/read/mesh_file.hpp"
+#include "lamella/read/mesh_input.hpp"
+
+// Write layers, meshes and pages; draw images.
+#include "lamella/raster/picture.hpp"
+#include "lamella/write/layer_page.hpp"
+#include "lamella/write/layer_writer.hpp"
+#include "lamella/write/mesh_writer.hpp"
+
+// Whole jobs in bounded memory, by one process or many: slice or scan files, join shards, verify and compare.
+#include "lamella/pipeline/compare_files.hpp"
+#include "lamella/pipeline/merge.hpp"
+#include "lamella/pipeline/plate.hpp"
+#include "lamella/pipeline/scan_layers.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/verify.hpp"
+
+// Hash and write small files; remove temporary files when a signal ends the program.
+#include "lamella/container/file_hash.hpp"
+#include "lamella/system/whole_file.hpp"

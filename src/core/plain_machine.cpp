@@ -1,0 +1,36 @@
+// What the standard library knows of a machine: for systems that no other source is written for.
+
+#include "core/machine.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <thread>
+
+namespace lamella {
+
+namespace {
+constexpr std::align_val_t line{64};
+}
+
+unsigned usable_processors() noexcept {
+    return std::max(1U, std::thread::hardware_concurrency());
+}
+
+LargeMemory take_large_memory(std::size_t bytes) noexcept {
+    void* const data = ::operator new(bytes, line, std::nothrow);
+    if (data == nullptr)
+        return {};
+    std::memset(data, 0, bytes);
+    return {data, bytes};
+}
+
+void release_large_memory(LargeMemory memory) noexcept {
+    ::operator delete(memory.data, line);
+}
+
+void prefer_large_pages(void* /*data*/, std::size_t /*bytes*/) noexcept {}
+
+void provide_pages(void* /*data*/, std::size_t /*bytes*/) noexcept {}
+
+} // namespace lamella
