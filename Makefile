@@ -64,7 +64,7 @@ test-large: packages-all
 test-asan: packages-all
 	cmake --preset asan-ubsan
 	cmake --build build-asan
-	$(CTEST) --test-dir build-asan --label-exclude '^(bench|house|viewer)$$'
+	$(CTEST) --test-dir build-asan --label-exclude '^(bench|project|viewer)$$'
 
 test-tsan: packages-all
 	cmake --preset tsan
@@ -83,10 +83,10 @@ test-arm64: packages-all
 test-shared: packages-all
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D BUILD_SHARED_LIBS=ON
 	cmake --build build --target lamella_programs lamella_app_files
-	$(CTEST) --test-dir build --tests-regex '^house.install$$'
+	$(CTEST) --test-dir build --tests-regex '^project.install$$'
 	cmake --preset shared-clang
 	cmake --build build-shared-clang --target lamella_app lamella_app_files
-	$(CTEST) --test-dir build-shared-clang --tests-regex '^house.install$$'
+	$(CTEST) --test-dir build-shared-clang --tests-regex '^project.install$$'
 
 fresh:  ## `make demo` and `make test` on a Debian 12 with git, make and nothing else, made for it (root only)
 	@tools/fresh.sh

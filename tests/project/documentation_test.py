@@ -59,6 +59,24 @@ class Documentation(unittest.TestCase):
         for example in examples:
             self.assertIn(example, shown)
 
+    def test_the_rules_of_the_conventions_name_their_tests(self):
+        page = (ROOT / "docs/conventions.md").read_text(encoding="utf-8")
+        rules = set(re.findall(r"^(?:- )?\*\*(\d+\.\d+)\*\*", page, re.MULTILINE))
+        last = page[page.index("## Tests of the rules"):]
+        rows = re.findall(r"^\| ([\d., ]+) \| (.*) \|$", last, re.MULTILINE)
+        untested = set(re.findall(r"\d+\.\d+", last[:last.index("|")].partition("No test holds")[2]))
+        tested = {rule for row, _ in rows for rule in row.split(", ")}
+        self.assertEqual(tested | untested, rules)
+        self.assertEqual(tested & untested, set())
+        cpp = "".join(path.read_text(encoding="utf-8") for path in ROOT.glob("tests/**/*.cpp"))
+        for name in (name for _, names in rows for name in re.findall(r"`([^`]+)`", names)):
+            suite, _, test = name.partition(".")
+            if test.startswith("test_"):
+                found = any(f"def {test}(" in path.read_text(encoding="utf-8") for path in ROOT.glob(f"tests/*/{suite}.py"))
+            else:
+                found = re.search(rf"\({suite},\s+{test}\)", cpp)
+            self.assertTrue(found, name)
+
     def test_the_main_header_shows_the_example(self):
         header = (ROOT / "include/lamella/io.hpp").read_text(encoding="utf-8")
         shown = [line.strip() for line in re.findall(r"^// {5}(.*)$", header, re.MULTILINE)]
