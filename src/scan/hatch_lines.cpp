@@ -82,12 +82,10 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double
     // Count, sum up, put: each edge into the lines that it meets.
     const auto for_edges = [&](const auto& visit) {
         for (std::size_t ring = 0; ring < layer.rings; ++ring) {
-            const RankedPoint* from = &points[layer.offsets[ring + 1] - 1];
-            for (std::size_t i = layer.offsets[ring]; i < layer.offsets[ring + 1]; ++i) {
-                const RankedPoint* to = &points[i];
-                visit(*from, *to);
-                from = to;
-            }
+            const std::size_t begin = layer.offsets[ring];
+            const std::size_t end = layer.offsets[ring + 1];
+            for (std::size_t i = begin; i < end; ++i) // a ring may be empty
+                visit(points[i == begin ? end - 1 : i - 1], points[i]);
         }
     };
     // By how many edges more than the one below it a line is met; then where its ends begin.

@@ -48,6 +48,8 @@ struct Corner {
 
 template <class Visit>
 void for_corners(std::span<const Point2> ring, const Visit& visit) {
+    if (ring.empty())
+        return;
     const Point2& last = ring.back();
     Point2 u{ring.front().x - last.x, ring.front().y - last.y};
     double before = std::sqrt(u.x * u.x + u.y * u.y);

@@ -216,6 +216,21 @@ TEST(HatchLines, OfNothingAndOfPointsAreNone) {
     EXPECT_EQ(HatchLines(layer_of({{{0, 0}, {5, 5}}}), along_x, 1).total() % 2, 0U);
 }
 
+TEST(HatchLines, PassOverRingsWithoutPoints) {
+    const HatchLines expected(layer_of({rectangle(0, 0, 4, 4)}), along_x, 0.5, 0.25);
+    ASSERT_EQ(expected.size(), 8U);
+    for (const std::vector<Contour>& rings : {std::vector<Contour>{{}, rectangle(0, 0, 4, 4)},
+                                              {{}, {}, rectangle(0, 0, 4, 4), {}},
+                                              {rectangle(0, 0, 4, 4), {}}}) {
+        const HatchLines lines(layer_of(rings), along_x, 0.5, 0.25);
+        ASSERT_EQ(lines.size(), expected.size());
+        for (std::size_t i = 0; i < lines.size(); ++i)
+            EXPECT_TRUE(std::equal(lines.ends(i).begin(), lines.ends(i).end(), expected.ends(i).begin(),
+                                   expected.ends(i).end()));
+    }
+    EXPECT_EQ(HatchLines(layer_of({{}, {}}), along_x, 0.5, 0.25).size(), 0U);
+}
+
 TEST(HatchLines, AreRefusedWhereTheyWouldFillTheMemory) {
     const Layer square = layer_of({rectangle(0, 0, 100, 100)});
     EXPECT_THROW(HatchLines(square, along_x, 1e-9), Error);
