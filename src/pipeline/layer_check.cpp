@@ -3,6 +3,8 @@
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"
 
+#include "polygon/crossing_pairs.hpp"
+
 #include <fmt/format.h>
 
 #include <vector>
@@ -17,9 +19,15 @@ LayerCheck check_layer(const Layer& layer, const Rounding& rounding) {
     for (std::size_t i = layer.rings; i < layer.contours(); ++i)
         if (!layer.contour(i).empty())
             found.open_chains.add(layer, layer.contour(i).front());
-    const Crossings crossings = find_crossings(layer, 1);
+    // Beyond a number that nobody reads, crossings take minutes, and so does what lies within what.
+    const std::uint64_t enough = most_crossings(layer.points.size());
+    const Crossings crossings = find_crossings(layer, 1, enough);
     if (crossings.count > 0)
         found.crossings.add(layer, crossings.first.front().at, crossings.count);
+    if (crossings.count >= enough) {
+        found.crossings.or_more = true;
+        return result;
+    }
     const std::vector<RingKind> kinds = nesting(layer).kind;
     for (std::size_t i = 0; i < kinds.size(); ++i) {
         if (kinds[i] != RingKind::misoriented && kinds[i] != RingKind::overlapping)
@@ -47,6 +55,7 @@ void Finding::add(const Finding& other) {
     if (total == 0)
         place = other.place;
     total += other.total;
+    or_more = or_more || other.or_more;
 }
 
 void ContourFindings::add(const ContourFindings& other) {
@@ -59,8 +68,9 @@ void ContourFindings::add(const ContourFindings& other) {
 
 void tell(const Finding& finding, const FindingWords& words, std::vector<std::string>& lines) {
     if (finding.total > 0)
-        lines.push_back(fmt::format("{} {} the first in {}", finding.total,
-                                    finding.total == 1 ? words.one : words.many, finding.place));
+        lines.push_back(fmt::format(
+            "{} {} {}the first in {}", finding.total, finding.total == 1 ? words.one : words.many,
+            finding.or_more ? "or more (rings of such a layer were not checked), " : "", finding.place));
 }
 
 } // namespace lamella

@@ -17,7 +17,8 @@ namespace lamella {
 /// Findings of one kind, in the order of the layers.
 struct Finding {
     std::uint64_t total = 0;
-    std::string place; ///< of the first: "layer 12 (z 0.375 mm) at (1, 2)"
+    bool or_more = false; ///< the search ended when there were this many
+    std::string place;    ///< of the first: "layer 12 (z 0.375 mm) at (1, 2)"
 
     void add(const Layer& layer, const Point2& at, std::uint64_t times = 1);
     void add(const Finding& other);

@@ -254,11 +254,7 @@ void add_ends(std::span<const Side> sides, std::vector<Point2>& places) {
         places.insert(places.end(), {side.line.lo, side.line.hi});
 }
 
-/// And 64 for each side: what takes less than a minute.
-constexpr std::uint64_t most_crossings = std::uint64_t{1} << 22;
-
-/// What a crossing takes: its place on the grid, and the pieces of both sides.
-constexpr std::uint64_t bytes_of_crossing = 4 * sizeof(Side) + 8 * sizeof(Point2);
+static_assert(bytes_of_crossing == 4 * sizeof(Side) + 8 * sizeof(Point2));
 
 using CrossingPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
@@ -272,15 +268,11 @@ CrossingPairs crossings_of(std::span<const Side> sides, std::uint64_t most, cons
 }
 
 CrossingPairs all_crossings_of(std::span<const Side> sides, const LayerBudget& budget) {
-    const std::uint64_t most = most_crossings + 64 * sides.size();
+    const std::uint64_t most = most_crossings(sides.size());
     const std::uint64_t room = budget.room(bytes_of_crossing);
     CrossingPairs pairs = crossings_of(sides, std::min(most, room), budget);
     if (pairs.size() > most && most <= room)
-        throw Error(
-            ErrorKind::limit,
-            fmt::format("layer {}: {} sides of contours in contact cross more than {} times, the limit; "
-                        "leave out some of the bodies, or offset by less",
-                        budget.layer(), sides.size(), most));
+        refuse_crossings(sides.size(), budget);
     return pairs;
 }
 

@@ -11,6 +11,8 @@
 #include "polygon/orientation.hpp"
 #include "polygon/segment_sweep.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -127,10 +129,11 @@ class CrossingSearch {
     using Pair = std::pair<SegmentId, SegmentId>;
 
     /// Of the segments of these numbers, in a box. Counts all crossings, up to `enough` and a few more, and
-    /// keeps the first `keep` of them.
+    /// keeps the first `keep` of them. `clear`: only of segments whose ends lie farther than this from each
+    /// other's line.
     CrossingSearch(std::span<const Segment> segments, std::span<const SegmentId> ids, const Box2& box,
-                   std::size_t keep, std::uint64_t enough, const LayerBudget& budget)
-        : segments_(segments), keep_(keep), enough_(enough), budget_(budget), frame_(box) {
+                   std::size_t keep, std::uint64_t enough, const LayerBudget& budget, double clear = 0)
+        : segments_(segments), keep_(keep), enough_(enough), budget_(budget), frame_(box), clear_(clear) {
         const auto beyond = [](double x) {
             return std::nextafter(x, std::numeric_limits<double>::infinity());
         };
@@ -220,10 +223,24 @@ class CrossingSearch {
     }
 
     void found(const Pair& pair) {
+        if (clear_ > 0 && !clearly_cross(segments_[pair.first], segments_[pair.second]))
+            return;
         ++count_;
         first_.push_back(pair);
         if (first_.size() / 2 >= keep_)
             keep_first();
+    }
+
+    /// Returns whether each end of both lies farther than `clear_` from the other segment's line.
+    [[nodiscard]] bool clearly_cross(const Segment& s, const Segment& t) const noexcept {
+        const auto apart = [this](const Segment& line, const Segment& other) {
+            const double dx = line.hi.x - line.lo.x;
+            const double dy = line.hi.y - line.lo.y;
+            const double least = clear_ * std::hypot(dx, dy);
+            return std::abs(dx * (other.lo.y - line.lo.y) - dy * (other.lo.x - line.lo.x)) > least &&
+                   std::abs(dx * (other.hi.y - line.lo.y) - dy * (other.hi.x - line.lo.x)) > least;
+        };
+        return apart(s, t) && apart(t, s);
     }
 
     void keep_first() {
@@ -285,6 +302,7 @@ class CrossingSearch {
     std::uint64_t enough_; // crossings: the search may stop at so many
     const LayerBudget& budget_;
     Frame frame_;
+    double clear_;
     std::uint64_t count_ = 0;
     std::vector<Pair> first_; // and some more, until they are twice as many as to be kept
 };
@@ -357,8 +375,8 @@ Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
 
 } // namespace
 
-Crossings find_crossings(const Layer& layer, std::size_t keep) {
-    return found_in(layer, keep, std::numeric_limits<std::uint64_t>::max());
+Crossings find_crossings(const Layer& layer, std::size_t keep, std::uint64_t enough) {
+    return found_in(layer, keep, enough);
 }
 
 bool has_crossings(const Layer& layer) {
@@ -376,6 +394,38 @@ crossing_pairs(std::span<const Segment> segments, std::uint64_t most, const Laye
         box.add(Box2::of(segment.lo, segment.hi));
     CrossingSearch found(segments, ids, box, std::numeric_limits<std::size_t>::max(), most + 1, budget);
     return std::move(found.pairs());
+}
+
+void check_crossings(const Layer& layer, const LayerBudget& budget) {
+    std::vector<Segment> segments;
+    for (std::size_t ring = 0; ring < layer.rings; ++ring) {
+        const std::span<const Point2> points = layer.contour(ring);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const Point2& next = points[i + 1 == points.size() ? 0 : i + 1];
+            if (points[i] != next)
+                segments.push_back(segment_between(points[i], next));
+        }
+    }
+    if (segments.empty() || segments.size() > std::numeric_limits<SegmentId>::max())
+        return;
+    std::vector<SegmentId> ids(segments.size());
+    std::iota(ids.begin(), ids.end(), SegmentId{0});
+    const Box2 box = box_of(layer.points.span());
+    // Sides that lie on one line but for rounding are joined before they are cut.
+    const double clear = 0x1p-28 * std::max(box.x1 - box.x0, box.y1 - box.y0);
+    const std::uint64_t most = most_crossings(segments.size());
+    const std::uint64_t room = std::min(budget.room(bytes_of_crossing), most);
+    const CrossingSearch found(segments, ids, box, 0, room + 1, budget, clear);
+    budget.need(found.count(), bytes_of_crossing, "crossings of contours, or more,");
+    if (found.count() > most)
+        refuse_crossings(segments.size(), budget);
+}
+
+void refuse_crossings(std::size_t sides, const LayerBudget& budget) {
+    throw Error(ErrorKind::limit,
+                fmt::format("layer {}: {} sides of contours in contact cross more than {} times, the limit; "
+                            "leave out some of the bodies, or offset by less",
+                            budget.layer(), sides, most_crossings(sides)));
 }
 
 } // namespace lamella

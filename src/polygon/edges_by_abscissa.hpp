@@ -30,6 +30,8 @@ class EdgeColumn {
     void order(double x);
 
     [[nodiscard]] bool empty() const noexcept { return ordered_.empty() && loose_.empty(); }
+    /// How many edges have no order: each question looks at all of these.
+    [[nodiscard]] std::size_t loose() const noexcept { return loose_.size(); }
 
     /// The windings below the edge at x, as far as this column has a part in them.
     [[nodiscard]] Windings winding_below(double x, const RingEdge& edge) const;

@@ -3,6 +3,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
+#include "polygon/crossing_pairs.hpp"
 #include "polygon/edge_below.hpp"
 #include "polygon/known_nesting.hpp"
 #include "polygon/left_end.hpp"
@@ -50,6 +51,14 @@ class NestingSearch {
         std::optional<SurroundingsSearch> surroundings;
         if (!open.empty())
             surroundings.emplace(chains_, ends_, copies_, turns_, order_, by_area_, open);
+        // Edges that cross have no order: such a search grows as the square. Nothing is made of contours that
+        // cross too often.
+        constexpr std::uint64_t half_a_second = std::uint64_t{1} << 22;
+        std::uint64_t crossing = 0;
+        for (const std::uint32_t ring : open)
+            crossing += surroundings->crossing_edges_at(ring);
+        if (crossing > half_a_second)
+            check_crossings(layer_, budget);
         for (std::size_t i = 0; i < order_.size(); ++i) {
             budget.check();
             if (edges[i].sure)

@@ -85,6 +85,12 @@ std::int64_t SurroundingsSearch::count_equal(double x, const RingEdge& edge) con
     return n;
 }
 
+std::uint64_t SurroundingsSearch::crossing_edges_at(std::uint32_t ring) const {
+    std::uint64_t n = 0;
+    edges_.for_columns_at(ends_[ring].line.lo.x, [&](const EdgeColumn& column) { n += column.loose(); });
+    return n;
+}
+
 /// An edge that runs there and back bounds nothing on its own: it is passed over on the way down.
 Surroundings SurroundingsSearch::find(std::uint32_t ring) const {
     assert(copies_.representative(ring) == ring);

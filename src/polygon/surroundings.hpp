@@ -35,6 +35,9 @@ class SurroundingsSearch {
     /// cross or fold.
     [[nodiscard]] Surroundings find(std::uint32_t ring) const;
 
+    /// How many edges that cross others `find` looks at for a ring, some times each.
+    [[nodiscard]] std::uint64_t crossing_edges_at(std::uint32_t ring) const;
+
   private:
     void add_edges(const Chain& chain, const Windings& net, std::size_t leaf);
     [[nodiscard]] std::int64_t place_in_order(std::uint32_t ring, bool inside_above) const noexcept;

@@ -83,6 +83,28 @@ class Memory(ProgramTest):
             self.fail_with(5, "layer 3: .*crossings of contours.* above .*--max-memory", "convert", "chords.json",
                            "x.json", *step, "--max-memory", "100M", "--threads", 2)
 
+    def test_of_random_chords_is_refused_before_they_are_sorted(self):
+        numbers = iter(f"{pow(7919, k, 1_000_003) / 10_000:.3f}" for k in range(1, 10 ** 9))
+
+        def layer_file(name, lines):
+            self.write(name, "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$VERSION/200\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/0\n"
+                       "$$LAYER/1\n" + "".join(lines) + "$$GEOMETRYEND\n")
+
+        def ring(n):
+            points = [f"{next(numbers)},{next(numbers)}" for _ in range(n)]
+            return f"$$POLYLINE/1,1,{n + 1}," + ",".join([*points, points[0]]) + "\n"
+
+        layer_file("rings.cli", [ring(3) for _ in range(6000)])
+        layer_file("ring.cli", [ring(18000)])
+        for name in ["rings.cli", "ring.cli"]:
+            for step in ["--fill=nonzero", "--offset=0.01"]:
+                self.fail_with(5, "layer 0: .*cross", "convert", name, "x.json", step, "--max-memory", "100M")
+            self.fail_with(5, "layer 0: .*cross", "scan", name, "-o", "x.ilt", "--max-memory", "100M")
+            result = self.run_program("verify", name, "--max-memory", "100M")
+            self.assertEqual(result.code, 4, result.err)
+            self.assertRegex(result.out.decode(), r"crossings of contours, or more \(rings")
+            self.succeed("info", name, "--max-memory", "100M")
+
     def test_points_of_a_slice_file_are_held_once(self):
         points = self.slice(self.lattice(), "--layer-height", "0.02", "-o", "layers.cli")["points"]
         self.slice("lattice.stl", "--layer-height", "10", "-o", "few.cli")

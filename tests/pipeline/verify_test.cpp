@@ -97,6 +97,29 @@ TEST(Verify, NamesTheFirstPlaceOfEachKindOfFinding) {
             "first in layer 5 (z 5.5 mm) at (2, 1)"}));
 }
 
+TEST(Verify, CountsNoMoreCrossingsOfALayerThanAnybodyReads) {
+    test::Random random(5);
+    const auto point = [&] {
+        return Point2{random.real(0, 100), random.real(0, 100)};
+    };
+    std::vector<test::Contour> rings(4'000);
+    for (test::Contour& ring : rings)
+        ring = {point(), point(), point()};
+    const Layer tangle = at(0, layer_of(rings));
+    const Layer cross = at(1, layer_of({{{0, 0}, {2, 2}, {2, 0}, {0, 2}}}));
+    const Verification found = verify(LayerStack{tangle, cross});
+    EXPECT_FALSE(found.ok());
+    EXPECT_GT(found.crossings, 4'000'000U);
+    ASSERT_FALSE(found.findings.empty());
+    EXPECT_NE(found.findings[0].find(
+                  " crossings of contours, or more (rings of such a layer were not checked), the "
+                  "first in layer 0 (z 0.5 mm) at ("),
+              std::string::npos)
+        << found.findings[0];
+    const Verification other = verify(LayerStack{cross});
+    EXPECT_EQ(other.findings[0], "1 crossing of contours, the first in layer 1 (z 1.5 mm) at (1, 1)");
+}
+
 TEST(Verify, TellsAPositiveRingThatCrossesItselfFromOneThatRunsTheWrongWayRound) {
     // The sides cross next to the left end, where the ring runs clockwise around a small triangle.
     const LayerStack layers{at(0, layer_of({{{0, 5}, {1, 5.5}, {10, 0}, {10, 10}, {1, 4.5}}}))};

@@ -120,6 +120,30 @@ TEST(Crossings, AreCountedAlsoWhenNoneAreKept) {
     EXPECT_TRUE(found.first.empty());
 }
 
+/// Lines of two points each, anywhere in a square.
+std::vector<Contour> chords(std::size_t n) {
+    Random random(5);
+    const auto point = [&] {
+        return Point2{random.real(0, 100), random.real(0, 100)};
+    };
+    std::vector<Contour> lines(n);
+    for (Contour& line : lines)
+        line = {point(), point()};
+    return lines;
+}
+
+TEST(Crossings, AreNoLongerLookedForOnceThereAreEnough) {
+    const Layer layer = layer_of({}, chords(1000));
+    const Crossings all = find_crossings(layer, 10);
+    ASSERT_GT(all.count, 50'000U);
+    const Crossings some = find_crossings(layer, 10, 1000);
+    EXPECT_GE(some.count, 1000U);
+    EXPECT_LT(some.count, 2000U);
+    EXPECT_EQ(keys(some), keys(find_crossings(layer, 10, 1000))) << "the same ones each time";
+    EXPECT_EQ(some.first.size(), 10U);
+    EXPECT_EQ(find_crossings(layer, 10, all.count + 1).count, all.count);
+}
+
 TEST(Crossings, ContoursThatTouchDoNotCross) {
     // Corner to corner, corner to edge, edge on edge, the same edges twice.
     EXPECT_EQ(find_crossings(layer_of({rectangle(0, 0, 2, 2), rectangle(2, 2, 4, 4)})).count, 0U);

@@ -1,5 +1,6 @@
 #include "lamella/polygon/nesting.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 #include "polygon/known_nesting.hpp"
 
@@ -236,6 +237,34 @@ TEST(Nesting, OfRingsThatCrossNearOnePointIsFound) {
                                      {{-1, 0}, {0, -1e-12}, {0, 0}, {0, -1e-12}},
                                      {{-1e-12, 0}, {1, 5}, {0, 5}}};
     EXPECT_EQ(kinds(rings).size(), rings.size());
+}
+
+/// Triangles with corners anywhere in a square: nearly every side crosses many others.
+Layer random_triangles(std::size_t n) {
+    Random random(3);
+    std::vector<Contour> rings(n);
+    for (Contour& ring : rings)
+        for (int corner = 0; corner < 3; ++corner)
+            ring.push_back({random.real(0, 100), random.real(0, 100)});
+    return layer_of(rings);
+}
+
+WoundNesting with_memory(const Layer& layer, std::uint64_t bytes) {
+    const MonotoneChains chains(layer);
+    const std::optional<ChainGrid> grid = ChainGrid::of(chains);
+    const std::vector<Windings> turns(layer.rings, Windings{1, 0});
+    return nesting(layer, chains, grid, find_contacts(layer, chains, grid), turns,
+                   LayerBudget({.memory = bytes}, 7));
+}
+
+TEST(Nesting, OfRingsThatCrossTooOftenIsRefusedBeforeItIsSearchedFor) {
+    const Layer layer = random_triangles(4'000);
+    test::expect_error(ErrorKind::limit, {"layer 7: ", "crossings of contours, or more, take about "},
+                       [&] { (void)with_memory(layer, 1'000'000); });
+    test::expect_error(ErrorKind::limit, {"layer 7: 12000 sides of contours in contact cross more than "},
+                       [&] { (void)with_memory(layer, 0); });
+    // Few enough to be searched for, whatever memory crossings would take.
+    EXPECT_EQ(with_memory(random_triangles(200), 1).nesting.rings(), 200U);
 }
 
 TEST(Nesting, OfOpenChainsIsNone) {

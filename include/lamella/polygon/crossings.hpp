@@ -4,7 +4,9 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 LAMELLA_API_BEGIN
@@ -21,7 +23,7 @@ struct Crossing {
 };
 
 struct Crossings {
-    std::uint64_t count = 0;     ///< all of them
+    std::uint64_t count = 0;     ///< all of them, unless there are more than was asked for
     std::vector<Crossing> first; ///< the first few, ordered by (contour_a, segment_a, contour_b, segment_b)
 };
 
@@ -33,7 +35,11 @@ struct Crossings {
 /// long lines that cross those beside them, parallel or fanning out. At worst, for long lines in no order
 /// that all but cross, about O(n^1.5 + crossings). Throws Error{limit} for a layer of more than 2^32 - 1
 /// points.
-[[nodiscard]] Crossings find_crossings(const Layer& layer, std::size_t keep = 16);
+///
+/// The search ends once it has found `enough` crossings: then `count` is that or a few more, and `first` are
+/// some of them, the same ones each time.
+[[nodiscard]] Crossings find_crossings(const Layer& layer, std::size_t keep = 16,
+                                       std::uint64_t enough = std::numeric_limits<std::uint64_t>::max());
 
 /// Whether there are any: stops at the first one found.
 [[nodiscard]] bool has_crossings(const Layer& layer);

@@ -59,7 +59,9 @@ struct Nesting {
 /// that point.
 ///
 /// O(n log c) for n points in c rings, in practice little more than reading the points; where edges cross, up
-/// to O(c) more for each of those. Throws Error{limit} for a layer of more than 2^32 - 2 rings.
+/// to O(c) more for each of those. Throws Error{limit} for a layer of more than 2^32 - 2 rings, and for one
+/// where this would take long because its rings cross more than 4 million times and 64 times for each of
+/// their sides.
 [[nodiscard]] Nesting nesting(const Layer& layer);
 
 /// A connected piece of material as GeoJSON, 3MF and polygon libraries want it.
