@@ -121,13 +121,19 @@ class AmfReader {
 
     /// Objects and constellations are nodes alike.
     void make_nodes() {
+        std::size_t uses = document_.objects.size() + document_.constellations.size(); // as roots, at most
+        for (const AmfConstellation& constellation : document_.constellations)
+            uses += constellation.instances.size();
+        count_assembly(document_.objects.size() + document_.constellations.size(), uses, limits_);
         const double unit = document_.unit_mm.value_or(1);
+        std::vector<std::size_t> lines; // of nodes
         const auto add = [&](const auto& item, std::string_view what, NodesById& known) {
             const std::string place =
                 fmt::format("line {}: {} '{}'", item.line, what, printable(item.id, longest_quote));
             if (!known.emplace(item.id, nodes_.size()).second)
                 fail(fmt::format("{}: the id is there for the second time", place));
             nodes_.push_back({item.name, {}, scaling(unit, unit, unit), {}, place, false});
+            lines.push_back(item.line);
         };
         NodesById objects;
         for (const AmfObject& object : document_.objects)
@@ -152,19 +158,22 @@ class AmfReader {
         for (std::size_t i = 0; i < document_.constellations.size(); ++i) {
             AssemblyNode& node = nodes_[document_.objects.size() + i];
             for (const AmfInstance& instance : document_.constellations[i].instances) {
-                const std::string place = fmt::format("line {}: this instance", instance.line);
                 const std::size_t target = node_of(instance);
                 used[target] = true;
                 if (instance.number("printable", 1) == 0) {
                     ++not_printable_;
                     continue;
                 }
-                node.uses.push_back({target, placement(instance, unit), place, MeshRole::part, {}});
+                node.uses.push_back({target,
+                                     placement(instance, unit),
+                                     {{}, instance.line, "this instance"},
+                                     MeshRole::part,
+                                     {}});
             }
         }
         for (std::size_t i = 0; i < nodes_.size(); ++i)
             if (!used[i])
-                roots_.push_back({i, {}, nodes_[i].place, MeshRole::part, {}});
+                roots_.push_back({i, {}, {{}, lines[i], "this object"}, MeshRole::part, {}});
         if (roots_.empty() && !nodes_.empty())
             fail("each constellation is a part of another, expected one that is not");
     }

@@ -1,7 +1,9 @@
 #include "read/assembly.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 
+#include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "read/mesh_text.hpp"
 #include "read/read_limits.hpp"
@@ -122,14 +124,14 @@ class Placer {
                                   its == MeshRole::support,
                                   its == MeshRole::negative,
                                   body};
-            check_reach(instance, use.place);
+            check_reach(instance, use.position);
             instances_.push_back(std::move(instance));
         }
         for (const AssemblyUse* inner : filled_[use.node])
             put(*inner, placement, nearest, role, body, depth + 1);
     }
 
-    void check_reach(const MeshInstance& instance, const std::string& place) {
+    void check_reach(const MeshInstance& instance, const UsePosition& position) {
         auto& reach = reaches_[instance.object];
         if (!reach) {
             const Box3 box = bounding_box(objects_[instance.object].mesh);
@@ -147,10 +149,11 @@ class Placer {
             for (std::size_t axis = 0; axis < 3; ++axis)
                 furthest += std::abs(map.linear[row][axis]) * (*reach)[axis];
             if (!(furthest <= farthest_coordinate) || !finite(map))
-                fail(place, fmt::format("puts a mesh further away than {} mm", farthest_coordinate));
+                fail(position.text(),
+                     fmt::format("puts a mesh further away than {} mm", farthest_coordinate));
         }
         if (!(std::abs(map.determinant()) > 0))
-            fail(place, "flattens a mesh");
+            fail(position.text(), "flattens a mesh");
     }
 
     [[noreturn]] void fail(const std::string& place, const std::string& what) const {
@@ -170,6 +173,17 @@ class Placer {
 };
 
 } // namespace
+
+std::string UsePosition::text() const {
+    const std::string at = fmt::format("line {}: {}", line, what);
+    return part.empty() ? at : fmt::format("part '{}', {}", excerpt(part), at);
+}
+
+void count_assembly(std::size_t nodes, std::size_t uses, ReadLimits& limits) {
+    constexpr std::uint64_t of_place = 64; // where the node is, in words
+    limits.add_bytes_at(nodes * (sizeof(AssemblyNode) + of_place) + uses * sizeof(AssemblyUse),
+                        [&] { return fmt::format("{} uses of {}", uses, counted(nodes, "object")); });
+}
 
 bool all_negative(std::span<const MeshInstance> instances) {
     return std::all_of(instances.begin(), instances.end(), std::mem_fn(&MeshInstance::negative));

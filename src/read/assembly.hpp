@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lamella {
@@ -18,11 +19,21 @@ namespace lamella {
 class Executor;
 class ReadLimits;
 
+/// Where a file puts a node, for errors: a text is made when there is one, as a file may put very many.
+struct UsePosition {
+    std::string_view part = {}; ///< of the package that the file is; empty for others
+    std::size_t line = 0;
+    std::string_view what = {}; ///< such as "this use"
+
+    /// "part '3D/3dmodel.model', line 7: this use".
+    [[nodiscard]] std::string text() const;
+};
+
 /// A node put somewhere.
 struct AssemblyUse {
     std::size_t node = 0;
     Transform placement;
-    std::string place; ///< of the use in the file, for errors
+    UsePosition position;
     /// Of all that the node consists of, unless that says otherwise: part, support or negative.
     MeshRole role = MeshRole::part;
     std::string name; ///< of what is put there, instead of that of the node; "" for none
@@ -47,6 +58,9 @@ struct AssemblyNode {
 
 /// Whether there is nothing that they could be subtracted from.
 [[nodiscard]] bool all_negative(std::span<const MeshInstance> instances);
+
+/// Counts what so many nodes and uses of them take, before they are made: once the file is read.
+void count_assembly(std::size_t nodes, std::size_t uses, ReadLimits& limits);
 
 /// One instance for each path from a root to a mesh, in the order of the file. Named after the mesh, or after
 /// the nearest one on the path that has a name.

@@ -128,6 +128,12 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
         builder.end_contour(closed);
     }
     std::vector<std::vector<Point2>> hatches(file.parts.size());
+    std::vector<std::size_t> ends_of_hatches(file.parts.size()); // so that none takes more than it has
+    next = 0;
+    for (const auto& [end, part, behind] : raw.hatch_ends)
+        ends_of_hatches[part] += end - std::exchange(next, end);
+    for (std::size_t part = 0; part < hatches.size(); ++part)
+        hatches[part].reserve(ends_of_hatches[part]);
     next = 0;
     for (const auto& [end, part, behind] : raw.hatch_ends)
         for (; next < end; ++next)

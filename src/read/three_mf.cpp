@@ -230,6 +230,14 @@ class ThreeMfReader {
   private:
     /// One node for each object of each part.
     void make_nodes() {
+        std::size_t objects = 0;
+        std::size_t uses = parts_[0].model.items.size();
+        for (const PartLoader::Part& part : parts_) {
+            objects += part.model.objects.size();
+            for (const ThreeMfObject& object : part.model.objects)
+                uses += object.components.size();
+        }
+        count_assembly(objects, uses, limits_);
         std::vector<std::map<std::uint32_t, std::size_t>> numbers(parts_.size());
         for (std::size_t i = 0; i < parts_.size(); ++i)
             for (std::size_t k = 0; k < parts_[i].model.objects.size(); ++k) {
@@ -257,13 +265,14 @@ class ThreeMfReader {
                                     : fmt::format(" in '{}'", printable(use.part, longest_file_name))));
             return AssemblyUse{node->second,
                                use.placement,
-                               place(model, use.line, "this use"),
+                               {model.part, use.line, "this use"},
                                sources_[node->second]->role,
                                {}};
         };
         std::size_t node = 0;
         for (std::size_t i = 0; i < parts_.size(); ++i)
             for (ThreeMfObject& object : parts_[i].model.objects) {
+                nodes_[node].uses.reserve(object.components.size());
                 for (const ThreeMfUse& component : object.components)
                     nodes_[node].uses.push_back(make_use(i, component));
                 if (const auto known = config_.find(object.id); i == 0 && known != config_.end())
@@ -271,6 +280,7 @@ class ThreeMfReader {
                 nodes_[node].is_body = nodes_[node].is_body || !object.volumes.empty();
                 ++node;
             }
+        roots_.reserve(parts_[0].model.items.size());
         for (const ThreeMfUse& item : parts_[0].model.items) {
             AssemblyUse use = make_use(0, item);
             const ThreeMfObject& object = *sources_[use.node];

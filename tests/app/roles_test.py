@@ -161,5 +161,18 @@ class Roles(ProgramTest):
                        preexec_fn=allowed)
 
 
+    def test_items_of_the_build_are_counted_before_they_take_memory(self):
+        if "LAMELLA_SANITIZED" in os.environ:
+            self.skipTest("what a sanitizer takes is not the program's")
+        self.write("items.3mf", package(f'<object id="1">{mesh(BODY)}</object>',
+                                        '<item objectid="1" transform="1 0 0 0 1 0 0 0 1 1 2 0"/>' * 300_000))
+        limit = 150_000_000
+        allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))  # noqa: E731
+        for arguments in ["info", "items.3mf"], ["slice", "items.3mf", "-o", "a.cli"], ["view", "items.3mf", "-o", "a.html"]:
+            with self.subTest(arguments=arguments):
+                self.fail_with(5, "items.3mf: takes more than .*300000 uses of 1 object", *arguments, "--max-memory", "100M",
+                               "--threads", 1, preexec_fn=allowed)
+
+
 if __name__ == "__main__":
     main()
