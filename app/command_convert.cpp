@@ -54,7 +54,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     tell(file, file.warnings, arguments.strict, context.messages);
     const LayerChanges changes =
         take_steps(arguments.making.steps(), file, arguments.strict, context.messages, execution,
-                   arguments.limits.max_memory.value_or(0) / 4)
+                   arguments.limits.max_memory.value_or(0))
             .all;
     LayerFileInfo info = info_of(file);
     if (!arguments.label.empty()) {

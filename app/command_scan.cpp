@@ -25,6 +25,7 @@
 #include <fmt/format.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -118,12 +119,13 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     std::vector<LayerStack> stacks;
     for (const LayerPart& part : file.parts)
         stacks.push_back(part.layers);
-    const ScanLosses losses = scan_losses(stacks, file.rounding, execution);
+    const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
+    const ScanLosses losses = scan_losses(stacks, file.rounding, execution, max_memory);
     for (const std::vector<std::string>& warnings : {file.warnings, losses.texts()})
         tell(file, warnings, arguments.strict, context.messages);
     const LayerFileInfo info = info_of(file);
-    const ScanResult result =
-        scan_layers(arguments.output, format, stacks, file.rounding, info, strategy, options, execution);
+    const ScanResult result = scan_layers(arguments.output, format, stacks, file.rounding, info, strategy,
+                                          options, execution, max_memory, file.path);
     if (result.unreached.layers > 0)
         context.messages.warn(fmt::format("{}: {}", file.path, result.unreached.text()));
     context.messages.warn_of(output_name(arguments.output), result.warnings);

@@ -92,10 +92,9 @@ std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const 
                                 file.path));
     tell(file, file.warnings, false, messages);
     PageNotes notes = file_notes(file);
-    const std::vector<LayerChanges> planes =
-        take_steps(arguments.making.steps(), file, false, messages, execution,
-                   arguments.limits.max_memory.value_or(0) / 4)
-            .planes;
+    const std::vector<LayerChanges> planes = take_steps(arguments.making.steps(), file, false, messages,
+                                                        execution, arguments.limits.max_memory.value_or(0))
+                                                 .planes;
     for (std::size_t i = 0; i < planes.size(); ++i)
         if (planes[i].changed_layers > 0)
             notes.changes.push_back({file.parts.front().layers[i].index, planes[i]});

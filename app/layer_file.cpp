@@ -1,6 +1,7 @@
 #include "layer_file.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 
@@ -31,16 +32,16 @@ Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
 
 /// Reports inverted rings. Steps drop them as non-material, unless a fill rule defines the material.
 void tell_inverted(const LayerSteps& steps, const LayerFile& file, bool strict, Messages& messages,
-                   const Execution& execution) {
+                   const Execution& execution, std::uint64_t max_memory) {
     if (steps.fill != FillRule::none)
         return;
     std::vector<LayerStack> contours;
     for (const LayerPart& part : file.parts)
         if (!part.exposure)
             contours.push_back(part.layers);
-    const InvertedLayers inverted =
-        inverted_layers(contours, file.rounding,
-                        steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick, execution);
+    const InvertedLayers inverted = inverted_layers(
+        contours, file.rounding, steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick,
+        execution, max_memory);
     if (inverted.rings > 0)
         tell(file, {inverted.text_of_file(contours.front().size())}, strict, messages);
 }
@@ -68,7 +69,7 @@ void tell(const LayerFile& file, const std::vector<std::string>& warnings, bool 
 }
 
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
-                       const Execution& execution, std::uint64_t memory) {
+                       const Execution& execution, std::uint64_t max_memory) {
     for (const LayerPart& part : file.parts)
         if (part.exposure && steps.any())
             throw Error(ErrorKind::usage,
@@ -76,12 +77,17 @@ StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Me
                                     "--min-area and --simplify are for contours: take these steps before "
                                     "lamella scan",
                                     file.path, one_line(part.label)));
-    tell_inverted(steps, file, strict, messages, execution);
+    tell_inverted(steps, file, strict, messages, execution, max_memory);
     std::vector<LayerStack> parts;
-    for (LayerPart& part : file.parts)
+    std::vector<std::string> names;
+    for (LayerPart& part : file.parts) {
         parts.push_back(std::move(part.layers));
+        names.push_back(file.parts.size() == 1
+                            ? file.path
+                            : fmt::format("{}, part \"{}\"", file.path, excerpt(part.label)));
+    }
     StepChanges changes;
-    parts = lamella::take_steps(steps, std::move(parts), changes.planes, execution, memory);
+    parts = lamella::take_steps(steps, std::move(parts), changes.planes, execution, max_memory, names);
     std::uint64_t contours = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         for (const Layer& layer : parts[i])

@@ -28,9 +28,9 @@ struct StepChanges {
 
 /// Takes the steps. Reports as above rings that bound no material, hatch lines that are dropped together with
 /// the contours that they fill, and results without contours. Throws Error{usage} for steps on scan vectors:
-/// hatches and their contours are different parts, and only contours would be offset. `memory` is that of
+/// hatches and their contours are different parts, and only contours would be offset. `max_memory` is that of
 /// lamella::take_steps.
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
-                       const Execution& execution, std::uint64_t memory);
+                       const Execution& execution, std::uint64_t max_memory);
 
 } // namespace lamella::app

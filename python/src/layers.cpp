@@ -2,6 +2,7 @@
 
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/core/printable.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/compare.hpp"
@@ -211,9 +212,10 @@ std::string layer_text(const SharedLayer& layer) {
 
 /// Returns the layer after the steps that are set.
 LayerPointer after(const LayerPointer& layer, const LayerSteps& steps) {
-    return result_of_points(layer->get().points.size(), [layer, steps](const Execution& /*execution*/) {
+    return result_of_points(layer->get().points.size(), [layer, steps](const Execution& execution) {
         LayerChanges changes;
-        return std::make_shared<SharedLayer>(take_steps(steps, layer->get(), changes), layer->rule());
+        return std::make_shared<SharedLayer>(
+            take_steps(steps, layer->get(), changes, layer_limits(execution)), layer->rule());
     });
 }
 
@@ -221,8 +223,9 @@ LayerPointer after(const LayerPointer& layer, const LayerSteps& steps) {
 template <BooleanOperation operation>
 LayerPointer combined(const LayerPointer& layer, const LayerPointer& other) {
     const std::size_t points = layer->get().points.size() + other->get().points.size();
-    return result_of_points(points, [layer, other](const Execution& /*execution*/) {
-        return std::make_shared<SharedLayer>(combine(layer->get(), other->get(), operation), layer->rule());
+    return result_of_points(points, [layer, other](const Execution& execution) {
+        return std::make_shared<SharedLayer>(
+            combine(layer->get(), other->get(), operation, layer_limits(execution)), layer->rule());
     });
 }
 

@@ -2,6 +2,7 @@
 
 #include "lamella/contour/exposure.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
@@ -110,10 +111,11 @@ py::class_<Rule> bind_rule(py::module_& module, const char* name, const char* ab
     return cls;
 }
 
-std::vector<ScanLayer> layers_of(const std::vector<LayerPointer>& shared, const Rounding& rounding) {
+std::vector<ScanLayer> layers_of(const std::vector<LayerPointer>& shared, const Rounding& rounding,
+                                 const LayerLimits& limits) {
     std::vector<ScanLayer> layers;
     for (const LayerPointer& layer : shared)
-        layers.emplace_back(layer->get(), rounding);
+        layers.emplace_back(layer->get(), rounding, limits);
     return layers;
 }
 
@@ -143,20 +145,23 @@ Scanned scanned(const LayerPointer& layer, const std::vector<LayerPointer>& belo
         for (const LayerPointer& other : *beside)
             points += other->get().points.size();
     const auto work = [layer, below, above, strategy,
-                       rounding = rounding_of(stack)](const Execution& /*execution*/) {
+                       rounding = rounding_of(stack)](const Execution& execution) {
+        const LayerLimits limits = layer_limits(execution);
         std::vector<double> unreached;
-        std::vector<Layer> vectors = scan(ScanLayer(layer->get(), rounding), layers_of(below, rounding),
-                                          layers_of(above, rounding), strategy, nullptr, &unreached);
+        std::vector<Layer> vectors =
+            scan(ScanLayer(layer->get(), rounding, limits), layers_of(below, rounding, limits),
+                 layers_of(above, rounding, limits), strategy, nullptr, &unreached, limits);
         return Scanned{shared(std::move(vectors), layer->rule()), sum_of(unreached)};
     };
     return result_of_points(points, work);
 }
 
 Scanned scanned_support(const LayerPointer& layer, const ScanStrategy& strategy, const Stack* stack) {
-    const auto work = [layer, strategy, rounding = rounding_of(stack)](const Execution& /*execution*/) {
+    const auto work = [layer, strategy, rounding = rounding_of(stack)](const Execution& execution) {
+        const LayerLimits limits = layer_limits(execution);
         std::vector<double> unreached;
         std::vector<Layer> vectors =
-            scan_support(ScanLayer(layer->get(), rounding), strategy, nullptr, &unreached);
+            scan_support(ScanLayer(layer->get(), rounding, limits), strategy, nullptr, &unreached, limits);
         return Scanned{shared(std::move(vectors), layer->rule()), sum_of(unreached)};
     };
     return result_of_points(layer->get().points.size(), work);
@@ -177,11 +182,11 @@ void bind_losses(py::module_& module) {
         .def(py::init())
         .def("add",
              [](ScanLosses& self, const LayerPointer& layer) {
-                 self.add(
-                     {&layer->get(), 1},
-                     result_of_points(layer->get().points.size(), [layer](const Execution& /*execution*/) {
-                         return inverted_rings(layer->get(), {}, InversionSearch::full);
-                     }));
+                 self.add({&layer->get(), 1},
+                          result_of_points(layer->get().points.size(), [layer](const Execution& execution) {
+                              return inverted_rings(layer->get(), {}, InversionSearch::full,
+                                                    layer_limits(execution));
+                          }));
              })
         .def("texts", &ScanLosses::texts);
     module.def("scan_losses", [](const Stack& stack) {

@@ -1,21 +1,33 @@
 #include "core/layer_budget.hpp"
 
 #include "core/byte_amount.hpp"
+#include "core/memory_size.hpp"
 
 #include <fmt/format.h>
 
 namespace lamella {
 
+LayerLimits layer_limits(const Execution& execution, std::uint64_t max_memory, unsigned layers) {
+    return {execution.cancel, max_memory != 0 ? max_memory / 4 / layers : usual_memory() / 4};
+}
+
 void LayerBudget::stop() {
     throw Error(ErrorKind::cancelled, "cancelled");
 }
 
-void LayerBudget::refuse(std::uint64_t count, std::uint64_t bytes_each, std::string_view items) const {
+std::string LayerBudget::layer() const {
+    return fmt::format("layer {} at z = {:.6g} mm", layer_, z_);
+}
+
+void LayerBudget::refuse(std::uint64_t count, std::uint64_t bytes_each, std::string_view items,
+                         std::string_view cure) const {
     throw Error(
         ErrorKind::limit,
-        fmt::format("layer {}: {} {} take about {} of memory, above the {} that `max_memory` leaves for "
-                    "each of the layers worked on at the same time; allow more, or use fewer `threads`",
-                    layer_, count, items, byte_amount(count * bytes_each), byte_amount(limits_.memory)));
+        fmt::format(
+            "{}: {} {} take about {} of memory, above the {} that `max_memory` leaves each layer in work; "
+            "allow more, or use fewer `threads`{}{}",
+            layer(), count, items, byte_amount(count * bytes_each), byte_amount(limits_.memory),
+            cure.empty() ? "" : ", or ", cure));
 }
 
 } // namespace lamella

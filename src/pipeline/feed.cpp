@@ -207,7 +207,7 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
         if (memory_.asked && !stl)
             check_size(input.path(), meshes, memory_, threads);
     }
-    plate_ = build_plate(job.inputs, std::move(meshes), execution);
+    plate_ = build_plate(job.inputs, std::move(meshes), execution, job.max_memory);
 }
 
 /// The first pass.
@@ -221,7 +221,7 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
         }
         bytes_to_read_ += passes * bytes_of(file, file.part);
     }
-    PlateBuilder builder;
+    PlateBuilder builder(job.max_memory);
     for (std::size_t i = 0; i < files_.size(); ++i) {
         File& file = files_[i];
         const double unit = job.inputs[i].unit_mm.value_or(1);

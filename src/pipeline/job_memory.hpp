@@ -6,6 +6,7 @@
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/read/mesh_input.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -18,15 +19,15 @@ struct JobMemory {
 
     explicit JobMemory(const FileJob& job);
 
+    /// What notes about planes may take: without a limit that was asked for, no more than a gigabyte, as
+    /// a layer height that is a thousand times too small asks for more.
+    [[nodiscard]] std::uint64_t of_planes() const noexcept {
+        return asked ? limit : std::min(limit, std::uint64_t{1} << 30);
+    }
+
     /// How many points may be on their way through the sink: as many as slice_to has on its own, or fewer so
     /// that they and what is made of them take no more than a quarter of the limit.
     [[nodiscard]] std::uint64_t points_in_flight(unsigned threads) const noexcept;
-
-    /// What steps and scan vectors of one layer may take: a quarter of the limit, which threads share where
-    /// it was asked for. It is not set apart: few layers come near to it.
-    [[nodiscard]] std::uint64_t of_layer(unsigned threads) const noexcept {
-        return asked ? limit / 4 / threads : limit / 4;
-    }
 
     /// What the program, its threads and its notes about each plane take; on a plate, there are some for each
     /// shape. `statistics`: of layers.

@@ -48,12 +48,14 @@ std::string inverted_text(const InvertedLayers& inverted, std::uint64_t layers,
 
 /// Returns the inverted rings on each plane of the parts.
 std::vector<InvertedRings> inverted_on_planes(std::span<const LayerStack> parts, const Rounding& rounding,
-                                              InversionSearch search, const Execution& execution) {
+                                              InversionSearch search, const Execution& execution,
+                                              std::uint64_t max_memory) {
     std::vector<InvertedRings> planes(parts.empty() ? 0 : parts.front().size());
     Executor executor(execution);
+    const LayerLimits limits = layer_limits(execution, max_memory, executor.workers());
     executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
         for (const LayerStack& part : parts)
-            planes[i] += inverted_rings(part[i], rounding, search);
+            planes[i] += inverted_rings(part[i], rounding, search, limits);
     });
     executor.check_cancelled();
     return planes;
@@ -134,9 +136,10 @@ std::string InvertedLayers::text_of_file(std::uint64_t of_layers) const {
 }
 
 InvertedLayers inverted_layers(std::span<const LayerStack> parts, const Rounding& rounding,
-                               InversionSearch search, const Execution& execution) {
+                               InversionSearch search, const Execution& execution, std::uint64_t max_memory) {
     InvertedLayers inverted;
-    const std::vector<InvertedRings> planes = inverted_on_planes(parts, rounding, search, execution);
+    const std::vector<InvertedRings> planes =
+        inverted_on_planes(parts, rounding, search, execution, max_memory);
     for (std::size_t i = 0; i < planes.size(); ++i)
         inverted.add(parts.front()[i].z, parts.front()[i].thickness(), planes[i]);
     return inverted;
@@ -185,10 +188,10 @@ std::vector<std::string> ScanLosses::texts() const {
 }
 
 ScanLosses scan_losses(std::span<const LayerStack> parts, const Rounding& rounding,
-                       const Execution& execution) {
+                       const Execution& execution, std::uint64_t max_memory) {
     ScanLosses losses;
     const std::vector<InvertedRings> planes =
-        inverted_on_planes(parts, rounding, InversionSearch::full, execution);
+        inverted_on_planes(parts, rounding, InversionSearch::full, execution, max_memory);
     std::vector<Layer> plane;
     for (std::size_t i = 0; i < planes.size(); ++i) {
         plane.clear();

@@ -12,8 +12,9 @@ PlaneRange widened(PlaneRange planes, std::uint32_t below, std::uint32_t above, 
 }
 
 LayerWindow::LayerWindow(PlaneRange coming, PlaneRange wanted, std::uint32_t below, std::uint32_t above,
-                         Work work)
-    : coming_(coming), wanted_(wanted), below_(below), above_(above), work_(std::move(work)) {
+                         Make make, Work work)
+    : coming_(coming), wanted_(wanted), below_(below), above_(above), make_(std::move(make)),
+      work_(std::move(work)) {
     assert(wanted.size() == 0 || (coming.begin <= wanted.begin && wanted.end <= coming.end));
 }
 
@@ -31,7 +32,9 @@ PlaneRange LayerWindow::users(std::uint32_t plane) const noexcept {
 
 std::function<void()> LayerWindow::operator()(std::uint32_t plane, std::span<const Layer> parts) {
     assert(coming_.begin <= plane && plane < coming_.end);
-    std::vector<ScanLayer> layers(parts.begin(), parts.end());
+    std::vector<ScanLayer> layers;
+    for (std::size_t part = 0; part < parts.size(); ++part)
+        layers.push_back(make_(part, parts[part]));
     if (const Parts beside = held_beside(plane))
         for (std::size_t part = 0; part < layers.size(); ++part)
             layers[part].share_points((*beside)[part]);
@@ -88,7 +91,7 @@ LayerWindow::Complete LayerWindow::take(std::uint32_t plane) {
 void LayerWindow::work_on(const Complete& complete) {
     const std::uint32_t first = neighbours(complete.plane).begin;
     const std::size_t own = complete.plane - first;
-    PlaneLayers plane{.parts = *complete.layers[own]};
+    PlaneLayers plane{.plane = complete.plane, .parts = *complete.layers[own]};
     for (std::size_t i = own; i-- > 0;)
         plane.below.emplace_back(*complete.layers[i]);
     for (std::size_t i = own + 1; i < complete.layers.size(); ++i)

@@ -32,9 +32,13 @@ class LayerWindow {
     /// Like PlateSink, for a plane with its neighbours.
     using Work = std::function<std::function<void()>(const PlaneLayers& plane)>;
 
+    /// Prepares a layer of a part.
+    using Make = std::function<ScanLayer(std::size_t part, const Layer& layer)>;
+
     /// `coming` is the range of planes that will arrive; those in `wanted` are worked on, each with up to
     /// `below` and `above` of the arriving planes.
-    LayerWindow(PlaneRange coming, PlaneRange wanted, std::uint32_t below, std::uint32_t above, Work work);
+    LayerWindow(PlaneRange coming, PlaneRange wanted, std::uint32_t below, std::uint32_t above, Make make,
+                Work work);
 
     /// Adds the layers of all parts on a plane. May be called from any thread.
     [[nodiscard]] std::function<void()> operator()(std::uint32_t plane, std::span<const Layer> parts);
@@ -65,6 +69,7 @@ class LayerWindow {
     PlaneRange wanted_;
     std::uint32_t below_;
     std::uint32_t above_;
+    Make make_;
     Work work_;
     std::mutex mutex_;
     std::map<std::uint32_t, Held> held_;

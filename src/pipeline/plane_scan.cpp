@@ -4,6 +4,7 @@
 #include "lamella/contour/stack_hash.hpp"
 
 #include "core/naming.hpp"
+#include "scan/vector_bytes.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -40,7 +41,7 @@ std::vector<Exposure> plane_exposures(const std::vector<bool>& supports, const S
 
 PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
                         std::span<const std::string> names, const ScanStrategy& strategy,
-                        std::vector<ScanMemory>& memories) {
+                        std::vector<ScanMemory>& memories, const LayerLimits& limits) {
     assert(supports.size() == plane.parts.size() && memories.size() == plane.parts.size());
     assert(names.size() == plane.parts.size());
     const std::vector<Exposure> each = plane_exposures(supports, strategy);
@@ -50,15 +51,16 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
         each.begin());
     PlaneVectors vectors;
     vectors.figures.resize(each.size());
+    LayerLimits left = limits;
     std::optional<Point2> beam;
     std::vector<std::uint64_t> hashes;
     for (std::size_t part = 0; part < plane.parts.size(); ++part) {
         ScanMemory* const memory = &memories[part];
         std::vector<double> unreached;
         std::vector<Layer> scanned = naming(names[part], [&] {
-            return supports[part] ? scan_support(plane.parts[part], strategy, memory, &unreached)
+            return supports[part] ? scan_support(plane.parts[part], strategy, memory, &unreached, left)
                                   : scan(plane.parts[part], layers_of(part, plane.below),
-                                         layers_of(part, plane.above), strategy, memory, &unreached);
+                                         layers_of(part, plane.above), strategy, memory, &unreached, left);
         });
         const double sum = std::accumulate(unreached.begin(), unreached.end(), 0.0);
         vectors.unreached_mm2.push_back(sum > strategy.accepted_mm2 ? sum : 0);
@@ -69,6 +71,7 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
             vectors.figures[first + i] += measure_vectors(scanned[i], each[first + i].parameters, beam);
             vectors.figures[first + i].unreached_mm2 += unreached[i];
             hashes.push_back(content_hash(scanned[i]));
+            left = left.without(vector_bytes(scanned[i]));
             vectors.layers.push_back(std::move(scanned[i]));
         }
     }

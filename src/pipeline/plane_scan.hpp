@@ -4,6 +4,7 @@
 
 #include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 
@@ -16,7 +17,8 @@ namespace lamella {
 
 /// The layers of all parts on a plane, and on those beneath it and on top, the nearest one first.
 struct PlaneLayers {
-    std::span<const ScanLayer> parts;
+    std::uint32_t plane = 0; ///< its number among those that are scanned
+    std::span<const ScanLayer> parts = {};
     std::vector<std::span<const ScanLayer>> below = {};
     std::vector<std::span<const ScanLayer>> above = {};
 };
@@ -36,9 +38,9 @@ struct PlaneVectors {
                                                     const ScanStrategy& strategy);
 
 /// See `scan`. The beam goes through the parts one after the other. `memories`: of each part; `names`: of the
-/// parts, for errors, or empty texts.
+/// parts, for errors, or empty texts. `limits`: for all of them.
 [[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
                                       std::span<const std::string> names, const ScanStrategy& strategy,
-                                      std::vector<ScanMemory>& memories);
+                                      std::vector<ScanMemory>& memories, const LayerLimits& limits);
 
 } // namespace lamella

@@ -20,7 +20,7 @@ Plate load_plate(std::span<const PlateInput> inputs, const MeshReadOptions& opti
     std::vector<MeshFile> files;
     for (const PlateInput& input : inputs)
         files.push_back(read_mesh(input.path, options, execution));
-    return build_plate(inputs, std::move(files), execution);
+    return build_plate(inputs, std::move(files), execution, options.max_memory);
 }
 
 Plate load_plate(const PlateInput& input, MeshFile file, const Execution& execution) {

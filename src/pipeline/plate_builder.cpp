@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/byte_amount.hpp"
 #include "core/counted.hpp"
 #include "core/distinct_names.hpp"
 #include "core/farthest.hpp"
@@ -73,6 +74,7 @@ void check_range(const Box3& box, const std::string& path) {
 
 /// The same limit as for parts of a 3MF file.
 constexpr std::uint64_t most_parts = std::uint64_t{1} << 20;
+constexpr std::uint64_t bytes_of_part = 1024;
 
 } // namespace
 
@@ -103,6 +105,7 @@ void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_
                             compose(input.placement, scaling(unit, unit, unit)), file.stored_triangles,
                             std::move(file.warnings), std::move(file.bodies)});
     std::vector<Instance> instances;
+    instances.reserve(file.instances.size());
     Box3 box;
     for (const MeshInstance& instance : file.instances) {
         const MeshObject& object = file.objects[instance.object];
@@ -129,11 +132,22 @@ void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_
         throw Error(ErrorKind::limit, fmt::format("{}: {} of {} are too many: a plate holds at most {} parts",
                                                   input.path, counted(input.copies, "copy", "copies"),
                                                   counted(instances.size(), "part"), most_parts));
+    const std::uint64_t parts = instances_.size() + input.copies * instances.size();
+    if (max_memory_ != 0 && parts > max_memory_ / bytes_of_part)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: {} on the plate take {} of memory, above the {} of `max_memory`; allow more, or "
+                        "place fewer",
+                        input.path, counted(parts, "part"), byte_amount(parts * bytes_of_part),
+                        byte_amount(max_memory_)));
+    instances_.reserve(parts);
     const auto columns = static_cast<std::uint64_t>(std::ceil(std::sqrt(static_cast<double>(input.copies))));
     for (std::uint64_t copy = 0; copy < input.copies; ++copy) {
         const double dx = static_cast<double>(copy % columns) * (box.max.x - box.min.x + input.spacing_mm);
         const double dy = static_cast<double>(copy / columns) * (box.max.y - box.min.y + input.spacing_mm);
-        for (Instance instance : instances) {
+        const bool last = copy + 1 == input.copies;
+        for (Instance& one : instances) {
+            Instance instance = last ? std::move(one) : one;
             instance.placement = compose(translation(dx, dy, 0), instance.placement);
             instance.box = moved(instance.box, dx, dy);
             instance.copy = copy;
@@ -202,9 +216,9 @@ PlateBuilder::Key PlateBuilder::key_of(const Instance& instance) {
     return {instance.input, instance.object, instance.placement.linear, instance.placement.offset[2]};
 }
 
-Plate build_plate(std::span<const PlateInput> inputs, std::vector<MeshFile> files,
-                  const Execution& execution) {
-    PlateBuilder builder;
+Plate build_plate(std::span<const PlateInput> inputs, std::vector<MeshFile> files, const Execution& execution,
+                  std::uint64_t max_memory) {
+    PlateBuilder builder(max_memory);
     for (std::size_t i = 0; i < files.size(); ++i)
         builder.add(inputs[i], std::move(files[i]), [&](const Mesh& mesh, const Transform& placement) {
             return bounding_box(mesh.transformed(placement), execution);

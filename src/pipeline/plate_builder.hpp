@@ -29,6 +29,10 @@ class PlateBuilder {
   public:
     using BoxOf = std::function<Box3(const Mesh& mesh, const Transform& placement)>;
 
+    /// Parts that take more than `max_memory` bytes beside their meshes are Error{limit}; 0: as many as there
+    /// may be.
+    explicit PlateBuilder(std::uint64_t max_memory = 0) : max_memory_(max_memory) {}
+
     /// Adds a file. Calls `box_of` once for each instance. Throws as load_plate.
     void add(const PlateInput& input, MeshFile file, const BoxOf& box_of);
     [[nodiscard]] Plate finish();
@@ -56,14 +60,16 @@ class PlateBuilder {
 
     static Key key_of(const Instance& instance);
 
+    std::uint64_t max_memory_;
     Plate plate_;
     std::vector<std::vector<MeshObject>> objects_;
     std::vector<Instance> instances_;
     std::map<std::tuple<std::size_t, std::uint64_t, std::uint64_t>, std::vector<std::size_t>> bodies_;
 };
 
-/// Works as load_plate, for files that have been read already: one for each input.
+/// Works as load_plate, for files that have been read already: one for each input. `max_memory`: as of
+/// PlateBuilder.
 [[nodiscard]] Plate build_plate(std::span<const PlateInput> inputs, std::vector<MeshFile> files,
-                                const Execution& execution);
+                                const Execution& execution, std::uint64_t max_memory = 0);
 
 } // namespace lamella

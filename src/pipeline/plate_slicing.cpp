@@ -4,6 +4,7 @@
 
 #include "core/executor.hpp"
 #include "core/stopwatch.hpp"
+#include "slicing/ordered_delivery.hpp"
 #include "slicing/shrunken_contours.hpp"
 #include "slicing/slabs.hpp"
 
@@ -134,58 +135,63 @@ Execution without_slicing(const Execution& execution) {
     return run;
 }
 
-/// Returns the next planes of a range whose parts together have at most this many points (0: any number), or
-/// one plane.
-PlaneRange next_planes(PlaneRange left, std::uint32_t most, std::uint64_t most_points, const Plate& plate,
-                       const std::vector<ShapeLayers>& shapes) {
-    PlaneRange next{left.begin, left.begin};
-    for (std::uint64_t points = 0; next.end < left.end && next.size() < most; ++next.end) {
+/// For each plane of a run the first one that may still be on its way while it is worked on: so that there
+/// are no more than `most` of them, nor more than `most_points` points of all parts (0: any number); a layer
+/// without points counts as some.
+std::vector<std::uint32_t> first_on_the_way(const Plate& plate, PlaneRange run, std::uint32_t most,
+                                            std::uint64_t most_points,
+                                            const std::vector<ShapeLayers>& shapes) {
+    const auto points_on = [&](std::uint32_t plane) {
+        std::uint64_t points =
+            (plate.parts.size() + plate.negatives.size()) * (sizeof(Layer) / sizeof(Point2));
         for_bodies(plate, [&](const auto& body) {
             if (const auto& [planes, layers] = shapes[body.shape];
-                planes.begin <= next.end && next.end < planes.end)
-                points += layers[next.end - planes.begin].points.size();
+                planes.begin <= plane && plane < planes.end)
+                points += layers[plane - planes.begin].points.size();
         });
-        if (most_points != 0 && points > most_points && next.size() > 0)
-            break;
+        return points;
+    };
+    std::vector<std::uint32_t> first(run.size());
+    std::vector<std::uint64_t> points(run.size());
+    std::uint64_t sum = 0; // of those on their way
+    std::uint32_t begin = 0;
+    for (std::uint32_t i = 0; i < run.size(); ++i) {
+        points[i] = points_on(run.begin + i);
+        sum += points[i];
+        while (begin < i && (i - begin >= most || (most_points != 0 && sum > most_points)))
+            sum -= points[begin++];
+        first[i] = begin;
     }
-    return next;
+    return first;
 }
 
-/// Emits the layers of all parts on a range of planes, formatted in parallel, written in order. Empties the
-/// shapes.
-void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRange run,
+/// The layers of all parts on a run of planes, formatted in parallel, written in order, with `at_once` of
+/// them on their way at most. Empties the shapes.
+void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRange run, std::uint32_t at_once,
           std::uint64_t points_in_flight, std::vector<ShapeLayers>& shapes, Executor& executor,
-          ProgressMeter* progress) {
-    const std::uint32_t at_once = 4 * executor.workers(); // some for each worker
-    std::vector<std::function<void()>> actions(at_once);
-    for (PlaneRange now{run.begin, run.begin}; now.end < run.end;) {
-        now = next_planes({now.end, run.end}, at_once, points_in_flight, plate, shapes);
-        executor.for_chunks(now.size(), 1, [&](std::size_t i, std::size_t, unsigned) {
-            const auto plane = static_cast<std::uint32_t>(now.begin + i);
-            const PlannedLayer& planned = plan.layers[plane];
-            const Layer none{
-                .index = planned.index, .z = planned.z, .bottom = planned.bottom, .top = planned.top};
-            std::vector<Layer> parts;
-            parts.reserve(plate.parts.size() + plate.negatives.size());
-            for_bodies(plate, [&](const auto& body) {
-                const auto& [planes, layers] = shapes[body.shape];
-                const bool has = planes.begin <= plane && plane < planes.end;
-                parts.push_back(has ? moved(layers[plane - planes.begin], body.dx, body.dy) : none);
-            });
-            actions[i] = sink(parts);
+          ProgressMeter& progress) {
+    const std::vector<std::uint32_t> first = first_on_the_way(plate, run, at_once, points_in_flight, shapes);
+    OrderedDelivery delivery(executor, progress);
+    executor.for_chunks(run.size(), 1, [&](std::size_t i, std::size_t, unsigned) {
+        if (!delivery.wait_for(first[i]))
+            return;
+        const auto plane = static_cast<std::uint32_t>(run.begin + i);
+        const PlannedLayer& planned = plan.layers[plane];
+        const Layer none{
+            .index = planned.index, .z = planned.z, .bottom = planned.bottom, .top = planned.top};
+        std::vector<Layer> parts;
+        parts.reserve(plate.parts.size() + plate.negatives.size());
+        for_bodies(plate, [&](const auto& body) {
+            const auto& [planes, layers] = shapes[body.shape];
+            const bool has = planes.begin <= plane && plane < planes.end;
+            parts.push_back(has ? moved(layers[plane - planes.begin], body.dx, body.dy) : none);
         });
-        executor.check_cancelled();
-        for (std::size_t i = 0; i < now.size(); ++i)
-            if (actions[i])
-                actions[i]();
-        for (auto& [planes, layers] : shapes) { // release written layers
-            const PlaneRange written = common(planes, now);
-            for (std::uint32_t plane = written.begin; plane < written.end; ++plane)
+        for (auto& [planes, layers] : shapes) // nobody else looks at this plane
+            if (planes.begin <= plane && plane < planes.end)
                 layers[plane - planes.begin] = {};
-        }
-        if (progress != nullptr)
-            progress->add(now.size());
-    }
+        delivery.deliver(static_cast<std::uint32_t>(i), sink(parts));
+    });
+    executor.check_cancelled();
 }
 
 /// Returns the visitor of a shape; empty if there is none.
@@ -217,9 +223,12 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
     // If the sink expands layers, its work takes most of the time, and its progress is reported instead.
     const bool sink_counts = yield == SinkYield::much_more;
     const Execution slicing = sink_counts ? without_slicing(execution) : execution;
+    const Execution quiet;
     std::optional<ProgressMeter> emitted;
     std::vector<bool> seen(planes.size(), false);
     Executor executor(execution);
+    // Nobody is to wait for a plane that takes longer; where much is made of each, no more than one a thread.
+    const std::uint32_t at_once = (sink_counts ? 1 : 4) * executor.workers();
     for (const PlaneRange& run : runs) {
         std::vector<ShapeLayers> shapes(planes.size());
         for (std::size_t shape = 0; shape < planes.size(); ++shape)
@@ -231,10 +240,10 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
                 seen[shape] = true;
                 report += ours;
             }
-        if (sink_counts && !emitted)
-            emitted.emplace(execution, Stage::slice, all);
+        if (!emitted)
+            emitted.emplace(sink_counts ? execution : quiet, Stage::slice, all);
         const Stopwatch emitting;
-        emit(sink, plate, plan, run, points_in_flight, shapes, executor, emitted ? &*emitted : nullptr);
+        emit(sink, plate, plan, run, at_once, points_in_flight, shapes, executor, *emitted);
         report.slice_seconds += emitting.seconds();
     }
     if (emitted)
@@ -247,7 +256,8 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
 
 } // namespace
 
-std::vector<Layer> without_negatives(std::span<const Layer> layers, const Plate& plate) {
+std::vector<Layer> without_negatives(std::span<const Layer> layers, const Plate& plate,
+                                     const LayerLimits& limits) {
     std::vector<Layer> parts(layers.begin(),
                              layers.begin() + static_cast<std::ptrdiff_t>(plate.parts.size()));
     for (std::size_t i = 0; i < plate.negatives.size(); ++i) {
@@ -256,7 +266,7 @@ std::vector<Layer> without_negatives(std::span<const Layer> layers, const Plate&
             continue;
         for (const std::size_t part : plate.negatives[i].parts)
             if (parts[part].rings > 0)
-                parts[part] = combine(parts[part], negative, BooleanOperation::subtract);
+                parts[part] = combine(parts[part], negative, BooleanOperation::subtract, limits);
     }
     return parts;
 }

@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
@@ -30,7 +31,8 @@ enum class SinkYield { like_layers, much_more };
 
 /// Returns the layers of the parts on one plane, with the negative volumes subtracted; takes the arguments of
 /// a PlateSink. Layers that no negative volume touches are unchanged, bit for bit.
-[[nodiscard]] std::vector<Layer> without_negatives(std::span<const Layer> layers, const Plate& plate);
+[[nodiscard]] std::vector<Layer> without_negatives(std::span<const Layer> layers, const Plate& plate,
+                                                   const LayerLimits& limits = {});
 
 /// Slices a plate into a sink. A plate with one part is sliced while its layers go to the sink. Other plates,
 /// and sinks that yield much more, are sliced range by range: all shapes together have at most twice

@@ -4,8 +4,12 @@
 #include "lamella/core/printable.hpp"
 
 #include "core/counted.hpp"
+#include "core/executor.hpp"
+#include "core/naming.hpp"
 #include "core/stopwatch.hpp"
+#include "pipeline/layer_window.hpp"
 #include "pipeline/plane_scan.hpp"
+#include "slicing/ordered_delivery.hpp"
 #include "write/ordered_writer.hpp"
 
 #include <fmt/format.h>
@@ -49,67 +53,77 @@ LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& stra
 
 namespace {
 
-using StackedPlanes = std::vector<std::vector<ScanLayer>>; // of all parts
-
-StackedPlanes stacked(std::span<const LayerStack> parts, const Rounding& rounding) {
-    StackedPlanes planes(parts.empty() ? 0 : parts.front().size());
-    for (const LayerStack& part : parts)
-        for (std::size_t i = 0; i < part.size(); ++i) {
-            ScanLayer& layer = planes[i].emplace_back(part[i], rounding);
-            if (i > 0)
-                layer.share_points(planes[i - 1][planes[i].size() - 1]);
-        }
-    return planes;
-}
-
-/// Returns a plane with the neighbours that a strategy needs.
-PlaneLayers with_its_neighbours(const StackedPlanes& planes, std::size_t i, const ScanStrategy& strategy) {
-    PlaneLayers found{.parts = planes[i]};
-    for (std::size_t k = 1; k <= std::min<std::size_t>(strategy.downskin.layers, i); ++k)
-        found.below.emplace_back(planes[i - k]);
-    for (std::size_t k = 1; k <= std::min<std::size_t>(strategy.upskin.layers, planes.size() - 1 - i); ++k)
-        found.above.emplace_back(planes[i + k]);
-    return found;
+/// What errors call the parts of a file.
+std::vector<std::string> names_of(const LayerFileInfo& info, const std::string& file) {
+    std::vector<std::string> names;
+    for (const PartInfo& part : info.parts) {
+        const std::string label =
+            info.parts.size() > 1 ? fmt::format("part \"{}\"", excerpt(part.label)) : "";
+        names.push_back(fmt::format("{}{}{}", file, file.empty() || label.empty() ? "" : ", ", label));
+    }
+    return names;
 }
 
 } // namespace
 
 ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::span<const LayerStack> parts,
                        const Rounding& rounding, const LayerFileInfo& info, const ScanStrategy& strategy,
-                       const LayerWriteOptions& options, const Execution& execution) {
+                       const LayerWriteOptions& options, const Execution& execution, std::uint64_t max_memory,
+                       const std::string& name) {
     check_strategy(strategy);
     check_same_planes(parts, info);
-    const StackedPlanes planes = stacked(parts, rounding);
+    const auto planes = static_cast<std::uint32_t>(parts.empty() ? 0 : parts.front().size());
     ScanResult result;
     std::vector<bool> supports;
-    std::vector<std::string> names;
-    for (const PartInfo& part : info.parts) {
+    for (const PartInfo& part : info.parts)
         supports.push_back(part.support);
-        names.push_back(info.parts.size() > 1 ? fmt::format("part \"{}\"", excerpt(part.label)) : "");
-    }
+    const std::vector<std::string> names = names_of(info, name);
     for (Exposure& exposure : plane_exposures(supports, strategy))
         result.exposures.push_back({std::move(exposure), {}});
-    result.layers.resize(planes.size());
-    std::vector<double> unreached(planes.size());
-    result.hashes.resize(planes.size());
+    result.layers.resize(planes);
+    std::vector<double> unreached(planes);
+    result.hashes.resize(planes);
     std::vector<ScanMemory> memories(supports.size());
     std::atomic<std::uint64_t> nanoseconds{0};
     const std::unique_ptr<LayerWriter> writer =
         open_layer_writer(path, format, with_exposures(info, strategy), options);
-    const auto vectors_of = [&](std::size_t i) {
+
+    Executor executor(execution);
+    const unsigned workers = executor.workers();
+    const LayerLimits limits = layer_limits(execution, max_memory, workers);
+    const auto write = [&](const PlaneLayers& plane) {
         const Stopwatch scanning;
-        PlaneVectors vectors =
-            scan_plane(with_its_neighbours(planes, i, strategy), supports, names, strategy, memories);
+        PlaneVectors vectors = scan_plane(plane, supports, names, strategy, memories, limits);
         nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * scanning.seconds()),
                               std::memory_order_relaxed);
-        result.layers[i] = std::move(vectors.figures);
-        unreached[i] = std::accumulate(vectors.unreached_mm2.begin(), vectors.unreached_mm2.end(), 0.0);
-        result.hashes[i] = vectors.hash;
-        return std::move(vectors.layers);
+        result.layers[plane.plane] = std::move(vectors.figures);
+        unreached[plane.plane] =
+            std::accumulate(vectors.unreached_mm2.begin(), vectors.unreached_mm2.end(), 0.0);
+        result.hashes[plane.plane] = vectors.hash;
+        return writer->prepare(vectors.layers);
     };
-    write_planes(*writer, planes.size(), vectors_of, execution);
-    for (std::size_t i = 0; i < planes.size(); ++i)
-        result.unreached.add(unreached[i], planes[i].front().layer().z);
+    LayerWindow window(
+        {0, planes}, {0, planes}, strategy.downskin.layers, strategy.upskin.layers,
+        [&](std::size_t part, const Layer& layer) {
+            return naming(names[part], [&] { return ScanLayer(layer, rounding, limits); });
+        },
+        write);
+    ProgressMeter progress(execution, Stage::write, planes);
+    OrderedDelivery delivery(executor, progress);
+    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        const auto plane = static_cast<std::uint32_t>(i);
+        if (!delivery.wait_for(plane + 1 - std::min(plane + 1, workers)))
+            return;
+        std::vector<Layer> layers;
+        for (const LayerStack& part : parts)
+            layers.push_back(part[plane]);
+        delivery.deliver(plane, window(plane, layers));
+    });
+    executor.check_cancelled();
+    progress.finish();
+
+    for (std::uint32_t i = 0; i < planes; ++i)
+        result.unreached.add(unreached[i], parts.front()[i].z);
     if (options.strict && result.unreached.layers > 0)
         throw Error(ErrorKind::defect, fmt::format("{}: {}", path, result.unreached.text()));
     writer->finish();

@@ -6,6 +6,7 @@
 
 #include "core/byte_amount.hpp"
 #include "core/executor.hpp"
+#include "core/naming.hpp"
 #include "core/stopwatch.hpp"
 #include "mesh/edge_survey.hpp"
 #include "pipeline/agreement.hpp"
@@ -95,14 +96,40 @@ void check_layer_heights(const FileJob& job, const UniformLayers& layers, const 
     const JobMemory memory(job);
     const std::uint64_t bytes =
         JobMemory::overhead(1, static_cast<std::uint64_t>(count), 1, job.layer_statistics);
-    if (bytes > memory.limit)
+    if (bytes > memory.of_planes())
         throw Error(
             ErrorKind::limit,
             fmt::format(
                 "{}: a layer height of {:.6g} mm makes {:.6g} layers of this part ({:.6g} mm high), which "
                 "take {} of memory, above the {} {}; choose a larger one, or fewer layers",
                 highest_part(plate), layer_height, count, height, byte_amount(bytes),
-                byte_amount(memory.limit), memory.asked ? "of `max_memory`" : "that may be taken here"));
+                byte_amount(memory.of_planes()),
+                memory.asked ? "of `max_memory`" : "that layers may take unless `max_memory` says more"));
+}
+
+/// Throws where notes about so many planes take too much memory.
+void check_planes(const FileJob& job, const Plate& plate, std::uint64_t planes) {
+    const JobMemory memory(job);
+    const std::uint64_t bytes = JobMemory::overhead(1, planes, plate.shapes.size(), job.layer_statistics);
+    if (bytes > memory.of_planes() && planes > few_layers)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: {} layers take {} of memory, above the {} {}; choose higher ones, or fewer",
+                        highest_part(plate), planes, byte_amount(bytes), byte_amount(memory.of_planes()),
+                        memory.asked ? "of `max_memory`"
+                                     : "that layers may take unless `max_memory` says more"));
+}
+
+/// About how many layers there will be; all are stacked, whichever of them are wanted.
+double count_by_ranges(const HeightRanges& layers, double height) {
+    double count = 0;
+    double rest = height;
+    for (const HeightRange& range : layers.ranges) {
+        const double reach = std::max(0.0, std::min(range.to, height) - std::max(range.from, 0.0));
+        count += reach / range.layer_height;
+        rest -= reach;
+    }
+    return count + rest / layers.layer_height;
 }
 
 } // namespace
@@ -111,6 +138,10 @@ Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution)
     check_heights(plate);
     if (const auto* const uniform = std::get_if<UniformLayers>(&job.layering.cut))
         check_layer_heights(job, *uniform, plate);
+    if (const auto* const ranges = std::get_if<HeightRanges>(&job.layering.cut))
+        if (const double count = count_by_ranges(*ranges, plate.box.max.z - plate.box.min.z);
+            count > few_layers && count < std::numeric_limits<std::int32_t>::max())
+            check_planes(job, plate, static_cast<std::uint64_t>(count));
     Plan plan;
     try {
         plan = plan_of(
@@ -120,16 +151,7 @@ Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution)
             throw;
         throw Error(error.kind(), fmt::format("{}: {}", highest_part(plate), error.what()));
     }
-    const JobMemory memory(job);
-    const std::uint64_t bytes =
-        JobMemory::overhead(1, plan.layers.size(), plate.shapes.size(), job.layer_statistics);
-    if (bytes > memory.limit && plan.layers.size() > few_layers)
-        throw Error(
-            ErrorKind::limit,
-            fmt::format("{}: {} layers take {} of memory, above the {} {}; choose higher ones, or fewer",
-                        highest_part(plate), plan.layers.size(), byte_amount(bytes),
-                        byte_amount(memory.limit),
-                        memory.asked ? "of `max_memory`" : "that may be taken here"));
+    check_planes(job, plate, plan.layers.size());
     return plan;
 }
 
@@ -338,9 +360,12 @@ class LayerWay {
              const LayerLimits& limits)
         : job_(job), plate_(plate), limits_(limits), supports_(supports), memories_(supports.size()),
           first_index_(plan.layers.front().index), mine_(mine), totals_(totals), output_(output),
-          window_(sliced, mine, job.scan ? job.scan->downskin.layers : 0,
-                  job.scan ? job.scan->upskin.layers : 0,
-                  [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {
+          window_(
+              sliced, mine, job.scan ? job.scan->downskin.layers : 0, job.scan ? job.scan->upskin.layers : 0,
+              [this](std::size_t part, const Layer& layer) {
+                  return naming(names_[part], [&] { return ScanLayer(layer, {}, limits_); });
+              },
+              [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {
         for (const PlatePart& part : plate.parts)
             names_.push_back(name_of(plate, part));
     }
@@ -364,15 +389,15 @@ class LayerWay {
             const Stopwatch stepping;
             LayerSteps first; // where each body has material
             first.fill = std::exchange(steps.fill, FillRule::none);
-            filled = take_steps_on_plane(first, parts, changes, limits_);
-            material = without_negatives(filled, plate_);
+            filled = take_steps_on_plane(first, parts, changes, limits_, names_);
+            material = without_negatives(filled, plate_, limits_);
             parts = material;
             count(stepping, step_nanoseconds_);
         }
         if (steps.any()) {
             const Stopwatch stepping;
             LayerChanges more;
-            made = take_steps_on_plane(steps, parts, more, limits_);
+            made = take_steps_on_plane(steps, parts, more, limits_, names_);
             changes += more;
             changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers);
             count(stepping, step_nanoseconds_);
@@ -413,15 +438,16 @@ class LayerWay {
         if ((job_.scan && as_cut) || job_.steps.fill != FillRule::none)
             return inverted;
         const bool loses = job_.scan || job_.steps.offset_mm != 0 || !plate_.negatives.empty();
-        for (const Layer& layer : parts)
-            inverted.push_back(
-                inverted_rings(layer, {}, loses ? InversionSearch::full : InversionSearch::quick));
+        const InversionSearch search = loses ? InversionSearch::full : InversionSearch::quick;
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            inverted.push_back(naming(i < names_.size() ? names_[i] : std::string(),
+                                      [&] { return inverted_rings(parts[i], {}, search, limits_); }));
         return inverted;
     }
 
     std::vector<Layer> vectors_of(const PlaneLayers& plane) {
         const Stopwatch scanning;
-        PlaneVectors vectors = scan_plane(plane, supports_, names_, *job_.scan, memories_);
+        PlaneVectors vectors = scan_plane(plane, supports_, names_, *job_.scan, memories_, limits_);
         count(scanning, scan_nanoseconds_);
         if (job_.steps.any() || !plate_.negatives.empty())
             vectors.inverted.clear(); // as counted before
@@ -551,7 +577,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     for (const PlateNegative& negative : plate.negatives)
         files.push_back(static_cast<std::uint32_t>(plate.shapes[negative.shape].input));
     LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), supports, files);
-    const LayerLimits limits{execution.cancel, feed.memory().of_layer(result.threads)};
+    const LayerLimits limits = layer_limits(execution, job.max_memory, result.threads);
     LayerWay way(job, plate, plan, sliced_here, mine, supports, totals, output, limits);
     ShapeVisitor visitor;
     if (feed.meshes() != nullptr) {

@@ -557,7 +557,7 @@ bool cut(Arrangement& arrangement, const Places& places, const On& on, const Lay
     if (!try_to_cut(arrangement, places, on, most_pieces, any, budget))
         throw Error(
             ErrorKind::limit,
-            fmt::format("layer {}: many contours run along one another, closer than coordinates are "
+            fmt::format("{}: many contours run along one another, closer than coordinates are "
                         "rounded: cut at one another's corners they make more than {} pieces, the limit",
                         budget.layer(), most_pieces));
     return true;

@@ -28,13 +28,14 @@ Layer with_rings_reversed(const Layer& layer) {
 } // namespace
 
 // Where rings wind a negative number of times, the same rings reversed have their material.
-InvertedRings inverted_rings(const Layer& layer, const Rounding& rounding, InversionSearch search) {
+InvertedRings inverted_rings(const Layer& layer, const Rounding& rounding, InversionSearch search,
+                             const LayerLimits& limits) {
     const Rounding at_least{.step_mm = rounding.step_mm, .single_precision = true};
     InvertedRings inverted;
     assert(search == InversionSearch::full || in_normal_form(layer));
     if (search == InversionSearch::quick && holes_lie_in_material(layer, at_least))
         return inverted;
-    const Layer places = fill(with_rings_reversed(layer), FillRule::positive).layer;
+    const Layer places = fill(with_rings_reversed(layer), FillRule::positive, limits).layer;
     for (std::size_t i = 0; i < places.rings; ++i)
         if (const std::span<const Point2> ring = places.contour(i); !orientation_is_lost(ring, at_least))
             inverted += {.rings = 1, .area_mm2 = ring_area(ring), .at = ring.front()};

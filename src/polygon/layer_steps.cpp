@@ -3,6 +3,7 @@
 #include "lamella/contour/measure.hpp"
 
 #include "core/executor.hpp"
+#include "core/naming.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -94,12 +95,14 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes, co
 }
 
 std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
-                                       LayerChanges& changes, const LayerLimits& limits) {
+                                       LayerChanges& changes, const LayerLimits& limits,
+                                       std::span<const std::string> names) {
     changes = {};
     std::vector<Layer> made;
-    for (const Layer& layer : parts) {
+    for (std::size_t i = 0; i < parts.size(); ++i) {
         LayerChanges one;
-        made.push_back(take_steps(steps, layer, one, limits));
+        made.push_back(naming(i < names.size() ? names[i] : std::string(),
+                              [&] { return take_steps(steps, parts[i], one, limits); }));
         changes += one;
     }
     changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers);
@@ -108,20 +111,20 @@ std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const 
 
 std::vector<LayerStack> take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
                                    std::vector<LayerChanges>& planes, const Execution& execution,
-                                   std::uint64_t memory) {
+                                   std::uint64_t max_memory, std::span<const std::string> names) {
     check_steps(steps);
     planes.assign(parts.empty() ? 0 : parts.front().size(), {});
     if (!steps.any())
         return parts;
     Executor executor(execution);
-    const LayerLimits limits{execution.cancel, memory / executor.workers()};
+    const LayerLimits limits = layer_limits(execution, max_memory, executor.workers());
     ProgressMeter progress(execution, Stage::polygon, planes.size());
     executor.for_chunks(planes.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i) {
             std::vector<Layer> plane;
             for (LayerStack& part : parts)
                 plane.push_back(std::move(part[i]));
-            plane = take_steps_on_plane(steps, plane, planes[i], limits);
+            plane = take_steps_on_plane(steps, plane, planes[i], limits, names);
             for (std::size_t part = 0; part < parts.size(); ++part)
                 parts[part][i] = std::move(plane[part]);
             progress.add(1);

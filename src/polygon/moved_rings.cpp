@@ -521,6 +521,7 @@ std::vector<Layer> moved_rings(const Layer& layer, std::span<const double> dista
     assert(gone.size() == distances.size());
     const std::span<const Point2> all = layer.points.span().first(layer.offsets[layer.rings]);
     const Layer head{.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
+    budget.need(distances.size() * all.size(), 2 * sizeof(Point2), "points of offsets");
     std::vector<Layer> moved(distances.size(), head);
     std::vector<std::vector<Point2>> points(distances.size());
     RingSides sides;

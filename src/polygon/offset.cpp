@@ -65,7 +65,7 @@ class Boundaries {
   public:
     // Bodies that fit in one another are united first: of each ring other points may be straight.
     Boundaries(const Layer& layer, const LayerLimits& limits)
-        : limits_(limits), budget_(limits, layer.index) {
+        : limits_(limits), budget_(limits, layer.index, layer.z) {
         const Overlay overlay(layer, limits);
         const Layer material =
             overlay.clean() ? layer

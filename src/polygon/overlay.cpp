@@ -179,7 +179,7 @@ class Filler {
 } // namespace
 
 Overlay::Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits)
-    : layer_(layer), budget_(limits, layer.index), turns_(std::move(turns)), chains_(layer),
+    : layer_(layer), budget_(limits, layer.index, layer.z), turns_(std::move(turns)), chains_(layer),
       grid_(ChainGrid::of(chains_)), contacts_(find_contacts(layer, chains_, grid_, budget_)),
       nest_(nesting(layer, chains_, grid_, contacts_, turns_, budget_)) {}
 

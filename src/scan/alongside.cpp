@@ -117,10 +117,12 @@ bool alike(const Box2& a, const Box2& b, double within) noexcept {
 
 } // namespace
 
-std::vector<std::uint32_t> rings_alongside(const Layer& a, const Layer& b, double within) {
+std::vector<std::uint32_t> rings_alongside(const Layer& a, const Layer& b, double within,
+                                           const LayerBudget& budget) {
     std::vector<bool> taken(b.rings, false);
     std::vector<std::uint32_t> found(a.rings, no_ring);
     const auto try_pair = [&](std::size_t i, std::uint32_t j) {
+        budget.check();
         if (j < b.rings && !taken[j] && run_alongside(a.contour(i), b.contour(j), within * within)) {
             taken[j] = true;
             found[i] = j;

@@ -4,6 +4,8 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include "core/layer_budget.hpp"
+
 #include <cstdint>
 #include <vector>
 
@@ -17,6 +19,7 @@ inline constexpr std::uint32_t no_ring = 0xffffffff;
 /// of one of the two only was swept by the way between them, so it is no farther from either. (That the
 /// shortest way is found is not sought, nor all pairs: what is found is certain.) O(points) for layers in
 /// normal form whose rings have few others beside them with nearly the same box.
-[[nodiscard]] std::vector<std::uint32_t> rings_alongside(const Layer& a, const Layer& b, double within);
+[[nodiscard]] std::vector<std::uint32_t> rings_alongside(const Layer& a, const Layer& b, double within,
+                                                         const LayerBudget& budget = {});
 
 } // namespace lamella

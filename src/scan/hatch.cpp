@@ -20,15 +20,18 @@ namespace lamella {
 
 namespace {
 
-HatchLines lines_in(const HatchArea& area, CosSin angle, double distance, double phase) {
-    const auto lines_of = [&](const Layer& layer) {
-        return HatchLines(layer, angle, distance, phase);
+HatchLines lines_in(const HatchArea& area, CosSin angle, double distance, double phase,
+                    const LayerBudget& budget) {
+    HatchLines lines(area.within, angle, distance, phase, budget);
+    const auto with_lines_of = [&](const Layer& layer, auto change) {
+        const LayerBudget left = budget.without(lines.bytes());
+        const HatchLines others(layer, angle, distance, phase, left);
+        (lines.*change)(others, left.without(others.bytes()));
     };
-    HatchLines lines = lines_of(area.within);
     if (area.also_within != nullptr)
-        lines.intersect(lines_of(*area.also_within));
+        with_lines_of(*area.also_within, &HatchLines::intersect);
     for (const Layer* const other : area.without)
-        lines.subtract(lines_of(*other));
+        with_lines_of(*other, &HatchLines::subtract);
     return lines;
 }
 
@@ -36,10 +39,12 @@ bool is_long_enough(double from, double to, const HatchRule& rule) noexcept {
     return to > from && to - from >= rule.shortest;
 }
 
-std::vector<Point2> line_by_line(const HatchLines& lines, const HatchRule& rule) {
+std::vector<Point2> line_by_line(const HatchLines& lines, const HatchRule& rule, const LayerBudget& budget) {
+    budget.need(lines.total() / 2, 2 * sizeof(Point2), "hatch lines", "a larger `hatch.distance`");
     std::vector<Point2> points;
     points.reserve(lines.total());
     for (std::size_t i = 0; i < lines.size(); ++i) {
+        budget.check();
         const auto begin = static_cast<std::ptrdiff_t>(points.size());
         const std::span<const double> ends = lines.ends(i);
         for (std::size_t k = 0; k < ends.size(); k += 2)
@@ -68,30 +73,52 @@ std::int32_t modulo(std::int32_t number) noexcept {
     return (number % n + n) % n;
 }
 
-// Stripes are cells in one row each. What a line has of a stripe may be too short, where it ends just beyond
-// the border of two: then the neighbour is a little longer.
-void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, Islands& islands) {
+/// Calls visit(begin, end) for each piece of a line that is long enough.
+template <class Visit>
+void for_long_enough(std::span<const double> ends, const HatchRule& rule, const Visit& visit) {
+    for (std::size_t k = 0; k < ends.size(); k += 2)
+        if (is_long_enough(ends[k], ends[k + 1], rule))
+            visit(ends[k], ends[k + 1]);
+}
+
+/// Cells that a piece of a line meets: every n-th from the first one to the last one.
+struct CellRange {
+    std::int32_t first;
+    std::int32_t last;
+
+    [[nodiscard]] std::uint64_t size(std::int32_t n = 1) const noexcept {
+        return last < first ? 0 : static_cast<std::uint64_t>((last - first) / n) + 1;
+    }
+};
+
+/// What a line has of a stripe may be too short, where it ends just beyond the border of two: then the
+/// neighbour is a little longer.
+CellRange stripes_of(double begin, double end, const HatchRule& rule) noexcept {
+    const double width = rule.cell;
+    CellRange stripes{floor_of(begin / width), 0};
+    stripes.last = std::max(stripes.first, ceil_of(end / width) - 1);
+    if (stripes.first < stripes.last && (stripes.first + 1) * width - begin < rule.shortest)
+        ++stripes.first;
+    if (stripes.first < stripes.last && end - stripes.last * width < rule.shortest)
+        --stripes.last;
+    return stripes;
+}
+
+// Stripes are cells in one row each.
+void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, const LayerBudget& budget,
+                      Islands& islands) {
     const double width = rule.cell;
     const double more = rule.overlap / 2;
     for (std::size_t i = 0; i < lines.size(); ++i) {
-        const std::span<const double> ends = lines.ends(i);
-        for (std::size_t k = 0; k < ends.size(); k += 2) {
-            const double begin = ends[k];
-            const double end = ends[k + 1];
-            if (!is_long_enough(begin, end, rule))
-                continue;
-            std::int32_t first = floor_of(begin / width);
-            std::int32_t last = std::max(first, ceil_of(end / width) - 1);
-            if (first < last && (first + 1) * width - begin < rule.shortest)
-                ++first;
-            if (first < last && end - last * width < rule.shortest)
-                --last;
+        budget.check();
+        for_long_enough(lines.ends(i), rule, [&](double begin, double end) {
+            const auto [first, last] = stripes_of(begin, end, rule);
             for (std::int32_t stripe = first; stripe <= last; ++stripe) {
                 const double from = stripe == first ? begin : std::max(begin, stripe * width - more);
                 const double to = stripe == last ? end : std::min(end, (stripe + 1) * width + more);
                 islands.add({stripe, 0}, i, from, to);
             }
-        }
+        });
     }
 }
 
@@ -101,32 +128,46 @@ struct Reach {
     double cover; ///< what the cell itself asks for, so that nothing between the cells stays bare
 };
 
-/// What a line has of every n-th of the cells along it, one of which is number `one`: number k lies within
-/// a half of pitch * (k + offset). Calls add(k, from, to) where that is long enough. A piece that is too
-/// short because the cell ends there is made longer, beyond the border of the cell, where there is material.
+/// A row of cells along a line: number k lies within `reach` of pitch * (k + offset). The line has pieces of
+/// every n-th of them, one of which is number `one`.
+struct CellRow {
+    std::int32_t row;
+    double pitch;
+    double offset;
+    Reach reach;
+    std::int32_t one;
+
+    template <std::int32_t n>
+    [[nodiscard]] CellRange met_by(double begin, double end) const noexcept {
+        const std::int32_t first = ceil_of((begin - reach.half) / pitch - offset);
+        return {first + modulo<n>(one - first), floor_of((end + reach.half) / pitch - offset)};
+    }
+};
+
+/// Calls add(k, from, to) for what a line has of the cells of a row, where that is long enough. A piece that
+/// is too short because the cell ends there is made longer, beyond the border of the cell, where there is
+/// material.
 template <std::int32_t n, class Add>
-void cut_into_cells(std::span<const double> ends, double pitch, double offset, Reach reach, std::int32_t one,
-                    const HatchRule& rule, const Add& add) {
-    for (std::size_t k = 0; k < ends.size(); k += 2) {
-        if (!is_long_enough(ends[k], ends[k + 1], rule))
-            continue;
-        const std::int32_t first = ceil_of((ends[k] - reach.half) / pitch - offset);
-        const std::int32_t last = floor_of((ends[k + 1] + reach.half) / pitch - offset);
-        for (std::int32_t cell = first + modulo<n>(one - first); cell <= last; cell += n) {
-            const double middle = pitch * (cell + offset);
-            double from = std::max(ends[k], middle - reach.half);
-            double to = std::min(ends[k + 1], middle + reach.half);
+void cut_into_cells(std::span<const double> ends, const CellRow& cells, const HatchRule& rule,
+                    const Add& add) {
+    const Reach& reach = cells.reach;
+    for_long_enough(ends, rule, [&](double begin, double end) {
+        const auto [first, last] = cells.template met_by<n>(begin, end);
+        for (std::int32_t cell = first; cell <= last; cell += n) {
+            const double middle = cells.pitch * (cell + cells.offset);
+            double from = std::max(begin, middle - reach.half);
+            double to = std::min(end, middle + reach.half);
             if (to - from < rule.shortest &&
-                std::max(ends[k], middle - reach.cover) < std::min(ends[k + 1], middle + reach.cover)) {
+                std::max(begin, middle - reach.cover) < std::min(end, middle + reach.cover)) {
                 constexpr double rounding = 0x1p-40;
                 const double length = rule.shortest + rounding * (rule.shortest + std::abs(middle));
-                from = std::max(ends[k], std::min((from + to - length) / 2, ends[k + 1] - length));
-                to = std::min(ends[k + 1], from + length);
+                from = std::max(begin, std::min((from + to - length) / 2, end - length));
+                to = std::min(end, from + length);
             }
             if (is_long_enough(from, to, rule))
                 add(cell, from, to);
         }
-    }
+    });
 }
 
 /// How far beside a cell a line may lie, so that its half of the distance to the next one still reaches into
@@ -140,19 +181,33 @@ double beside(const HatchRule& rule) noexcept {
 // squares of the first colour in the frame turned by a right angle. A line between two rows belongs to both
 // where it is nearer to the border than half the overlap, or than half a distance: else a strip along the
 // border would be left to nobody.
-void cut_into_squares(const HatchLines& lines, unsigned turns, const HatchRule& rule, Islands& islands) {
-    const Reach reach{(rule.cell + rule.overlap) / 2, rule.cell / 2};
-    const double across = 0.5 + std::max(1.0, rule.overlap / rule.distance) * beside(rule) / rule.cell;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const double v = lines.v(i) / rule.cell - 0.5;
-        for (std::int32_t row = floor_of(v - across) + 1; row <= floor_of(v + across); ++row)
-            cut_into_cells<2>(
-                lines.ends(i), rule.cell, 0.5, reach, row, rule,
-                [&](std::int32_t column, double from, double to) {
-                    islands.add(turns == 0 ? Cell{row, column} : Cell{column, -row - 1}, i, from, to);
-                });
+struct Squares {
+    static constexpr std::int32_t colours = 2;
+
+    /// Calls visit(i, cells) for each row that line i lies in.
+    template <class Visit>
+    static void for_rows(const HatchLines& lines, unsigned /*turns*/, const HatchRule& rule,
+                         const Visit& visit) {
+        const Reach reach{(rule.cell + rule.overlap) / 2, rule.cell / 2};
+        const double across = half_across(rule);
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            const double v = lines.v(i) / rule.cell - 0.5;
+            for (std::int32_t row = floor_of(v - across) + 1; row <= floor_of(v + across); ++row)
+                visit(i, CellRow{row, rule.cell, 0.5, reach, row});
+        }
     }
-}
+    /// That a line lies in, at most.
+    static double most_rows(const HatchRule& rule) noexcept { return std::floor(2 * half_across(rule)) + 1; }
+    static Cell cell(std::int32_t row, std::int32_t column, unsigned turns) noexcept {
+        return turns == 0 ? Cell{row, column} : Cell{column, -row - 1};
+    }
+
+  private:
+    /// How far to both sides of a line the middles of rows lie, in cells.
+    static double half_across(const HatchRule& rule) noexcept {
+        return 0.5 + std::max(1.0, rule.overlap / rule.distance) * beside(rule) / rule.cell;
+    }
+};
 
 // Hexagons stand on a corner, in rows along the frame: the one in row r and place q has its middle at u =
 // cell * (q + r / 2) and v = cell * r * sqrt(3) / 2. Turned by a sixth of a turn, (q, r) comes to (-r, q +
@@ -161,56 +216,128 @@ void cut_into_squares(const HatchLines& lines, unsigned turns, const HatchRule& 
 //
 // Where the border is slanted, a line ends where that leaves the half of the distance beside it: so lines and
 // their halves cover the hexagon up to its corners.
-void cut_into_hexagons(const HatchLines& lines, unsigned turns, const HatchRule& rule, Islands& islands) {
-    const double root = std::sqrt(3.0);
-    const double pitch = rule.cell * root / 2;
-    const double width = rule.cell + rule.overlap;
-    const double farthest = std::max(width / root, rule.cell / root + beside(rule));
-    const std::int32_t colour = turns == 0 ? 0 : 2; // before it is turned
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const double v = lines.v(i);
-        for (std::int32_t row = ceil_of((v - farthest) / pitch); row <= floor_of((v + farthest) / pitch);
-             ++row) {
-            const double off = std::abs(v - row * pitch);
-            const double cover =
-                std::min(rule.cell / 2, rule.cell - root * std::max(0.0, off - beside(rule)));
-            const double half = std::max(cover, std::min(width / 2, width - root * off));
-            if (half <= 0)
-                continue;
-            cut_into_cells<3>(lines.ends(i), rule.cell, row / 2.0, {half, cover}, row + colour, rule,
-                              [&](std::int32_t place, double from, double to) {
-                                  std::int32_t q = place;
-                                  std::int32_t r = row;
-                                  for (unsigned k = 0; k < turns; ++k)
-                                      q = -std::exchange(r, q + r);
-                                  assert(modulo<3>(q - r) == static_cast<std::int32_t>(turns));
-                                  islands.add({r, q + (r >> 1)}, i, from, to);
-                              });
+struct Hexagons {
+    static constexpr std::int32_t colours = 3;
+
+    template <class Visit>
+    static void for_rows(const HatchLines& lines, unsigned turns, const HatchRule& rule, const Visit& visit) {
+        const double root = std::sqrt(3.0);
+        const double pitch = rule.cell * root / 2;
+        const double width = rule.cell + rule.overlap;
+        const double far = farthest(rule);
+        const std::int32_t colour = turns == 0 ? 0 : 2; // before it is turned
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            const double v = lines.v(i);
+            for (std::int32_t row = ceil_of((v - far) / pitch); row <= floor_of((v + far) / pitch); ++row) {
+                const double off = std::abs(v - row * pitch);
+                const double cover =
+                    std::min(rule.cell / 2, rule.cell - root * std::max(0.0, off - beside(rule)));
+                const double half = std::max(cover, std::min(width / 2, width - root * off));
+                if (half > 0)
+                    visit(i, CellRow{row, rule.cell, row / 2.0, {half, cover}, row + colour});
+            }
         }
     }
+    static double most_rows(const HatchRule& rule) noexcept {
+        return std::floor(2 * farthest(rule) / (rule.cell * std::sqrt(3.0) / 2)) + 1;
+    }
+    static Cell cell(std::int32_t row, std::int32_t place, unsigned turns) noexcept {
+        std::int32_t q = place;
+        std::int32_t r = row;
+        for (unsigned k = 0; k < turns; ++k)
+            q = -std::exchange(r, q + r);
+        assert(modulo<3>(q - r) == static_cast<std::int32_t>(turns));
+        return {r, q + (r >> 1)};
+    }
+
+  private:
+    /// How far from a line the middles of rows lie at most.
+    static double farthest(const HatchRule& rule) noexcept {
+        const double root = std::sqrt(3.0);
+        return std::max((rule.cell + rule.overlap) / root, rule.cell / root + beside(rule));
+    }
+};
+
+/// At least as many pieces as lines in all directions are cut into: quickly.
+std::uint64_t pieces_at_most(const std::vector<HatchLines>& lines, const HatchRule& rule) {
+    double length = 0; // with what cells may reach beyond both ends
+    double count = 0;
+    for (const HatchLines& one : lines)
+        for (std::size_t i = 0; i < one.size(); ++i)
+            for_long_enough(one.ends(i), rule, [&](double begin, double end) {
+                length += end - begin + rule.cell + rule.overlap;
+                ++count;
+            });
+    const double rows = rule.pattern == HatchPattern::stripes      ? 1
+                        : rule.pattern == HatchPattern::chessboard ? Squares::most_rows(rule)
+                                                                   : Hexagons::most_rows(rule);
+    const double colours = static_cast<double>(lines.size());
+    const double most = rows * (length / (colours * rule.cell) + count);
+    return most < 0x1p62 ? static_cast<std::uint64_t>(std::ceil(most)) : std::uint64_t{1} << 62;
+}
+
+std::uint64_t stripe_pieces(const HatchLines& lines, const HatchRule& rule) {
+    std::uint64_t pieces = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        for_long_enough(lines.ends(i), rule,
+                        [&](double begin, double end) { pieces += stripes_of(begin, end, rule).size(); });
+    return pieces;
+}
+
+template <class Pattern>
+std::uint64_t cell_pieces(const HatchLines& lines, unsigned turns, const HatchRule& rule) {
+    std::uint64_t pieces = 0;
+    Pattern::for_rows(lines, turns, rule, [&](std::size_t i, const CellRow& cells) {
+        for_long_enough(lines.ends(i), rule, [&](double begin, double end) {
+            pieces += cells.template met_by<Pattern::colours>(begin, end).size(Pattern::colours);
+        });
+    });
+    return pieces;
+}
+
+template <class Pattern>
+void cut_into(const HatchLines& lines, unsigned turns, const HatchRule& rule, const LayerBudget& budget,
+              Islands& islands) {
+    Pattern::for_rows(lines, turns, rule, [&](std::size_t i, const CellRow& cells) {
+        budget.check();
+        cut_into_cells<Pattern::colours>(
+            lines.ends(i), cells, rule, [&](std::int32_t column, double from, double to) {
+                islands.add(Pattern::cell(cells.row, column, turns), i, from, to);
+            });
+    });
 }
 
 /// Throws where there would be too many cells.
-void check_cells(const Layer& area, const HatchRule& rule) {
+void check_cells(const Layer& area, const HatchRule& rule, const LayerBudget& budget) {
     const double reach = largest_coordinate(area.points.span()); // from the origin
     if (!(reach / rule.cell < 0x1p28))
         throw Error(ErrorKind::limit,
-                    fmt::format("layer {}: stripes or islands of {:g} mm are too many up to {:.6g} "
-                                "mm from the origin; the limit is 2^28 in a row",
-                                area.index, rule.cell, reach));
+                    fmt::format("{}: stripes or islands of {:g} mm are too many up to {:.6g} mm "
+                                "from the origin; the limit is 2^28 in a row",
+                                budget.layer(), rule.cell, reach));
 }
 
-void check_pieces(const HatchLines& lines, const Layer& area, const HatchRule& rule) {
-    double length = 0;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        const std::span<const double> ends = lines.ends(i);
-        for (std::size_t k = 0; k < ends.size(); k += 2)
-            length += ends[k + 1] - ends[k];
-    }
-    if (!(length / rule.cell < 0x1p26))
-        throw Error(ErrorKind::limit, fmt::format("layer {}: lines of {:.6g} mm in stripes or islands of "
-                                                  "{:g} mm are too many; the limit is 2^26",
-                                                  area.index, length, rule.cell));
+/// How many pieces all lines are cut into at most: nearly as many as there are, where the quick answer would
+/// be too many. Throws where these are too many.
+std::uint64_t count_pieces(const std::vector<HatchLines>& lines, const HatchRule& rule,
+                           const LayerBudget& budget) {
+    constexpr std::uint64_t most = std::uint64_t{1} << 22;
+    if (const std::uint64_t quick = pieces_at_most(lines, rule);
+        quick <= std::min(most, budget.room(Islands::bytes_of_piece)))
+        return quick;
+    std::uint64_t pieces = 0;
+    for (unsigned turns = 0; turns < lines.size(); ++turns)
+        pieces += rule.pattern == HatchPattern::stripes ? stripe_pieces(lines[turns], rule)
+                  : rule.pattern == HatchPattern::chessboard
+                      ? cell_pieces<Squares>(lines[turns], turns, rule)
+                      : cell_pieces<Hexagons>(lines[turns], turns, rule);
+    if (pieces > most)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: {} pieces of hatch lines in stripes or islands of {:g} mm are more than the "
+                        "limit of {}; choose a larger `hatch.cell` or `hatch.distance`",
+                        budget.layer(), pieces, rule.cell, most));
+    return pieces;
 }
 
 /// Whether line i, if there is one, has a piece that is long enough between two places.
@@ -227,9 +354,10 @@ bool has_piece(const HatchLines& lines, std::int64_t i, double from, double to, 
 }
 
 /// The area that pieces too short for lines stand for, where there is no line beside them.
-double too_short(const HatchLines& lines, const HatchRule& rule) {
+double too_short(const HatchLines& lines, const HatchRule& rule, const LayerBudget& budget) {
     double length = 0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
+        budget.check();
         const std::span<const double> ends = lines.ends(i);
         for (std::size_t k = 0; k < ends.size(); k += 2) {
             if (is_long_enough(ends[k], ends[k + 1], rule))
@@ -247,12 +375,14 @@ double too_short(const HatchLines& lines, const HatchRule& rule) {
 }
 
 /// The area of what lies between two lines and has none beside it, as lines across these meet it.
-double between_lines(const HatchArea& area, const HatchLines& lines, const HatchRule& rule) {
+double between_lines(const HatchArea& area, const HatchLines& lines, const HatchRule& rule,
+                     const LayerBudget& budget) {
     const double apart = 5 * rule.distance;
     const CosSin angle = lines.frame().angle;
-    const HatchLines across = lines_in(area, {-angle.sin, angle.cos}, apart, 0);
+    const HatchLines across = lines_in(area, {-angle.sin, angle.cos}, apart, 0, budget);
     double length = 0;
     for (std::size_t i = 0; i < across.size(); ++i) {
+        budget.check();
         const double u = -across.v(i);
         const std::span<const double> ends = across.ends(i);
         for (std::size_t k = 0; k < ends.size(); k += 2) {
@@ -271,12 +401,13 @@ double between_lines(const HatchArea& area, const HatchLines& lines, const Hatch
 }
 
 /// Lines in several directions see what lies between those of one.
-bool may_leave_bare(const HatchArea& area, const std::vector<HatchLines>& lines, const HatchRule& rule) {
+bool may_leave_bare(const HatchArea& area, const std::vector<HatchLines>& lines, const HatchRule& rule,
+                    const LayerBudget& budget) {
     double bare = 0;
     for (const HatchLines& one : lines)
-        bare += too_short(one, rule);
+        bare += too_short(one, rule, budget);
     if (lines.size() == 1)
-        bare += between_lines(area, lines.front(), rule);
+        bare += between_lines(area, lines.front(), rule, budget);
     return bare > rule.distance * rule.distance / 4;
 }
 
@@ -304,33 +435,32 @@ double surely_hatched(const HatchRule& rule) noexcept {
     return std::sqrt(rule.shortest * rule.shortest + rule.distance * rule.distance);
 }
 
-PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed, bool* bare) {
+PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed, bool* bare,
+                 const LayerBudget& budget) {
     const bool one_by_one = rule.pattern == HatchPattern::lines || rule.pattern == HatchPattern::meander;
     if (!one_by_one)
-        check_cells(area.within, rule);
+        check_cells(area.within, rule, budget);
+    LayerBudget left = budget;
     std::vector<HatchLines> lines; // in each direction
     for (const CosSin angle : line_angles(rule, area.within.index)) {
-        lines.push_back(lines_in(area, angle, rule.distance, line_phase(rule.pattern)));
-        if (!one_by_one)
-            check_pieces(lines.back(), area.within, rule);
+        lines.push_back(lines_in(area, angle, rule.distance, line_phase(rule.pattern), left));
+        left = left.without(lines.back().bytes());
     }
     if (bare != nullptr)
-        *bare = may_leave_bare(area, lines, rule);
+        *bare = may_leave_bare(area, lines, rule, left);
     if (one_by_one)
-        return PointArray(line_by_line(lines.front(), rule));
-    const bool stripes = rule.pattern == HatchPattern::stripes;
-    const bool squares = rule.pattern == HatchPattern::chessboard;
-    Islands islands;
+        return PointArray(line_by_line(lines.front(), rule, left));
+    Islands islands(count_pieces(lines, rule, left), left);
     for (unsigned turns = 0; turns < lines.size(); ++turns) {
         islands.begin(lines[turns]);
-        if (stripes)
-            cut_into_stripes(lines[turns], rule, islands);
-        else if (squares)
-            cut_into_squares(lines[turns], turns, rule, islands);
+        if (rule.pattern == HatchPattern::stripes)
+            cut_into_stripes(lines[turns], rule, budget, islands);
+        else if (rule.pattern == HatchPattern::chessboard)
+            cut_into<Squares>(lines[turns], turns, rule, budget, islands);
         else
-            cut_into_hexagons(lines[turns], turns, rule, islands);
+            cut_into<Hexagons>(lines[turns], turns, rule, budget, islands);
     }
-    return stripes || rule.order == IslandOrder::rows
+    return rule.pattern == HatchPattern::stripes || rule.order == IslandOrder::rows
                ? std::move(islands).points_in_rows()
                : std::move(islands).points_shuffled(seed, area.within.index);
 }

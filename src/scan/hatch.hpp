@@ -6,6 +6,8 @@
 #include "lamella/core/unit_circle.hpp"
 #include "lamella/scan/strategy.hpp"
 
+#include "core/layer_budget.hpp"
+
 #include <cstdint>
 #include <vector>
 
@@ -31,12 +33,12 @@ struct HatchArea {
 
 /// Two points each, as Layer::hatches. The index of `within` says how far the lines are turned, and with the
 /// seed in which order islands come. Throws what HatchLines throws, and Error{limit} for more than 2^28
-/// stripes or islands in a row, or lines longer than 2^26 cells. `bare`, where given, becomes whether there
-/// may be places that are narrower than `surely_hatched` and have no line within its distance: pieces that
-/// are too short have no lines, and strips may lie between two. What would be a few squares of half the
-/// distance in all does not count.
+/// stripes or islands in a row, 2^22 pieces of lines or 2^21 islands, or more pieces or islands than the
+/// budget has room for. `bare`, where given, becomes whether there may be places that are narrower than
+/// `surely_hatched` and have no line within its distance: pieces that are too short have no lines, and strips
+/// may lie between two. What would be a few squares of half the distance in all does not count.
 [[nodiscard]] PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed,
-                               bool* bare = nullptr);
+                               bool* bare = nullptr, const LayerBudget& budget = {});
 
 /// How wide material is that has a line wherever lines come to lie.
 [[nodiscard]] double surely_hatched(const HatchRule& rule) noexcept;

@@ -8,13 +8,17 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 namespace lamella {
 
 namespace {
 
-constexpr std::size_t most_lines = std::size_t{1} << 26;
+constexpr std::size_t most_lines = std::size_t{1} << 22;
+constexpr std::size_t most_ends = std::size_t{1} << 24;
+
+constexpr std::string_view larger_distance = "a larger `hatch.distance`";
 
 /// A point as lines see it.
 struct RankedPoint {
@@ -52,13 +56,16 @@ void sort_ends(std::span<double> ends) {
 // meets each line an even number of times, whatever rounding makes of the ranks, and lines through vertices
 // and along edges need no care.
 
-HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double phase)
+HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double phase,
+                       const LayerBudget& budget)
     : frame_{angle}, distance_(distance), phase_(phase) {
     assert(distance > 0);
     const std::span<const Point2> all = layer.points.span().first(layer.offsets[layer.rings]);
     if (all.empty())
         return;
 
+    budget.need(all.size(), sizeof(RankedPoint), "points beside hatch lines");
+    const LayerBudget left = budget.without(all.size() * sizeof(RankedPoint));
     std::vector<RankedPoint> points(all.size());
     double least = std::numeric_limits<double>::infinity();
     double most = -least;
@@ -73,19 +80,22 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double
     if (!(std::abs(below) < 0x1p52 && lines <= static_cast<double>(most_lines)))
         throw Error(
             ErrorKind::limit,
-            fmt::format("layer {}: lines {:g} mm apart are too many across {:.6g} mm; the limit is 2^26",
-                        layer.index, distance, most - least));
+            fmt::format("{}: lines {:g} mm apart are too many across {:.6g} mm; the limit is {} lines",
+                        budget.layer(), distance, most - least, most_lines));
     first_ = static_cast<std::int64_t>(below);
     for (RankedPoint& p : points)
         p.rank = static_cast<std::int32_t>(rounded_up(p.v / distance - phase) - first_);
 
     // Count, sum up, put: each edge into the lines that it meets.
+    left.need(static_cast<std::uint64_t>(lines), 2 * sizeof(std::uint32_t), "hatch lines", larger_distance);
     const auto for_edges = [&](const auto& visit) {
         for (std::size_t ring = 0; ring < layer.rings; ++ring) {
             const std::size_t begin = layer.offsets[ring];
             const std::size_t end = layer.offsets[ring + 1];
-            for (std::size_t i = begin; i < end; ++i) // a ring may be empty
+            for (std::size_t i = begin; i < end; ++i) { // a ring may be empty
+                budget.check();
                 visit(points[i == begin ? end - 1 : i - 1], points[i]);
+            }
         }
     };
     // By how many edges more than the one below it a line is met; then where its ends begin.
@@ -101,12 +111,13 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double
         ends += here;
     }
     assert(here == 0);
-    if (ends > 2 * most_lines)
-        throw Error(
-            ErrorKind::limit,
-            fmt::format("layer {}: {} lines are more than the limit of 2^26; hatch at a larger distance "
-                        "than {:g} mm",
-                        layer.index, ends / 2, distance));
+    if (ends > most_ends)
+        throw Error(ErrorKind::limit,
+                    fmt::format("{}: {} hatch lines are more than the limit of {}; hatch at "
+                                "a larger distance than {:g} mm",
+                                budget.layer(), ends / 2, most_ends / 2, distance));
+    left.without(begins_.size() * 2 * sizeof(std::uint32_t))
+        .need(ends / 2, 2 * sizeof(double), "hatch lines", larger_distance);
 
     ends_.resize(ends);
     std::vector<std::uint32_t> next(begins_.begin(), begins_.end() - 1);
@@ -121,25 +132,29 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double
     });
     for (std::size_t i = 0; i < size(); ++i) {
         assert((begins_[i + 1] - begins_[i]) % 2 == 0);
+        budget.check();
         sort_ends(std::span(ends_).subspan(begins_[i], begins_[i + 1] - begins_[i]));
     }
 }
 
-void HatchLines::intersect(const HatchLines& others) {
-    keep<true>(others);
+void HatchLines::intersect(const HatchLines& others, const LayerBudget& budget) {
+    keep<true>(others, budget);
 }
 
-void HatchLines::subtract(const HatchLines& others) {
-    keep<false>(others);
+void HatchLines::subtract(const HatchLines& others, const LayerBudget& budget) {
+    keep<false>(others, budget);
 }
 
 /// What lies inside of the others, or outside. Ends in one place count together, so that no piece is a point.
 template <bool inside>
-void HatchLines::keep(const HatchLines& others) {
+void HatchLines::keep(const HatchLines& others, const LayerBudget& budget) {
     assert(distance_ == others.distance_ && phase_ == others.phase_);
+    const std::size_t most = ends_.size() + (inside ? 0 : others.ends_.size());
+    budget.need(most / 2, 2 * sizeof(double), "hatch lines", larger_distance);
     std::vector<double> kept;
     kept.reserve(ends_.size());
     for (std::size_t i = 0; i < size(); ++i) {
+        budget.check();
         const std::span<const double> own = ends(i);
         const std::int64_t number = first_ + static_cast<std::int64_t>(i) - others.first_;
         const bool known = number >= 0 && number < static_cast<std::int64_t>(others.size());

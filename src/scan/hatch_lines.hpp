@@ -6,6 +6,8 @@
 #include "lamella/core/point.hpp"
 #include "lamella/core/unit_circle.hpp"
 
+#include "core/layer_budget.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -28,15 +30,17 @@ struct LineFrame {
 /// The lines that run through a layer. Line k of all lies at v = (k + phase) * distance.
 class HatchLines {
   public:
-    /// `layer`: rings that bound material, none of which cross. Throws Error{limit} for more than 2^26 lines
-    /// or ends. O(points + ends), and sorting the ends of each line.
-    HatchLines(const Layer& layer, CosSin angle, double distance, double phase = 0);
+    /// `layer`: rings that bound material, none of which cross. Throws Error{limit} for more than 2^22 lines,
+    /// 2^23 pieces of them, or more than the budget has room for, before memory is taken; and
+    /// Error{cancelled}. O(points + ends), and sorting the ends of each line.
+    HatchLines(const Layer& layer, CosSin angle, double distance, double phase = 0,
+               const LayerBudget& budget = {});
 
     /// Leaves of each line what is on others, too, or what is not. These have the same angle, distance and
     /// phase.
     /// O(lines + ends).
-    void intersect(const HatchLines& others);
-    void subtract(const HatchLines& others);
+    void intersect(const HatchLines& others, const LayerBudget& budget = {});
+    void subtract(const HatchLines& others, const LayerBudget& budget = {});
 
     [[nodiscard]] const LineFrame& frame() const noexcept { return frame_; }
     [[nodiscard]] std::size_t size() const noexcept { return begins_.size() - 1; }
@@ -56,10 +60,14 @@ class HatchLines {
     }
     /// The number of ends on all lines.
     [[nodiscard]] std::size_t total() const noexcept { return ends_.size(); }
+    /// What they take.
+    [[nodiscard]] std::uint64_t bytes() const noexcept {
+        return begins_.size() * sizeof begins_.front() + ends_.size() * sizeof ends_.front();
+    }
 
   private:
     template <bool inside>
-    void keep(const HatchLines& others);
+    void keep(const HatchLines& others, const LayerBudget& budget);
 
     LineFrame frame_;
     double distance_;

@@ -1,6 +1,10 @@
 #include "scan/islands.hpp"
 
+#include "lamella/core/error.hpp"
+
 #include "scan/seeded.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cassert>
@@ -8,6 +12,35 @@
 #include <utility>
 
 namespace lamella {
+
+namespace {
+
+constexpr std::size_t most_cells = std::size_t{1} << 21;
+/// Of the map of numbers.
+constexpr std::uint64_t node_bytes = 56;
+
+} // namespace
+
+Islands::Islands(std::uint64_t pieces, const LayerBudget& budget) {
+    static_assert(sizeof(Piece) + 2 * sizeof(Point2) == bytes_of_piece);
+    budget.need(pieces, bytes_of_piece, "hatch lines in stripes or islands",
+                "a larger `hatch.distance` or `hatch.cell`");
+    budget_ = budget.without(pieces * bytes_of_piece);
+    pieces_.reserve(pieces);
+}
+
+void Islands::make_room_for_cells() {
+    if (cells_.size() == most_cells)
+        throw Error(
+            ErrorKind::limit,
+            fmt::format("{}: stripes or islands with lines are more than the limit of {}; choose larger "
+                        "ones by `hatch.cell`",
+                        budget_.layer(), most_cells));
+    const std::size_t room = std::max<std::size_t>(64, 2 * cells_.capacity());
+    constexpr std::uint64_t of_order = 16;
+    budget_.need(room, sizeof(Place) + node_bytes + of_order, "stripes or islands", "a larger `hatch.cell`");
+    cells_.reserve(room);
+}
 
 // Along a line cells follow one another as along the line before it, mostly.
 std::uint32_t Islands::number_of(Cell cell) {
@@ -18,6 +51,8 @@ std::uint32_t Islands::number_of(Cell cell) {
     }
     const std::uint64_t key =
         std::uint64_t{static_cast<std::uint32_t>(cell.row)} << 32 | static_cast<std::uint32_t>(cell.column);
+    if (cells_.size() == cells_.capacity())
+        make_room_for_cells();
     const auto [found, added] = number_.try_emplace(key, static_cast<std::uint32_t>(cells_.size()));
     if (added)
         cells_.push_back({.cell = cell});
@@ -71,8 +106,10 @@ PointArray Islands::points() {
     points_.resize(2 * pieces_.size());
     for (std::size_t d = 0; d < directions_.size(); ++d) {
         const std::size_t end = d + 1 < directions_.size() ? directions_[d + 1].begin : pieces_.size();
-        for (std::size_t i = directions_[d].begin; i < end; ++i)
+        for (std::size_t i = directions_[d].begin; i < end; ++i) {
+            budget_.check();
             put(pieces_[i], *directions_[d].lines);
+        }
     }
     for (const Place& place : cells_)
         end_line(place);

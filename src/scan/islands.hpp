@@ -5,6 +5,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
 
+#include "core/layer_budget.hpp"
 #include "scan/hatch_lines.hpp"
 
 #include <compare>
@@ -28,6 +29,13 @@ struct Cell {
 /// cells.
 class Islands {
   public:
+    /// With its two points.
+    static constexpr std::uint64_t bytes_of_piece = 56;
+
+    /// For so many pieces at most. Throws Error{limit} where they, or later their cells, are more than the
+    /// budget has room for, or these more than 2^21.
+    Islands(std::uint64_t pieces, const LayerBudget& budget);
+
     /// What is added from here on are pieces of these lines, which are to outlive this.
     void begin(const HatchLines& lines) { directions_.push_back({&lines, pieces_.size()}); }
     /// A piece of line i; cells have lines of one direction.
@@ -66,10 +74,12 @@ class Islands {
         std::size_t begin; ///< of its pieces
     };
     std::uint32_t number_of(Cell cell);
+    void make_room_for_cells();
     PointArray points();
     void put(const Piece& piece, const HatchLines& lines);
     void end_line(const Place& place);
 
+    LayerBudget budget_; ///< for cells
     std::vector<Place> cells_;
     std::unordered_map<std::uint64_t, std::uint32_t> number_; ///< by row and column
     std::uint32_t last_ = 0;                                  ///< that was looked for

@@ -83,8 +83,14 @@ struct Axis {
 
 class Outlines {
   public:
-    Outlines(const Layer& places, double width, double thinnest)
-        : places_(places), width_(width), thinnest_(thinnest), unit_(unit_of(places, width)), cells_(unit_) {
+    Outlines(const Layer& places, double width, double thinnest, const LayerBudget& budget)
+        : places_(places), budget_(budget), width_(width), thinnest_(thinnest), unit_(unit_of(places, width)),
+          cells_(unit_) {
+        // Where circles may touch, on both sides of each place, and what becomes of them.
+        constexpr std::uint64_t bytes_each = 3 * sizeof(Touching) + 2 * sizeof(Point2);
+        budget.need(4 * static_cast<std::uint64_t>(measure(places).perimeter_mm / unit_) +
+                        places.points.size(),
+                    bytes_each, "places along thin walls");
         for (std::size_t ring = 0; ring < places.rings; ++ring) {
             const std::span<const Point2> points = places.contour(ring);
             for (std::size_t i = 0; i < points.size(); ++i) {
@@ -118,7 +124,7 @@ class Outlines {
 
     /// The width, or more where that would be too many pieces.
     [[nodiscard]] static double unit_of(const Layer& places, double width) noexcept {
-        constexpr double most_pieces = 1 << 21;
+        constexpr double most_pieces = 1 << 19;
         return std::max({width, measure(places).perimeter_mm / most_pieces,
                          largest_coordinate(places.points.span()) * 0x1p-40});
     }
@@ -133,8 +139,10 @@ class Outlines {
             if (!(length > 0))
                 continue;
             const double pieces = 1 + std::floor(length / step());
-            for (double k = 0.5; k < pieces; ++k)
+            for (double k = 0.5; k < pieces; ++k) {
+                budget_.check();
                 found.push_back(touching(along(a, edge, k / pieces), {-edge.y / length, edge.x / length}));
+            }
         }
         return found;
     }
@@ -211,6 +219,7 @@ class Outlines {
     }
 
     const Layer& places_;
+    const LayerBudget& budget_;
     double width_;
     double thinnest_;
     double unit_;
@@ -321,11 +330,12 @@ double length_of(const std::vector<Point2>& points) noexcept {
 
 } // namespace
 
-std::vector<std::vector<Point2>> middle_lines(const Layer& places, double width, double thinnest) {
+std::vector<std::vector<Point2>> middle_lines(const Layer& places, double width, double thinnest,
+                                              const LayerBudget& budget) {
     if (places.rings == 0 || !(width > 0))
         return {};
     constexpr double straight = 0.01;
-    const Outlines outlines(places, width, thinnest);
+    const Outlines outlines(places, width, thinnest, budget);
     std::vector<std::vector<Point2>> lines;
     for (const Axis& axis : without_copies(outlines.axes(), 1.5 * outlines.step())) {
         std::vector<Point2> points;

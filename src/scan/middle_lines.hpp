@@ -4,6 +4,8 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include "core/layer_budget.hpp"
+
 #include <vector>
 
 namespace lamella {
@@ -15,6 +17,6 @@ namespace lamella {
 /// the width. For any place the same lines, whatever else there is. O(n log n) for n pieces of the outlines
 /// half of the width long.
 [[nodiscard]] std::vector<std::vector<Point2>> middle_lines(const Layer& places, double width,
-                                                            double thinnest);
+                                                            double thinnest, const LayerBudget& budget = {});
 
 } // namespace lamella

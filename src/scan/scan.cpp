@@ -14,6 +14,7 @@
 #include "scan/skin.hpp"
 #include "scan/support.hpp"
 #include "scan/unreached.hpp"
+#include "scan/vector_bytes.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -60,25 +61,28 @@ std::vector<double> distances_of(const ScanStrategy& strategy) {
 
 /// The material of a layer, moved inwards by several distances; each is computed once.
 struct ScanMemory::Insets {
-    Insets(Layer of, const ScanStrategy& strategy, std::vector<double> by)
+    Insets(Layer of, const ScanStrategy& strategy, std::vector<double> by, const LayerLimits& limits)
         : layer(std::move(of)), distances(std::move(by)), contours(strategy.contours),
-          filled(hatch_depth(contours, strategy.hatch)), moved(offsets(layer, distances)) {
+          filled(hatch_depth(contours, strategy.hatch)),
+          moved(offsets(layer, distances, {}, nullptr, limits)) {
         for (std::size_t i = 0; i < distances.size(); ++i)
             if (distances[i] == 0) // not looked at, and without its straight points rings may meet again
-                moved[i] = united(layer);
+                moved[i] = united(layer, limits);
         double depth = 0;
         const auto step_to = [&](double next) {
-            narrow.push_back(narrow_places(depth == 0 ? layer : at(depth), at(next), next - depth));
+            narrow.push_back(narrow_places(depth == 0 ? layer : at(depth), at(next), next - depth, limits));
             depth = next;
         };
         for (std::uint32_t i = 1; i <= contours.count; ++i)
             step_to(contour_depth(contours, i));
         step_to(filled);
+        const LayerBudget budget(limits, layer.index, layer.z);
         if (contours.thin_walls == ThinWalls::line)
             for (std::uint32_t i = 0; i < contours.count; ++i)
-                lines.push_back(i == 0 ? middle_lines(narrow[i], 2 * contours.beam_offset, contours.thinnest)
-                                       : middle_lines(narrow[i], 2 * contours.distance,
-                                                      2 * contour_reach(contours) * more_than_reached));
+                lines.push_back(
+                    i == 0 ? middle_lines(narrow[i], 2 * contours.beam_offset, contours.thinnest, budget)
+                           : middle_lines(narrow[i], 2 * contours.distance,
+                                          2 * contour_reach(contours) * more_than_reached, budget));
         lines.resize(contours.count);
     }
 
@@ -124,12 +128,12 @@ void ScanMemory::keep(std::shared_ptr<const Insets> insets) {
 namespace {
 
 std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const ScanStrategy& strategy,
-                                                    ScanMemory* memory) {
+                                                    ScanMemory* memory, const LayerLimits& limits) {
     std::vector<double> distances = distances_of(strategy);
     if (memory != nullptr)
         if (auto last = memory->last(); last && last->fit(layer, strategy, distances))
             return last;
-    auto insets = std::make_shared<const ScanMemory::Insets>(layer, strategy, std::move(distances));
+    auto insets = std::make_shared<const ScanMemory::Insets>(layer, strategy, std::move(distances), limits);
     if (memory != nullptr)
         memory->keep(insets);
     return insets;
@@ -154,8 +158,13 @@ PointArray pieces_of(const std::vector<std::vector<Point2>>& lines) {
 
 /// All vectors of a layer, by its exposures.
 std::vector<Stroke> strokes_of(const std::vector<Layer>& vectors, std::span<const Exposure> all,
-                               const ScanStrategy& strategy) {
+                               const ScanStrategy& strategy, const LayerBudget& budget) {
+    std::uint64_t count = 0;
+    for (const Layer& layer : vectors)
+        count += layer.points.size() + layer.hatches.size() / 2;
+    budget.need(count, sizeof(Stroke), "scan vectors");
     std::vector<Stroke> strokes;
+    strokes.reserve(count);
     for (std::size_t i = 0; i < vectors.size(); ++i)
         add_strokes(vectors[i],
                     all[i].kind == VectorKind::hatch ? hatch_of(strategy, all[i].region).distance
@@ -167,21 +176,24 @@ std::vector<Stroke> strokes_of(const std::vector<Layer>& vectors, std::span<cons
 /// Lines along the middle of what is too narrow for a hatch: of those places of which its lines and the
 /// contours leave more than next to nothing bare.
 std::vector<std::vector<Point2>> lines_amid_bare(const Layer& places, std::span<const Stroke> strokes,
-                                                 const ContourRule& contours, const HatchRule& hatch) {
+                                                 const ContourRule& contours, const HatchRule& hatch,
+                                                 const LayerBudget& budget) {
     const double border = hatch_depth(contours, hatch) - contour_depth(contours, contours.count);
     const double widest = std::max(2 * border, surely_hatched(hatch));
-    return middle_lines(bare_places(places, strokes), widest * more_than_reached,
-                        contour_reach(contours) * (more_than_reached - 1));
+    return middle_lines(bare_places(places, strokes, budget), widest * more_than_reached,
+                        contour_reach(contours) * (more_than_reached - 1), budget);
 }
 
 /// What of some places is of a region: of what is both, downskin counts.
-Layer in_region(const Layer& places, ScanRegion region, const Skin& downskin, const Skin& upskin) {
-    const auto cut = [](const Layer& layer, const Skin& skin, bool inside) {
+Layer in_region(const Layer& places, ScanRegion region, const Skin& downskin, const Skin& upskin,
+                const LayerLimits& limits) {
+    const auto cut = [&limits](const Layer& layer, const Skin& skin, bool inside) {
         if (skin.whole())
             return inside ? layer : Layer{};
         if (skin.area().rings == 0)
             return inside ? Layer{} : layer;
-        return combine(layer, skin.area(), inside ? BooleanOperation::intersect : BooleanOperation::subtract);
+        return combine(layer, skin.area(), inside ? BooleanOperation::intersect : BooleanOperation::subtract,
+                       limits);
     };
     if (region == ScanRegion::downskin)
         return cut(places, downskin, true);
@@ -193,10 +205,10 @@ Layer in_region(const Layer& places, ScanRegion region, const Skin& downskin, co
 
 // A point may have moved by so much, and the way between its neighbours by as much to the other side. Bodies
 // that fit in one another are united first: of each ring other points may be straight.
-ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding) {
-    const Overlay overlay(layer);
+ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding, const LayerLimits& limits) {
+    const Overlay overlay(layer, limits);
     if (!overlay.clean())
-        inverted_ = inverted_rings(layer, rounding, InversionSearch::full);
+        inverted_ = inverted_rings(layer, rounding, InversionSearch::full, limits);
     layer_ = normal_form(without_straight_points(
         united(layer, overlay),
         std::max(ClippingGrid(layer.points.span()).unit(), 2 * moved_point(layer.points.span(), rounding))));
@@ -209,12 +221,13 @@ void ScanLayer::share_points(const ScanLayer& other) {
 
 std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
                         std::span<const ScanLayer> above, const ScanStrategy& strategy, ScanMemory* memory,
-                        std::vector<double>* unreached) {
+                        std::vector<double>* unreached, const LayerLimits& limits) {
     check_strategy(strategy);
     const Layer& layer = scanned.layer();
-    const auto insets = insets_of(layer, strategy, memory);
-    const Skin downskin(scanned, below, strategy.downskin);
-    const Skin upskin(scanned, above, strategy.upskin);
+    const auto insets = insets_of(layer, strategy, memory, limits);
+    const Skin downskin(scanned, below, strategy.downskin, limits);
+    const Skin upskin(scanned, above, strategy.upskin, limits);
+    LayerBudget budget(limits, layer.index, layer.z); // beside the vectors that there are
     const auto inset = [&](double depth) {
         return with_head_of(layer, insets->at(depth));
     };
@@ -238,18 +251,25 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
             if (other->area().rings > 0)
                 area.without.push_back(&other->area());
         }
-        return hatch(area, rule, strategy.seed, &bare);
+        return hatch(area, rule, strategy.seed, &bare, budget);
     };
     const std::vector<Exposure> all = exposures(strategy, {});
     std::vector<Layer> result;
+    const auto add = [&](Layer vectors) {
+        budget.need((vectors.points.size() + vectors.hatches.size()) / 2, 2 * bytes_of_vector_point,
+                    "scan vectors", "a larger `hatch.distance`");
+        budget = budget.without(vector_bytes(vectors));
+        result.push_back(std::move(vectors));
+    };
     std::vector<Layer> bare(all.size()); // places that each exposure may not reach
     std::size_t innermost = all.size();  // of the contours whose lines go where hatches leave places bare
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Exposure& exposure = all[i];
         if (exposure.kind == VectorKind::contour) {
             const Layer rings = inset(contour_depth(strategy.contours, exposure.contour));
-            result.push_back(followed(rings, strategy.contours, exposure.contour, strategy.seed));
-            result.back().hatches = pieces_of(insets->lines[exposure.contour - 1]);
+            Layer contours = followed(rings, strategy.contours, exposure.contour, strategy.seed);
+            contours.hatches = pieces_of(insets->lines[exposure.contour - 1]);
+            add(std::move(contours));
             bare[i] = insets->narrow[exposure.contour - 1];
             if (exposure.contour == strategy.contours.count &&
                 strategy.contours.thin_walls == ThinWalls::line)
@@ -257,49 +277,51 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
             continue;
         }
         bool may_be_bare = false;
-        result.push_back(with_head_of(layer, {}));
-        result.back().hatches = hatched(exposure.region, may_be_bare);
+        Layer lines = with_head_of(layer, {});
+        lines.hatches = hatched(exposure.region, may_be_bare);
+        add(std::move(lines));
         Layer places = insets->narrow.back();
         if (may_be_bare) {
             const HatchRule& rule = hatch_of(strategy, exposure.region);
             const Layer& within = insets->at(hatch_depth(strategy.contours, rule));
             const double half = surely_hatched(rule) / 2;
-            places =
-                combine(places, narrow_places(within, offset(within, -half), half), BooleanOperation::unite);
+            const Layer narrow = narrow_places(within, offset(within, -half, {}, nullptr, budget.limits()),
+                                               half, budget.limits());
+            places = combine(places, narrow, BooleanOperation::unite, budget.limits());
         }
         if (places.rings > 0)
-            bare[i] = in_region(places, exposure.region, downskin, upskin);
+            bare[i] = in_region(places, exposure.region, downskin, upskin, budget.limits());
     }
     std::vector<Stroke> strokes;
     if (std::any_of(bare.begin(), bare.end(), [](const Layer& places) { return places.rings > 0; }))
-        strokes = strokes_of(result, all, strategy);
+        strokes = strokes_of(result, all, strategy, budget);
     if (innermost < all.size()) {
         std::vector<std::vector<Point2>> lines;
         for (std::size_t i = 0; i < all.size(); ++i)
             if (all[i].kind == VectorKind::hatch && bare[i].rings > 0)
-                for (auto& line :
-                     lines_amid_bare(bare[i], strokes, strategy.contours, hatch_of(strategy, all[i].region)))
+                for (auto& line : lines_amid_bare(bare[i], strokes, strategy.contours,
+                                                  hatch_of(strategy, all[i].region), budget))
                     lines.push_back(std::move(line));
         if (!lines.empty()) {
             std::vector<std::vector<Point2>> walls = insets->lines[strategy.contours.count - 1];
             walls.insert(walls.end(), lines.begin(), lines.end());
             result[innermost].hatches = pieces_of(walls);
-            strokes = strokes_of(result, all, strategy);
+            strokes = strokes_of(result, all, strategy, budget);
         }
     }
     if (unreached != nullptr) {
         unreached->assign(all.size(), 0);
         for (std::size_t i = 0; i < all.size(); ++i)
-            (*unreached)[i] = unreached_area(bare[i], strokes);
+            (*unreached)[i] = unreached_area(bare[i], strokes, budget);
     }
     return result;
 }
 
 // What is left of a part without skins, by other rules.
 std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy, ScanMemory* memory,
-                                std::vector<double>* unreached) {
+                                std::vector<double>* unreached, const LayerLimits& limits) {
     check_strategy(strategy); // so that errors name fields of supports
-    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), memory, unreached);
+    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), memory, unreached, limits);
 }
 
 } // namespace lamella

@@ -89,7 +89,8 @@ constexpr std::size_t most_at_once = 4;
 /// Rings alongside each other wind around a place alike, unless it lies between them, and then it is nearer
 /// than half of `narrowest` to one of them. So whatever is left lies within rings that have none alongside,
 /// and only what is near to these is looked at.
-Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double narrowest) {
+Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double narrowest,
+              const LayerLimits& limits) {
     const auto count = static_cast<double>(neighbours.size());
     const double reach = narrowest * (1 + spread) * OffsetCorners{}.longest_mitre();
     std::vector<Differing> different;
@@ -97,7 +98,8 @@ Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double 
     for (std::size_t k = 0; k < neighbours.size(); ++k) {
         if (same_contours(layer, neighbours[k].layer()))
             continue;
-        std::vector<std::uint32_t> partners = rings_alongside(layer, neighbours[k].layer(), narrowest);
+        std::vector<std::uint32_t> partners = rings_alongside(layer, neighbours[k].layer(), narrowest,
+                                                              LayerBudget(limits, layer.index, layer.z));
         const std::vector<bool> counts = differing(layer, neighbours[k].layer(), partners, reach);
         if (counts.empty())
             continue;
@@ -105,8 +107,8 @@ Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double 
         for (std::size_t i = 0; i < layer.rings; ++i)
             chosen[i] = chosen[i] || counts[i];
     }
-    const Layer own =
-        offset(rings_of(layer, [&](std::size_t i) { return chosen[i]; }), -narrowest / 2 * (1 - spread));
+    const Layer own = offset(rings_of(layer, [&](std::size_t i) { return chosen[i]; }),
+                             -narrowest / 2 * (1 - spread), {}, nullptr, limits);
     if (own.rings == 0)
         return {};
     Layer open;
@@ -118,13 +120,13 @@ Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double 
         for (std::size_t i = 0; i < layer.rings; ++i)
             if (neighbour.partners[i] != no_ring && !chosen[i])
                 left_out[neighbour.partners[i]] = true;
-        others.push_back(
-            offset(rings_of(other, [&](std::size_t j) { return !left_out[j]; }),
-                   narrowest / 2 * (1 + spread * static_cast<double>(neighbour.number) / count)));
+        others.push_back(offset(rings_of(other, [&](std::size_t j) { return !left_out[j]; }),
+                                narrowest / 2 * (1 + spread * static_cast<double>(neighbour.number) / count),
+                                {}, nullptr, limits));
         if (others.size() < most_at_once && d + 1 < different.size())
             continue;
-        const Layer more = subtract_common(own, others);
-        open = open.rings == 0 ? more : combine(open, more, BooleanOperation::unite);
+        const Layer more = subtract_common(own, others, limits);
+        open = open.rings == 0 ? more : combine(open, more, BooleanOperation::unite, limits);
         others.clear();
     }
     return open;
@@ -146,7 +148,8 @@ std::span<const ScanLayer> adjoining(const ScanLayer& layer, std::span<const Sca
 
 } // namespace
 
-Skin::Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const SkinRule& rule) {
+Skin::Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const SkinRule& rule,
+           const LayerLimits& limits) {
     if (rule.layers == 0 || layer.layer().points.empty())
         return;
     neighbours = adjoining(layer, neighbours.first(std::min<std::size_t>(neighbours.size(), rule.layers)));
@@ -154,11 +157,11 @@ Skin::Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const 
         whole_ = true;
         return;
     }
-    const Layer open = open_of(layer.layer(), neighbours, rule.narrowest);
+    const Layer open = open_of(layer.layer(), neighbours, rule.narrowest, limits);
     if (open.rings == 0)
         return;
     std::vector<Layer> moved =
-        offsets(open, std::array{rule.narrowest / 2, rule.narrowest / 2 + rule.overlap});
+        offsets(open, std::array{rule.narrowest / 2, rule.narrowest / 2 + rule.overlap}, {}, nullptr, limits);
     area_ = std::move(moved[0]);
     with_overlap_ = std::move(moved[1]);
 }

@@ -3,6 +3,7 @@
 // Where a layer has too little material above it, or below it.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 
@@ -16,7 +17,8 @@ class Skin {
     /// `neighbours`: from the nearest one on, above or below, as many as there are; fewer than the rule asks
     /// for where the part ends. It ends, too, where by their heights a neighbour lies apart from the one
     /// before it.
-    Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const SkinRule& rule);
+    Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const SkinRule& rule,
+         const LayerLimits& limits = {});
 
     /// Whether all of the layer is skin, because the part ends there.
     [[nodiscard]] bool whole() const noexcept { return whole_; }

@@ -165,7 +165,7 @@ constexpr double next_to_nothing = 1.0 / 2; // of the square of a distance
 
 } // namespace
 
-Layer narrow_places(const Layer& material, const Layer& inset, double by) {
+Layer narrow_places(const Layer& material, const Layer& inset, double by, const LayerLimits& limits) {
     constexpr double more = 1 + 1e-3; // so that no slivers are left
     if (!(by > 0) || material.rings == 0)
         return {};
@@ -176,7 +176,8 @@ Layer narrow_places(const Layer& material, const Layer& inset, double by) {
     const double lost = measure(material).area_mm2 - grown_area(inset, by);
     if (lost <= next_to_nothing * by * by || lost - tips_area(material, by) <= next_to_nothing * by * by)
         return {};
-    const Layer places = combine(material, offset(inset, by * more), BooleanOperation::subtract);
+    const Layer places =
+        combine(material, offset(inset, by * more, {}, nullptr, limits), BooleanOperation::subtract, limits);
     return measure(places).area_mm2 > next_to_nothing * by * by ? places : Layer{};
 }
 
@@ -215,7 +216,7 @@ void add_strokes(const Layer& vectors, double reach, std::vector<Stroke>& stroke
         strokes.push_back({vectors.hatches[i], vectors.hatches[i + 1], reach});
 }
 
-double unreached_area(const Layer& places, std::span<const Stroke> strokes) {
+double unreached_area(const Layer& places, std::span<const Stroke> strokes, const LayerBudget& budget) {
     if (places.rings == 0)
         return 0;
     const double area = measure(places).area_mm2;
@@ -228,13 +229,14 @@ double unreached_area(const Layer& places, std::span<const Stroke> strokes) {
     constexpr double most_lines = 1 << 15;
     const double distance =
         std::max({least / 2, (box.width() + box.height()) / most_lines, box.largest_coordinate() * 0x1p-40});
-    const HatchLines lines(places, cos_sin_degrees(angle), distance);
+    const HatchLines lines(places, cos_sin_degrees(angle), distance, 0, budget);
     const LineFrame& frame = lines.frame();
     Occupied occupied(places); // most strokes are far from all of them
     for (std::size_t i = 0; i < places.rings; ++i)
         occupied.add(box_of(places.contour(i)));
     std::vector<Reached> reached;
     for (const auto& [a, b, reach] : strokes) {
+        budget.check();
         const Box2 around = Box2::of(a, b).grown(reach);
         if (!box.meets(around) || !occupied.any_within(around))
             continue;
@@ -261,8 +263,11 @@ double unreached_area(const Layer& places, std::span<const Stroke> strokes) {
             within.add_side(u0 - du, v0 - dv, u1 - du, v1 - dv, v);
             const auto next = std::upper_bound(ends.begin(), ends.end(), within.from());
             const bool inside = (next - ends.begin()) % 2 == 1;
-            if (inside || (next != ends.end() && *next < within.to()))
+            if (inside || (next != ends.end() && *next < within.to())) {
+                if (reached.size() == reached.capacity())
+                    budget.need(2 * reached.size(), sizeof(Reached), "places that vectors reach");
                 reached.push_back({i, within.from(), within.to()});
+            }
         }
     }
     std::sort(reached.begin(), reached.end());
@@ -287,14 +292,15 @@ double unreached_area(const Layer& places, std::span<const Stroke> strokes) {
     return all > 0 ? std::max(0.0, area) * (left / all) : 0;
 }
 
-Layer bare_places(const Layer& places, std::span<const Stroke> strokes) {
+Layer bare_places(const Layer& places, std::span<const Stroke> strokes, const LayerBudget& budget) {
     const double reach = least_reach(strokes);
     const double accepted = std::isfinite(reach) ? reach * reach / 32 : 0; // many of them are not nothing
-    if (!(unreached_area(places, strokes) > accepted))
+    if (!(unreached_area(places, strokes, budget) > accepted))
         return {};
     Occupied occupied(places);
     for (std::size_t i = 0; i < places.rings; ++i)
         occupied.add(box_of(places.contour(i)));
+    budget.need(strokes.size(), sizeof(Stroke), "scan vectors");
     std::vector<Stroke> near;
     std::copy_if(strokes.begin(), strokes.end(), std::back_inserter(near), [&](const Stroke& stroke) {
         return occupied.any_within(Box2::of(stroke.from, stroke.to).grown(stroke.reach));
@@ -306,7 +312,8 @@ Layer bare_places(const Layer& places, std::span<const Stroke> strokes) {
         LayerBuilder one;
         for (const std::uint32_t ring : rings)
             one.add_contour(places.contour(ring), true);
-        if (unreached_area(one.finish(places.index, places.z, places.bottom, places.top), near) > accepted)
+        if (unreached_area(one.finish(places.index, places.z, places.bottom, places.top), near, budget) >
+            accepted)
             for (const std::uint32_t ring : rings)
                 bare.add_contour(places.contour(ring), true);
     }

@@ -6,12 +6,19 @@ import resource
 import signal
 import struct
 import subprocess
+import sys
 import threading
 
 from program import PROGRAM, ProgramTest, binary_stl, main, open_box
 
 # The program and its threads take some of each limit; what is left makes many slabs of these small meshes.
 TIGHT = {1: "39M", 2: "52M", 7: "116M"}
+MEASURED = """
+import resource, subprocess, sys
+code = subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL).returncode
+print(code, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+"""
+PATTERNS = ("lines", "meander", "stripes", "chessboard", "hexagons")
 
 
 class Memory(ProgramTest):
@@ -65,13 +72,70 @@ class Memory(ProgramTest):
         self.write(name, bytes(bytes_))
         return name
 
-    def peak(self, *arguments):
-        """The most memory, in bytes, that the program had."""
-        with subprocess.Popen([PROGRAM, *map(str, arguments)], cwd=self.folder, stdout=subprocess.DEVNULL) as process:
-            _, status, usage = os.wait4(process.pid, 0)
-            process.returncode = os.waitstatus_to_exitcode(status)
-        self.assertEqual(process.returncode, 0)
-        return 1024 * usage.ru_maxrss
+    def peak(self, *arguments, codes=(0,)):
+        """The most memory, in bytes, that the program had. It is started by a small process, since what the one that starts
+        it has had counts, too."""
+        finished = subprocess.run([sys.executable, "-c", MEASURED, PROGRAM, *map(str, arguments)], cwd=self.folder,
+                                  stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
+        code, kilobytes = map(int, finished.stdout.split())
+        self.assertIn(code, codes, arguments)
+        return 1024 * kilobytes
+
+    def plate(self, side=250):
+        """Ten layers of a square as layers.json, and as box.stl."""
+        self.box(size=f"{side},{side},1")
+        self.succeed("slice", "box.stl", "-o", "layers.json")
+        return {"scan": "layers.json", "slice": "box.stl"}
+
+    def test_of_scan_vectors_is_counted_before_it_is_taken(self):
+        for command, name in self.plate().items():
+            scan = ["--scan"] if command == "slice" else []
+            for pattern in PATTERNS:
+                with self.subTest(command=command, pattern=pattern):
+                    self.fail_with(5, fr"{name}: layer [0-3] at z = 0\.[0-3]5 mm: .* above the .* that --max-memory leaves .*"
+                                   "--threads.*--hatch-distance", command, name, *scan, "-o", "job.json", "--pattern", pattern,
+                                   "--hatch-distance", 0.001 if pattern in ("lines", "meander") else 0.01, "--max-memory", "100M", "--threads", 2)
+
+    def test_scan_vectors_keep_within_what_is_allowed(self):
+        slack = 25e6
+        for command, name in self.plate().items():
+            scan = ["--scan"] if command == "slice" else []
+            for pattern in PATTERNS:
+                for distance in (0.12, 0.06, 0.03):
+                    with self.subTest(command=command, pattern=pattern, distance=distance):
+                        self.assertLess(self.peak(command, name, *scan, "-o", "job.json", "--pattern", pattern, "--hatch-distance",
+                                                  distance, "--max-memory", "100M", "--threads", 2, codes=(0, 5)), 100e6 + slack)
+
+    def test_small_files_of_large_shapes_take_a_bounded_amount_without_an_option(self):
+        corners = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0), (0, 0, 10), (10, 0, 10), (10, 10, 10), (0, 10, 10)]
+        faces = [(1, 3, 2), (1, 4, 3), (5, 6, 7), (5, 7, 8), (1, 2, 6), (1, 6, 5), (3, 4, 8), (3, 8, 7), (2, 3, 7), (2, 7, 6),
+                 (4, 1, 5), (4, 5, 8)]
+        for far in ((1e6, 10, 10), (2e7, 10, 10), (3e6, 3e6, 10)):
+            corners[6] = far
+            self.write("far.obj", "".join("v %r %r %r\n" % c for c in corners) + "".join("f %d %d %d\n" % f for f in faces))
+            with self.subTest(far=far):
+                self.assertLess(self.peak("slice", "far.obj", "-o", "job.json", "--scan", "--hatch-distance", 0.7, "--include",
+                                          "support", "--timeout", 2, "--threads", 2, codes=(0, 5)), 1e9)
+        for ring in ("0,0,10000,0,10000,10000,0,10000,0,0", "0,0,30000000,10,1000,1000,0,0", "0,0,2000000,0,2000000,0.06,0,0.06,0,0"):
+            layers = "".join(f"$$LAYER/{i}\n$$POLYLINE/1,1,{ring.count(',') // 2 + 1},{ring}\n" for i in (1, 2))
+            self.write("far.cli", f"$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n{layers}$$GEOMETRYEND\n")
+            for pattern in ("meander", "stripes", "hexagons"):
+                with self.subTest(ring=ring, pattern=pattern):
+                    self.assertLess(self.peak("scan", "far.cli", "-o", "job.cli", "--hatch-distance", 1, "--pattern", pattern,
+                                              "--threads", 2, codes=(0, 5)), 1e9)
+
+    def test_a_layer_height_that_is_far_too_small_is_refused_before_it_takes_memory(self):
+        self.box()
+        for words, found in ((["--layer-height", "0.000001"], r"a layer height of 1e-06 mm makes 1e\+07 layers"),
+                             (["--heights", "0:5=0.0000005"], r"100000\d\d layers take 5\.0 GB")):
+            with self.subTest(words=words):
+                allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (100_000_000, 100_000_000))  # noqa: E731
+                self.fail_with(5, fr"box\.stl: {found} .*--max-memory", "slice", "box.stl", "-o", "a.cli", *words, "--threads", 1,
+                               preexec_fn=allowed)
+
+    def test_copies_are_counted_before_they_take_memory(self):
+        self.fail_with(5, r"box\.stl: 200000 parts on the plate take .*--max-memory", "slice", self.box(), "-o", "a.cli", "--copies",
+                       200_000, "--max-memory", "100M")
 
     def test_of_crossings_is_counted_before_it_is_taken(self):
         numbers = iter(pow(7919, k, 1_000_003) / 10_000 for k in range(10 ** 9))
@@ -80,7 +144,7 @@ class Memory(ProgramTest):
             "format": "lamella layers", "version": 1, "units": "mm", "parts": [{"label": "part"}],
             "layers": [{"index": 3, "z": 0.5, "bottom": 0, "top": 1, "parts": [{"rings": rings}]}]}).encode())
         for step in (["--fill", "nonzero"], ["--offset=0.01"]):
-            self.fail_with(5, "layer 3: .*crossings of contours.* above .*--max-memory", "convert", "chords.json",
+            self.fail_with(5, "chords.json: layer 3 at z = 0.5 mm: .*crossings of contours.* above .*--max-memory", "convert", "chords.json",
                            "x.json", *step, "--max-memory", "100M", "--threads", 2)
 
     def test_of_random_chords_is_refused_before_they_are_sorted(self):

@@ -111,7 +111,7 @@ class Texts(ProgramTest):
 
     def test_errors_of_limits_name_the_file_and_the_part(self):
         self.write("far.cli", cli(units="1000", geometry="$$POLYLINE/1,1,5,0,0,5e6,0,5e6,5e6,0,5e6,0,0\n"))
-        self.fail_with(5, r"error: far\.cli: layer 0: ", "scan", "far.cli", "-o", "a.json", "--hatch-distance", "0.01")
+        self.fail_with(5, r"error: far\.cli: layer 0 at z = 50000 mm: ", "scan", "far.cli", "-o", "a.json", "--hatch-distance", "0.01")
         self.write("box.stl", binary_stl(box_triangles(1, 1, 1)))
         self.fail_with(2, r"error: box\.stl: a layer height of 1e-12", "slice", "box.stl", "--layer-height", "1e-12",
                        "-o", "a.cli")

@@ -20,6 +20,10 @@ namespace {
 
 using Indices = std::vector<std::uint64_t>;
 
+constexpr auto as_it_is = [](std::size_t, const Layer& layer) {
+    return ScanLayer(layer);
+};
+
 /// What a plane was worked on with.
 struct Seen {
     std::uint64_t plane;
@@ -46,6 +50,7 @@ struct Record {
             for (const std::span<const ScanLayer>& parts : plane.above)
                 seen.above.push_back(index(parts));
             const std::uint64_t number = seen.plane;
+            EXPECT_EQ(plane.plane, number);
             const std::lock_guard lock(mutex);
             worked_on.push_back(std::move(seen));
             return [this, number] {
@@ -93,7 +98,7 @@ TEST(LayerWindow, GivesEachPlaneItsNeighboursInWhateverOrderPlanesCome) {
         const std::uint32_t below = number(4);
         const std::uint32_t above = number(4);
         Record record;
-        LayerWindow window(coming, wanted, below, above, record.work());
+        LayerWindow window(coming, wanted, below, above, as_it_is, record.work());
         // Some planes at a time in parallel, here in any order; then their halves in order.
         for (std::uint32_t at = coming.begin; at < coming.end;) {
             const std::uint32_t end = std::min(coming.end, at + 1 + number(6));
@@ -117,7 +122,7 @@ TEST(LayerWindow, GivesEachPlaneItsNeighboursInWhateverOrderPlanesCome) {
 TEST(LayerWindow, HoldsNoMoreThanTheNeighbours) {
     constexpr std::uint32_t planes = 1000;
     Record record;
-    LayerWindow window({0, planes}, {0, planes}, 3, 2, record.work());
+    LayerWindow window({0, planes}, {0, planes}, 3, 2, as_it_is, record.work());
     for (std::uint32_t p = 0; p < planes; ++p) {
         window(p, plane(p))();
         EXPECT_LE(window.held(), 5U);
@@ -128,7 +133,7 @@ TEST(LayerWindow, HoldsNoMoreThanTheNeighbours) {
 
 TEST(LayerWindow, WaitsForNothingWithoutNeighbours) {
     Record record;
-    LayerWindow window({4, 10}, {4, 10}, 0, 0, record.work());
+    LayerWindow window({4, 10}, {4, 10}, 0, 0, as_it_is, record.work());
     for (std::uint32_t p = 4; p < 10; ++p) {
         const std::function<void()> write = window(p, plane(p));
         EXPECT_EQ(record.worked_on.size(), p - 3);
@@ -140,7 +145,7 @@ TEST(LayerWindow, WaitsForNothingWithoutNeighbours) {
 
 TEST(LayerWindow, SharesThePointsOfLayersThatAreTheSame) {
     std::set<const Point2*> points;
-    LayerWindow window({0, 9}, {0, 9}, 1, 1, [&](const PlaneLayers& plane) {
+    LayerWindow window({0, 9}, {0, 9}, 1, 1, as_it_is, [&](const PlaneLayers& plane) {
         points.insert(plane.parts[0].layer().points.data());
         return std::function<void()>();
     });
@@ -155,7 +160,7 @@ TEST(LayerWindow, SharesThePointsOfLayersThatAreTheSame) {
 TEST(LayerWindow, TakesPlanesFromManyThreads) {
     constexpr std::uint32_t planes = 400;
     Record record;
-    LayerWindow window({0, planes}, {10, planes - 10}, 4, 4, record.work());
+    LayerWindow window({0, planes}, {10, planes - 10}, 4, 4, as_it_is, record.work());
     std::vector<std::function<void()>> in_order(planes);
     std::atomic<std::uint32_t> next{0};
     std::vector<std::thread> threads;

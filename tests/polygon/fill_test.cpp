@@ -414,7 +414,7 @@ TEST(Fill, IsRefusedWhereItsCrossingsWouldTakeMoreMemoryThanThereIsForThem) {
                           {random.real(0, 100), random.real(0, 100)}});
     Layer layer = normal_layer(chords);
     layer.index = 12;
-    test::expect_error(ErrorKind::limit, {"layer 12: ", "crossings", "`max_memory`"},
+    test::expect_error(ErrorKind::limit, {"layer 12 at z = ", "crossings", "`max_memory`"},
                        [&] { static_cast<void>(fill(layer, FillRule::nonzero, {.memory = 1 << 19})); });
     CancelFlag stop;
     stop.request();

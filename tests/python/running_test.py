@@ -221,7 +221,7 @@ def test_errors_of_work_on_a_thread_of_its_own_arrive():
 def test_ctrl_c_stops_a_stream(rook):
     code = """
 import os, sys, lamella
-layers = lamella.iter_layers(sys.argv[1], 0.00001)
+layers = lamella.iter_layers(sys.argv[1], 0.00003)
 next(layers)
 try:
     print("ready", flush=True)

@@ -239,6 +239,8 @@ TEST(HatchLines, AreRefusedWhereTheyWouldFillTheMemory) {
     for (int i = 0; i < 200; ++i)
         comb.push_back(rectangle(i, 0, i + 0.5, 100));
     EXPECT_THROW(HatchLines(layer_of(comb), along_x, 1e-4), Error); // a million lines of 200 pieces
+    EXPECT_NO_THROW(HatchLines(square, along_x, 0.01, 0, LayerBudget({.memory = 1 << 20}, 0, 0)));
+    EXPECT_THROW(HatchLines(square, along_x, 0.001, 0, LayerBudget({.memory = 1 << 20}, 0, 0)), Error);
 }
 
 } // namespace

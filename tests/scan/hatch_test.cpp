@@ -1,6 +1,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
 #include "scan/hatch.hpp"
@@ -318,6 +319,47 @@ TEST(Hatch, RefusesMoreIslandsThanMemoryHolds) {
          {HatchPattern::stripes, HatchPattern::chessboard, HatchPattern::hexagons})
         for (const double cell : {1e-5, 1e-9, 1e-300})
             EXPECT_THROW(static_cast<void>(hatch(square, bare(pattern, 0.1, cell), 1)), Error);
+}
+
+TEST(Hatch, IsRefusedBeforeItTakesMoreMemoryThanThereIsForTheLayer) {
+    const Layer square = layer_of({rectangle(0, 0, 250, 250)});
+    for (const HatchPattern pattern : patterns)
+        test::expect_error(ErrorKind::limit, {"layer 7 at z = 0.5 mm", "`max_memory`", "`hatch.distance`"},
+                           [&] {
+                               static_cast<void>(hatch(square, bare(pattern, 0.01, 5), 1, nullptr,
+                                                       LayerBudget({.memory = 500'000}, 7, 0.5)));
+                           });
+    // Cells of one line each take more than their lines.
+    test::expect_error(ErrorKind::limit, {"stripes or islands take", "a larger `hatch.cell`"}, [&] {
+        static_cast<void>(hatch(square, bare(HatchPattern::hexagons, 1, 0.5), 1, nullptr,
+                                LayerBudget({.memory = 40'000'000}, 7, 0.5)));
+    });
+}
+
+TEST(Hatch, FitsWhereThereIsRoomForItsVectors) {
+    Random random(3);
+    for (int round = 0; round < 10; ++round) {
+        const Layer layer = layer_of({rectangle(0, 0, random.real(20, 60), random.real(20, 60)),
+                                      reversed(rectangle(5, 5, 7, random.real(8, 18)))});
+        for (const HatchPattern pattern : patterns) {
+            const HatchRule rule = bare(pattern, random.real(0.05, 0.3), random.real(1, 6));
+            const PointArray vectors = hatch(layer, rule, 1);
+            constexpr std::uint64_t of_vector = 250;
+            const PointArray again =
+                hatch(layer, rule, 1, nullptr, LayerBudget({.memory = of_vector * vectors.size() / 2}, 0, 0));
+            EXPECT_TRUE(std::ranges::equal(vectors.span(), again.span()));
+        }
+    }
+}
+
+TEST(Hatch, HearsARequestToStop) {
+    CancelFlag stop;
+    stop.request();
+    for (const HatchPattern pattern : patterns)
+        test::expect_error(ErrorKind::cancelled, {}, [&] {
+            static_cast<void>(hatch(layer_of({rectangle(0, 0, 10, 10)}), bare(pattern, 0.1, 5), 1, nullptr,
+                                    LayerBudget({.cancel = &stop}, 0, 0)));
+        });
 }
 
 TEST(Hatch, ManyIslandsComeInTime) {

@@ -6,6 +6,7 @@
 #include "lamella/polygon/offset.hpp"
 #include "lamella/scan/scan.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
 #include "scan/random_layers.hpp"
@@ -55,6 +56,31 @@ double distance_to(const Layer& outline, const Point2& p) {
 double marked(const Layer& vectors) {
     std::optional<Point2> beam;
     return measure_vectors(vectors, {}, beam).marked_mm;
+}
+
+TEST(Scan, CountsTheVectorsOfAllRegionsBeforeItTakesMemory) {
+    ScanStrategy strategy;
+    strategy.downskin.layers = strategy.upskin.layers = 1;
+    Layer square = normal_layer({rectangle(0, 0, 50, 50)});
+    square.index = 7;
+    const ScanLayer layer(square);
+    const std::vector<ScanLayer> beside{normal_layer({rectangle(0, 0, 50, 25)})};
+    std::vector<double> unreached;
+    std::uint64_t points = 0;
+    for (const Layer& vectors : scan(layer, beside, beside, strategy, nullptr, &unreached))
+        points += vectors.points.size() + vectors.hatches.size();
+    const auto with = [&](const LayerLimits& limits) {
+        static_cast<void>(scan(layer, beside, beside, strategy, nullptr, &unreached, limits));
+        static_cast<void>(scan_support(layer, strategy, nullptr, &unreached, limits));
+    };
+    EXPECT_NO_THROW(with({.memory = 120 * points}));
+    test::expect_error(ErrorKind::limit, {"layer 7 at z = ", "`max_memory`"},
+                       [&] { with({.memory = 30 * points}); });
+    CancelFlag stop;
+    stop.request();
+    test::expect_error(ErrorKind::cancelled, {}, [&] { with({.cancel = &stop}); });
+    test::expect_error(ErrorKind::cancelled, {},
+                       [&] { static_cast<void>(ScanLayer(square, {}, {.cancel = &stop})); });
 }
 
 TEST(Scan, GivesALayerForEachExposureWithTheHeightsOfItsOwn) {

@@ -19,7 +19,21 @@ struct LayerLimits {
     /// Bytes for what is made besides the layer: crossings, points of offsets, scan vectors. They are
     /// estimated before memory is asked for, and more are Error{ErrorKind::limit}. 0: as much as there is.
     std::uint64_t memory = 0;
+
+    /// What is left of them while so many bytes are kept.
+    [[nodiscard]] LayerLimits without(std::uint64_t bytes) const noexcept {
+        LayerLimits left = *this;
+        if (memory != 0)
+            left.memory = memory > bytes ? memory - bytes : 1;
+        return left;
+    }
 };
+
+/// Those of so many layers that are worked on at the same time in a run that may take `max_memory` bytes: a
+/// quarter of that in all. With 0, a quarter of what a run takes unless somebody says more or less, for each
+/// of them.
+[[nodiscard]] LayerLimits layer_limits(const Execution& execution, std::uint64_t max_memory = 0,
+                                       unsigned layers = 1);
 
 } // namespace lamella
 LAMELLA_API_END

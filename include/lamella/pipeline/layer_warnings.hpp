@@ -55,9 +55,10 @@ struct InvertedLayers : AffectedLayers {
     [[nodiscard]] std::string text_of_file(std::uint64_t of_layers) const;
 };
 
-/// Finds them in parts on the same planes. Parallel over planes.
+/// Finds them in parts on the same planes. Parallel over planes. `max_memory`: see layer_limits.
 [[nodiscard]] InvertedLayers inverted_layers(std::span<const LayerStack> parts, const Rounding& rounding,
-                                             InversionSearch search, const Execution& execution = {});
+                                             InversionSearch search, const Execution& execution = {},
+                                             std::uint64_t max_memory = 0);
 
 /// Defects of a mesh file that its layers reveal.
 struct MeshDoubts {
@@ -91,8 +92,9 @@ struct ScanLosses {
 };
 
 /// Finds them in parts on the same planes, at least one part. Parallel over planes.
+/// `max_memory`: see layer_limits.
 [[nodiscard]] ScanLosses scan_losses(std::span<const LayerStack> parts, const Rounding& rounding,
-                                     const Execution& execution = {});
+                                     const Execution& execution = {}, std::uint64_t max_memory = 0);
 
 } // namespace lamella
 LAMELLA_API_END

@@ -58,11 +58,13 @@ struct ScanResult {
 /// of their file, none for layers just cut; `info` is the header of a file of these layers. Existing hatches
 /// of layers are ignored. Runs on all threads, each of which holds the vectors of one plane. Throws the
 /// errors of `scan` and `write_layers`, and, with LayerWriteOptions::strict, Error{defect} for material that
-/// no vector reaches.
+/// no vector reaches. `max_memory`: see layer_limits. `name` is what errors call the file that the layers
+/// come from.
 [[nodiscard]] ScanResult scan_layers(const std::string& path, const LayerFormat& format,
                                      std::span<const LayerStack> parts, const Rounding& rounding,
                                      const LayerFileInfo& info, const ScanStrategy& strategy,
-                                     const LayerWriteOptions& options = {}, const Execution& execution = {});
+                                     const LayerWriteOptions& options = {}, const Execution& execution = {},
+                                     std::uint64_t max_memory = 0, const std::string& name = {});
 
 } // namespace lamella
 LAMELLA_API_END

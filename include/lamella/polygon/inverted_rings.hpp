@@ -5,6 +5,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
+#include "lamella/core/layer_limits.hpp"
 
 #include <cstdint>
 
@@ -45,7 +46,8 @@ enum class InversionSearch : std::uint8_t {
 /// memory. Every other layer, and each of them in a full search, takes as long as `fill`. Throws what `fill`
 /// throws.
 [[nodiscard]] InvertedRings inverted_rings(const Layer& layer, const Rounding& rounding = {},
-                                           InversionSearch search = InversionSearch::quick);
+                                           InversionSearch search = InversionSearch::quick,
+                                           const LayerLimits& limits = {});
 
 } // namespace lamella
 LAMELLA_API_END

@@ -12,6 +12,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 LAMELLA_API_BEGIN
@@ -59,16 +60,19 @@ void check_steps(const LayerSteps& steps);
                                const LayerLimits& limits = {});
 
 /// The same for the layers of all parts on one plane. However many of them change, they count as one layer.
-/// Throws what the steps throw.
+/// Throws what the steps throw; `names`, where given, are those of the parts, for errors.
 [[nodiscard]] std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
-                                                     LayerChanges& changes, const LayerLimits& limits = {});
+                                                     LayerChanges& changes, const LayerLimits& limits = {},
+                                                     std::span<const std::string> names = {});
 
 /// The same for parts on the same planes, in parallel, each with as many layers as the first; `planes` are
-/// the changes of every plane. Throws Error{cancelled}, too. `memory`, if it is not 0, is that of
-/// LayerLimits, for all layers that are worked on at the same time.
+/// the changes of every plane. Throws Error{cancelled}, too. `max_memory`: see
+/// layer_limits.
 [[nodiscard]] std::vector<LayerStack> take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
                                                  std::vector<LayerChanges>& planes,
-                                                 const Execution& execution = {}, std::uint64_t memory = 0);
+                                                 const Execution& execution = {},
+                                                 std::uint64_t max_memory = 0,
+                                                 std::span<const std::string> names = {});
 
 /// The same for one part; `changes` are those of all layers together.
 [[nodiscard]] LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,

@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 #include "lamella/scan/strategy.hpp"
 
@@ -19,11 +20,12 @@ namespace lamella {
 /// A layer as `scan` takes it: without points of rings on the straight way between others, at which a beam
 /// need not stop. That is to 2^-36 of its extent, or to what the rounding of a file that it comes from
 /// explains: no ring is farther from what it was than 2 `moved_point`. Made once of each layer, which may be
-/// scanned and be a neighbour of others. O(points). Throws Error{limit} for coordinates beyond 1e150.
+/// scanned and be a neighbour of others. O(points). Throws Error{limit} for coordinates beyond 1e150, and
+/// what `fill` throws.
 class ScanLayer {
   public:
     // NOLINTNEXTLINE(google-explicit-constructor): a layer is one, as a string is a view
-    ScanLayer(const Layer& layer, const Rounding& rounding = {});
+    ScanLayer(const Layer& layer, const Rounding& rounding = {}, const LayerLimits& limits = {});
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
     /// What the layer that was given lost: see `inverted_rings`, in a full search.
@@ -77,17 +79,21 @@ class ScanMemory {
 /// farther from the lines of hatches than their distance.
 ///
 /// The same bits on every machine, for any order of rings. O((n + v) log) for n points and v vectors, beside
-/// what offsets and, for skins, differences take. Throws Error{usage} as `check_strategy`, and Error{limit}
-/// for a layer that would have more than 2^26 lines, or islands, before memory is spent on them.
+/// what offsets and, for skins, differences take. Throws Error{usage} as `check_strategy`, Error{limit}
+/// for more than 2^22 lines in one direction, 2^22 pieces of lines in stripes or islands or 2^21 of these,
+/// and for more vectors than `limits.memory` has room for, before memory is spent on them: each counts with
+/// what it becomes in a file. Throws Error{cancelled}, too.
 [[nodiscard]] std::vector<Layer> scan(const ScanLayer& layer, std::span<const ScanLayer> below,
                                       std::span<const ScanLayer> above, const ScanStrategy& strategy,
-                                      ScanMemory* memory = nullptr, std::vector<double>* unreached = nullptr);
+                                      ScanMemory* memory = nullptr, std::vector<double>* unreached = nullptr,
+                                      const LayerLimits& limits = {});
 
 /// The same of a layer of a support: by the strategy's rule for these, a layer for each of its
 /// `support_exposures`.
 [[nodiscard]] std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy,
                                               ScanMemory* memory = nullptr,
-                                              std::vector<double>* unreached = nullptr);
+                                              std::vector<double>* unreached = nullptr,
+                                              const LayerLimits& limits = {});
 
 } // namespace lamella
 LAMELLA_API_END

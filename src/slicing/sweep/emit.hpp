@@ -8,11 +8,12 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
 
+#include "slicing/ordered_delivery.hpp"
 #include "slicing/ranks.hpp"
 #include "slicing/sweep/crew.hpp"
 #include "slicing/sweep/measure.hpp"
-#include "slicing/sweep/ordered_delivery.hpp"
 #include "slicing/sweep/point_arena.hpp"
 #include "slicing/sweep/runs.hpp"
 
@@ -145,7 +146,8 @@ inline void place_contours(const std::vector<LayerEntry>& entries, Runs& runs, L
 /// Computes and delivers the layers of these planes. Requires that all their contours are known.
 template <class EdgesOf>
 void emit(PlaneRange planes, const Plan& plan, const Ranks& ranks, Runs& runs, EntryLists& entries,
-          const EdgesOf& edges_of, Crew& crew, PointArena& arena, OrderedDelivery& delivery) {
+          const EdgesOf& edges_of, Crew& crew, PointArena& arena, const LayerSink& sink,
+          OrderedDelivery& delivery) {
     constexpr std::uint64_t large_layer = (std::uint64_t{2} << 20) / sizeof(Point2); // a large page
     struct Outgoing {
         std::uint64_t begin = 0; ///< offset of its points in the memory that these layers share
@@ -197,7 +199,7 @@ void emit(PlaneRange planes, const Plan& plan, const Ranks& ranks, Runs& runs, E
         layer.top = planned.top;
         if (layer.offsets.back() != 0)
             layer.points = PointArray(piece.owner, piece.points + outgoing[i].begin, layer.offsets.back());
-        delivery.deliver(plane, std::move(layer));
+        delivery.deliver(plane, sink(std::move(layer)));
     });
 }
 

@@ -2,11 +2,11 @@
 
 #include "core/executor.hpp"
 #include "core/stopwatch.hpp"
+#include "slicing/ordered_delivery.hpp"
 #include "slicing/sweep/crew.hpp"
 #include "slicing/sweep/cut_graph.hpp"
 #include "slicing/sweep/emit.hpp"
 #include "slicing/sweep/measure.hpp"
-#include "slicing/sweep/ordered_delivery.hpp"
 #include "slicing/sweep/plane_loads.hpp"
 #include "slicing/sweep/point_arena.hpp"
 #include "slicing/sweep/runs.hpp"
@@ -44,8 +44,8 @@ class alignas(128) Sweep {
   public:
     /// Requires that either all tasks are shared, or none.
     Sweep(const CutGraph<Ends>& graph, const StartIndex& starts, const PlaneLoads& loads, const Ranks& ranks,
-          const Plan& plan, bool shared, Executor& executor, OrderedDelivery& delivery)
-        : graph_(graph), starts_(starts), ranks_(ranks), plan_(plan), delivery_(delivery),
+          const Plan& plan, bool shared, Executor& executor, const LayerSink& sink, OrderedDelivery& delivery)
+        : graph_(graph), starts_(starts), ranks_(ranks), plan_(plan), sink_(sink), delivery_(delivery),
           crew_(executor, shared), walk_(graph), columns_(room_for_columns(loads, shared)),
           arena_(loads.all_points) {
         if (shared)
@@ -75,7 +75,7 @@ class alignas(128) Sweep {
             const bool last = plane + 1 == planes.end;
             const bool much_is_stale = runs_.end_plane(plane);
             if (much_is_stale || last || plane + 1 - emitted == task.group) {
-                emit({emitted, plane + 1}, plan_, ranks_, runs_, entries_, edges_of(), crew_, arena_,
+                emit({emitted, plane + 1}, plan_, ranks_, runs_, entries_, edges_of(), crew_, arena_, sink_,
                      delivery_);
                 emitted = plane + 1;
             }
@@ -147,6 +147,7 @@ class alignas(128) Sweep {
     const StartIndex& starts_;
     const Ranks& ranks_;
     const Plan& plan_;
+    const LayerSink& sink_;
     OrderedDelivery& delivery_;
     Crew crew_;
     Walk<Ends> walk_;
@@ -160,7 +161,7 @@ template <class Ends>
 void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& ranks, Executor& executor) {
     const Stopwatch slicing;
     ProgressMeter progress(job.execution, Stage::slice, ranks.count());
-    OrderedDelivery delivery(job.sink, executor, progress);
+    OrderedDelivery delivery(executor, progress);
 
     const std::vector<NodeShare> shares = count_nodes(graph, ranks.count(), executor);
     const PlaneLoads loads = loads_of(shares, ranks.count());
@@ -170,7 +171,7 @@ void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& 
     const auto sweep = [&](std::size_t task, unsigned worker) {
         if (!sweeps[worker])
             sweeps[worker] = std::make_unique<Sweep<Ends>>(graph, starts, loads, ranks, job.plan,
-                                                           tasks[task].shared, executor, delivery);
+                                                           tasks[task].shared, executor, job.sink, delivery);
         sweeps[worker]->sweep(tasks[task], starts.carried(task));
     };
     if (tasks.size() == 1) {

@@ -1,10 +1,7 @@
 #pragma once
 
-// Accepts layers in any order and runs the sink's actions in ascending order, with a bound on how far ahead
+// Accepts planes in any order and runs the sink's actions in ascending order, with a bound on how far ahead
 // workers may run.
-
-#include "lamella/contour/layer.hpp"
-#include "lamella/slicing/slice.hpp"
 
 #include "core/executor.hpp"
 
@@ -18,16 +15,16 @@
 
 namespace lamella {
 
-/// Hands layers to a sink. The parallel part of the sink runs on the calling thread. Its ordered parts run
-/// one at a time in plane order, on the thread that brings the next layer in order.
+/// Runs what a sink returns for each plane, its ordered part: one at a time in plane order, on the thread
+/// that brings the next plane in order. Runs none any more once the executor is stopping.
 class OrderedDelivery {
   public:
-    OrderedDelivery(const LayerSink& sink, const Executor& executor, ProgressMeter& progress)
-        : sink_(sink), executor_(executor), progress_(progress) {}
+    OrderedDelivery(const Executor& executor, ProgressMeter& progress)
+        : executor_(executor), progress_(progress) {}
 
-    /// Delivers the layer at position `plane` of the plan. Each layer must be delivered once. Thread-safe.
-    void deliver(std::uint32_t plane, Layer&& layer) {
-        std::function<void()> action = sink_(std::move(layer));
+    /// Delivers the plane at this position of the plan. Each plane must be delivered once. The action may be
+    /// empty. Thread-safe.
+    void deliver(std::uint32_t plane, std::function<void()> action) {
         std::unique_lock lock(mutex_);
         assert(plane >= next_ && !waiting_.contains(plane)); // no layer is delivered twice
         waiting_.emplace(plane, std::move(action));
@@ -35,7 +32,7 @@ class OrderedDelivery {
             return; // the draining thread will run it
         draining_ = true;
         try {
-            while (!waiting_.empty() && waiting_.begin()->first == next_) {
+            while (!waiting_.empty() && waiting_.begin()->first == next_ && !executor_.stopping()) {
                 const std::function<void()> ready = std::move(waiting_.begin()->second);
                 waiting_.erase(waiting_.begin());
                 lock.unlock();
@@ -71,7 +68,6 @@ class OrderedDelivery {
     [[nodiscard]] std::uint32_t delivered() const noexcept { return next_; }
 
   private:
-    const LayerSink& sink_;
     const Executor& executor_;
     ProgressMeter& progress_;
     std::mutex mutex_;

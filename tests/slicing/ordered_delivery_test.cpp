@@ -1,7 +1,9 @@
+#include "lamella/contour/layer.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/slicing/slice.hpp"
 
 #include "fixtures/random.hpp"
-#include "slicing/sweep/ordered_delivery.hpp"
+#include "slicing/ordered_delivery.hpp"
 
 #include <gtest/gtest.h>
 
@@ -40,13 +42,13 @@ struct Delivery {
         : execution(by), executor(execution), sink(std::move(to)), progress(execution, Stage::slice, planes) {
     }
 
-    void deliver(std::uint32_t plane) { delivery.deliver(plane, layer_number(plane)); }
+    void deliver(std::uint32_t plane) { delivery.deliver(plane, sink(layer_number(plane))); }
 
     Execution execution;
     Executor executor;
     LayerSink sink;
     ProgressMeter progress;
-    OrderedDelivery delivery{sink, executor, progress};
+    OrderedDelivery delivery{executor, progress};
 };
 
 constexpr auto nothing_in_order = [](Layer&&) {
