@@ -100,8 +100,8 @@ class Memory(ProgramTest):
         slack = 25e6
         for command, name in self.plate().items():
             scan = ["--scan"] if command == "slice" else []
-            for pattern in PATTERNS:
-                for distance in (0.12, 0.06, 0.03):
+            for pattern in ("meander", "chessboard", "hexagons"):
+                for distance in (0.1, 0.04):
                     with self.subTest(command=command, pattern=pattern, distance=distance):
                         self.assertLess(self.peak(command, name, *scan, "-o", "job.json", "--pattern", pattern, "--hatch-distance",
                                                   distance, "--max-memory", "100M", "--threads", 2, codes=(0, 5)), 100e6 + slack)
@@ -110,7 +110,7 @@ class Memory(ProgramTest):
         corners = [(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0), (0, 0, 10), (10, 0, 10), (10, 10, 10), (0, 10, 10)]
         faces = [(1, 3, 2), (1, 4, 3), (5, 6, 7), (5, 7, 8), (1, 2, 6), (1, 6, 5), (3, 4, 8), (3, 8, 7), (2, 3, 7), (2, 7, 6),
                  (4, 1, 5), (4, 5, 8)]
-        for far in ((1e6, 10, 10), (2e7, 10, 10), (3e6, 3e6, 10)):
+        for far in ((2e7, 10, 10), (3e6, 3e6, 10)):
             corners[6] = far
             self.write("far.obj", "".join("v %r %r %r\n" % c for c in corners) + "".join("f %d %d %d\n" % f for f in faces))
             with self.subTest(far=far):
@@ -119,7 +119,7 @@ class Memory(ProgramTest):
         for ring in ("0,0,10000,0,10000,10000,0,10000,0,0", "0,0,30000000,10,1000,1000,0,0", "0,0,2000000,0,2000000,0.06,0,0.06,0,0"):
             layers = "".join(f"$$LAYER/{i}\n$$POLYLINE/1,1,{ring.count(',') // 2 + 1},{ring}\n" for i in (1, 2))
             self.write("far.cli", f"$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n{layers}$$GEOMETRYEND\n")
-            for pattern in ("meander", "stripes", "hexagons"):
+            for pattern in ("stripes", "hexagons"):
                 with self.subTest(ring=ring, pattern=pattern):
                     self.assertLess(self.peak("scan", "far.cli", "-o", "job.cli", "--hatch-distance", 1, "--pattern", pattern,
                                               "--threads", 2, codes=(0, 5)), 1e9)

@@ -170,7 +170,7 @@ class Roles(ProgramTest):
         allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))  # noqa: E731
         for arguments in ["info", "items.3mf"], ["slice", "items.3mf", "-o", "a.cli"], ["view", "items.3mf", "-o", "a.html"]:
             with self.subTest(arguments=arguments):
-                self.fail_with(5, "items.3mf: takes more than .*300000 uses of 1 object", *arguments, "--max-memory", "100M",
+                self.fail_with(5, "items.3mf: takes more than the 100000000 bytes of --max-memory", *arguments, "--max-memory", "100M",
                                "--threads", 1, preexec_fn=allowed)
 
 
