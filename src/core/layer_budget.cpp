@@ -1,14 +1,13 @@
 #include "core/layer_budget.hpp"
 
 #include "core/byte_amount.hpp"
-#include "core/memory_size.hpp"
 
 #include <fmt/format.h>
 
 namespace lamella {
 
 LayerLimits layer_limits(const Execution& execution, std::uint64_t max_memory, unsigned layers) {
-    return {execution.cancel, max_memory != 0 ? max_memory / 4 / layers : usual_memory() / 4};
+    return {execution.cancel, max_memory / 4 / layers};
 }
 
 void LayerBudget::stop() {

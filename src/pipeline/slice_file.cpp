@@ -577,7 +577,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     for (const PlateNegative& negative : plate.negatives)
         files.push_back(static_cast<std::uint32_t>(plate.shapes[negative.shape].input));
     LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), supports, files);
-    const LayerLimits limits = layer_limits(execution, job.max_memory, result.threads);
+    const LayerLimits limits =
+        layer_limits(execution, feed.memory().limit, feed.memory().asked ? result.threads : 1);
     LayerWay way(job, plate, plan, sliced_here, mine, supports, totals, output, limits);
     ShapeVisitor visitor;
     if (feed.meshes() != nullptr) {

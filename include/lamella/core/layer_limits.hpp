@@ -29,9 +29,8 @@ struct LayerLimits {
     }
 };
 
-/// Those of so many layers that are worked on at the same time in a run that may take `max_memory` bytes: a
-/// quarter of that in all. With 0, a quarter of what a run takes unless somebody says more or less, for each
-/// of them.
+/// Returns the limits of each of so many layers that are worked on at the same time in a run that may take
+/// `max_memory` bytes: a quarter of that in all. 0: as much as there is.
 [[nodiscard]] LayerLimits layer_limits(const Execution& execution, std::uint64_t max_memory = 0,
                                        unsigned layers = 1);
 
