@@ -423,7 +423,7 @@ void check_crossings(const Layer& layer, const LayerBudget& budget) {
 
 void refuse_crossings(std::size_t sides, const LayerBudget& budget) {
     throw Error(ErrorKind::limit,
-                fmt::format("layer {}: {} sides of contours in contact cross more than {} times, the limit; "
+                fmt::format("{}: {} sides of contours in contact cross more than {} times, the limit; "
                             "leave out some of the bodies, or offset by less",
                             budget.layer(), sides, most_crossings(sides)));
 }
