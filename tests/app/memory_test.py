@@ -162,8 +162,8 @@ class Memory(ProgramTest):
         layer_file("ring.cli", [ring(18000)])
         for name in ["rings.cli", "ring.cli"]:
             for step in ["--fill=nonzero", "--offset=0.01"]:
-                self.fail_with(5, "layer 0: .*cross", "convert", name, "x.json", step, "--max-memory", "100M")
-            self.fail_with(5, "layer 0: .*cross", "scan", name, "-o", "x.ilt", "--max-memory", "100M")
+                self.fail_with(5, f"{name}: layer 0 at z = .*cross", "convert", name, "x.json", step, "--max-memory", "100M")
+            self.fail_with(5, f"{name}: layer 0 at z = .*cross", "scan", name, "-o", "x.ilt", "--max-memory", "100M")
             result = self.run_program("verify", name, "--max-memory", "100M")
             self.assertEqual(result.code, 4, result.err)
             self.assertRegex(result.out.decode(), r"crossings of contours, or more \(rings")

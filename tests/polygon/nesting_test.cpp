@@ -254,14 +254,14 @@ WoundNesting with_memory(const Layer& layer, std::uint64_t bytes) {
     const std::optional<ChainGrid> grid = ChainGrid::of(chains);
     const std::vector<Windings> turns(layer.rings, Windings{1, 0});
     return nesting(layer, chains, grid, find_contacts(layer, chains, grid), turns,
-                   LayerBudget({.memory = bytes}, 7));
+                   LayerBudget({.memory = bytes}, 7, 0.5));
 }
 
 TEST(Nesting, OfRingsThatCrossTooOftenIsRefusedBeforeItIsSearchedFor) {
     const Layer layer = random_triangles(4'000);
-    test::expect_error(ErrorKind::limit, {"layer 7: ", "crossings of contours, or more, take about "},
+    test::expect_error(ErrorKind::limit, {"layer 7 at z = ", "crossings of contours, or more, take about "},
                        [&] { (void)with_memory(layer, 1'000'000); });
-    test::expect_error(ErrorKind::limit, {"layer 7: 12000 sides of contours in contact cross more than "},
+    test::expect_error(ErrorKind::limit, {" mm: 12000 sides of contours in contact cross more than "},
                        [&] { (void)with_memory(layer, 0); });
     // Few enough to be searched for, whatever memory crossings would take.
     EXPECT_EQ(with_memory(random_triangles(200), 1).nesting.rings(), 200U);
