@@ -119,7 +119,7 @@ std::string short_line(Json record) {
     if (line.size() <= WorkerTeam::longest_answer)
         return line;
     if (record.contains("warnings"))
-        record["warnings"] = {"there are warnings, too long to be told here"};
+        record["warnings"] = {"the warnings are too long to be listed here"};
     if (record.contains("error"))
         record["error"]["text"] = record["error"]["text"].get<std::string>().substr(0, most_text) + "...";
     return as_line(record);
@@ -171,13 +171,13 @@ class Batch {
                                        }) {}
 
     bool run(const Execution& execution) {
-        while (told_ < items_.size() && !execution.cancelled()) {
+        while (reported_ < items_.size() && !execution.cancelled()) {
             start_some(execution);
             for (const WorkerAnswer& answer : team_.wait())
                 take(answer);
-            tell();
+            report();
         }
-        if (told_ == items_.size())
+        if (reported_ == items_.size())
             return true;
         // Completed results are still printed. Workers that are stuck are ended with the team.
         stopping_ = true;
@@ -186,11 +186,11 @@ class Batch {
         while (team_.is_busy() && seconds_since(stop) < longest_stop)
             for (const WorkerAnswer& answer : team_.wait())
                 take(answer);
-        tell();
-        return told_ == items_.size();
+        report();
+        return reported_ == items_.size();
     }
 
-    [[nodiscard]] std::size_t failed() const { return told_ - succeeded_; }
+    [[nodiscard]] std::size_t failed() const { return reported_ - succeeded_; }
 
     void sum_up(double seconds) {
         std::string text =
@@ -202,16 +202,16 @@ class Batch {
             failed[kind] = count;
         }
         if (!kinds.empty())
-            text += fmt::format(", {} failed ({})", grouped(told_ - succeeded_), fmt::join(kinds, ", "));
-        if (told_ < items_.size())
-            text += fmt::format(", {} not begun or cancelled", grouped(items_.size() - told_));
+            text += fmt::format(", {} failed ({})", grouped(reported_ - succeeded_), fmt::join(kinds, ", "));
+        if (reported_ < items_.size())
+            text += fmt::format(", {} not begun or cancelled", grouped(items_.size() - reported_));
         text += fmt::format("\ntook     {:.3f} s, {} files a second\n", seconds,
-                            brief(std::round(static_cast<double>(told_) / seconds)));
+                            brief(std::round(static_cast<double>(reported_) / seconds)));
         const Json json = {{"batch",
                             {{"files", items_.size()},
                              {"ok", succeeded_},
                              {"failed", std::move(failed)},
-                             {"not_done", items_.size() - told_},
+                             {"not_done", items_.size() - reported_},
                              {"seconds", seconds}}}};
         messages_.sum_up(text, compact_json(json));
     }
@@ -291,13 +291,13 @@ class Batch {
     }
 
     /// Prints results in order, each once all before it are printed; after a stop, all results that exist.
-    void tell() {
+    void report() {
         for (; !waiting_.empty() && (stopping_ || waiting_.begin()->first == due_); ++due_) {
             const std::string line = std::move(waiting_.extract(waiting_.begin()).mapped());
             const Json record = Json::parse(line);
             if (stopping_ && !record["ok"] && record["error"]["kind"] == "cancelled")
                 continue;
-            ++told_;
+            ++reported_;
             if (record["ok"]) {
                 ++succeeded_;
             } else {
@@ -309,7 +309,7 @@ class Batch {
         }
         finish_printing();
         if (progress_)
-            progress_({Stage::slice, told_, items_.size()});
+            progress_({Stage::slice, reported_, items_.size()});
     }
 
     const std::vector<BatchItem>& items_;
@@ -324,7 +324,7 @@ class Batch {
     std::map<std::string, std::size_t> failures_; ///< by kind
     std::size_t next_ = 0;                        ///< first file without a task
     std::size_t due_ = 0;                         ///< file whose result is printed next
-    std::size_t told_ = 0;                        ///< number of printed results
+    std::size_t reported_ = 0;                    ///< number of printed results
     std::size_t succeeded_ = 0;
     bool stopping_ = false;
     WorkerTeam team_; ///< last: its destructor does not use the other members

@@ -232,7 +232,7 @@ std::vector<std::string> OutputNames::give(std::span<const std::string> inputs, 
         std::error_code error;
         paths.push_back(fs::absolute(input, error).lexically_normal());
         if (error)
-            refuse(input, fmt::format("the working folder, which this path begins in, cannot be told: {}",
+            refuse(input, fmt::format("the working folder, in which this path begins, cannot be found: {}",
                                       error.message()));
     }
     const fs::path shared = common_folder(paths);

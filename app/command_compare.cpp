@@ -284,12 +284,12 @@ Command compare_command() {
     };
     return {
         .name = "compare",
-        .summary = "tell how far two slice files are from each other",
+        .summary = "compare two slice files",
         .description =
             "Compares the layers of two slice files, of any formats, plane by plane: how far the contours of "
             "one are from those of the other, areas and their centres, open chains, hatch lines one by one, "
             "heights, and by which parameters parts are exposed. Tells the first and the largest difference. "
-            "Exit code 4 says that they do not agree within the tolerance.",
+            "Exit code 4: they do not agree within the tolerance.",
         .operands = {operand("FIRST", "a slice file; - is standard input"),
                      operand("SECOND", "the slice file to compare it with")},
         .groups = {{"What is compared",
@@ -300,7 +300,7 @@ Command compare_command() {
                              arguments->tolerance = parse_not_negative(text);
                          }),
                      flag("area-difference",
-                          "tell the area that one file has and the other has not, plane by plane and in all",
+                          "report the area that one file has and the other has not, by plane and in total",
                           arguments->area_difference),
                      flag("json", "print JSON", arguments->json)}},
                    run_options(arguments->run,

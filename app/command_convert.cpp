@@ -51,7 +51,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     options.page.title = title_of(arguments.input);
-    tell(file, file.warnings, arguments.strict, context.messages);
+    warn_about(file, file.warnings, arguments.strict, context.messages);
     const LayerChanges changes =
         take_steps(arguments.making.steps(), file, arguments.strict, context.messages, execution,
                    arguments.limits.max_memory.value_or(0))
@@ -95,13 +95,13 @@ Command convert_command() {
                               arguments->input = text;
                           }},
                      {.placeholder = "OUT",
-                      .help = "the slice file to write; its extension says the format; - is standard output",
+                      .help = "the slice file to write; its extension gives the format; - is standard output",
                       .written = true,
                       .set =
                           [arguments](const std::string& text) {
                               arguments->output = text;
                           }}},
-        .groups = {output_options(*arguments), picture_options(arguments->writing.picture),
+        .groups = {output_options(*arguments), image_options(arguments->writing.image),
                    layer_step_options(arguments->making),
                    run_options(arguments->run, {max_memory_option(arguments->limits, "the layers take")}),
                    common_options(true)},

@@ -46,8 +46,8 @@ struct InfoArguments {
     RunOptions run;
 };
 
-int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Context& context,
-              const Execution& execution) {
+int describe_mesh(const InfoArguments& arguments, const MeshFile& file, const Context& context,
+                  const Execution& execution) {
     context.messages.warn_of(input_name(file.path), file.warnings);
     const Plate plate =
         load_plate({.path = file.path, .unit_mm = arguments.placement.unit_mm()}, file, execution);
@@ -56,7 +56,7 @@ int tell_mesh(const InfoArguments& arguments, const MeshFile& file, const Contex
     DiagnosisOptions options;
     options.self_intersections = arguments.self_intersections;
     if (!arguments.report.empty())
-        options.keep = page_places;
+        options.keep = page_locations;
     const Diagnosis found = diagnose(mesh, options, execution);
     if (!arguments.report.empty())
         write_mesh_page(arguments.report, mesh, found, mesh_notes(file, found), page_options(file.path),
@@ -187,7 +187,7 @@ Json layers_json(const std::string& path, const LayerFile& file, const Figures& 
     return json;
 }
 
-int tell_layers(const InfoArguments& arguments, const LayerFile& file, const Context& context) {
+int describe_layers(const InfoArguments& arguments, const LayerFile& file, const Context& context) {
     context.messages.warn_of(input_name(file.path), file.warnings);
     if (arguments.placement.given())
         throw Error(ErrorKind::usage,
@@ -217,8 +217,8 @@ int run_info(const InfoArguments& arguments, const Context& context) {
     options.strict = arguments.strict;
     const auto file = read_any(arguments.input, options, execution);
     if (const auto* mesh = std::get_if<MeshFile>(&file))
-        return tell_mesh(arguments, *mesh, context, execution);
-    return tell_layers(arguments, std::get<LayerFile>(file), context);
+        return describe_mesh(arguments, *mesh, context, execution);
+    return describe_layers(arguments, std::get<LayerFile>(file), context);
 }
 
 } // namespace
@@ -240,7 +240,7 @@ Command info_command() {
                               arguments->input = text;
                           }}},
         .groups =
-            {{"What is told",
+            {{"Contents",
               {flag("json", "print JSON", arguments->json),
                flag("self-intersections",
                     "look for triangles that cross, overlap or touch one another, too (takes longer)",

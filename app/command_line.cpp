@@ -358,7 +358,7 @@ Wish parse(Command& command, std::span<const std::string> words, const Messages&
         configured = config_in_time(file->text, split, command, messages);
     Assignment assignment(command);
     const auto set = [&](const ConfigEntry& entry) {
-        assignment.set(*entry.option, fmt::format("{}: {}", entry.place, entry.option->name), entry.text);
+        assignment.set(*entry.option, fmt::format("{}: {}", entry.location, entry.option->name), entry.text);
     };
     std::for_each(configured.options.begin(), configured.options.end(), set);
     for (const Words::Word& word : split.words) {

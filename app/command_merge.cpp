@@ -61,7 +61,7 @@ Command merge_command() {
             "of a single run, byte for byte, unless other units or the short form are asked for; layers of "
             "other formats are read and written anew.",
         .operands = {{.placeholder = "OUT",
-                      .help = "the slice file to write; its extension says the format; - is standard output",
+                      .help = "the slice file to write; its extension gives the format; - is standard output",
                       .written = true,
                       .set =
                           [arguments](const std::string& text) {
@@ -75,7 +75,7 @@ Command merge_command() {
                               arguments->shards.push_back(text);
                           }}},
         .groups = {{"What is written", layer_output_options(arguments->writing)},
-                   picture_options(arguments->writing.picture),
+                   image_options(arguments->writing.image),
                    run_options(arguments->run,
                                {max_memory_option(arguments->limits, "the layers of one of the files take")}),
                    common_options(true)},

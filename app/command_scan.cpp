@@ -47,7 +47,7 @@ struct ScanCommandArguments {
 
 OptionGroup output_options(ScanCommandArguments& target) {
     Option output = output_file(
-        "output", "the slice file; its extension says the format; - is standard output", target.output);
+        "output", "the slice file; its extension gives the format; - is standard output", target.output);
     output.letter = 'o';
     OptionGroup group{"What is written", {std::move(output)}};
     for (Option& option : layer_output_options(target.writing))
@@ -122,7 +122,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
     const ScanLosses losses = scan_losses(stacks, file.rounding, execution, max_memory);
     for (const std::vector<std::string>& warnings : {file.warnings, losses.texts()})
-        tell(file, warnings, arguments.strict, context.messages);
+        warn_about(file, warnings, arguments.strict, context.messages);
     const LayerFileInfo info = info_of(file);
     const ScanResult result = scan_layers(arguments.output, format, stacks, file.rounding, info, strategy,
                                           options, execution, max_memory, file.path);
@@ -165,7 +165,7 @@ Command scan_command() {
                               arguments->input = text;
                           }}},
         .groups = {output_options(*arguments), scan_options(arguments->scanning),
-                   picture_options(arguments->writing.picture),
+                   image_options(arguments->writing.image),
                    run_options(arguments->run, {max_memory_option(arguments->limits, "the layers take")}),
                    common_options(true)},
         .examples = {{"lamella scan part.cli -o job.cli", "with the strategy that is there by default"},

@@ -92,7 +92,7 @@ std::vector<Option> with_output(std::vector<Option> options) {
 OptionGroup output_options(SliceArguments& target) {
     OptionGroup group{"What is written", {}};
     Option output = output_file(
-        "output", "the slice file; its extension says the format; - is standard output", target.output);
+        "output", "the slice file; its extension gives the format; - is standard output", target.output);
     output.letter = 'o';
     group.options.push_back(std::move(output));
     for (Option& option : with_output(layer_output_options(target.writing)))
@@ -130,7 +130,7 @@ void add_input(SliceArguments& target, const std::string& path) {
 OptionGroup input_options(SliceArguments& target) {
     OptionGroup group = placement_options(target.of_input.placement);
     group.title = "Where parts stand (after a file, of that one; before the first, of all)";
-    group.options.push_back(row("copies", ValueKind::count, "N", "so many of it, side by side in rows",
+    group.options.push_back(row("copies", ValueKind::count, "N", "this many copies, side by side in rows",
                                 [&target](const std::string& text) {
                                     target.of_input.copies = parse_count(text);
                                     if (*target.of_input.copies == 0)
@@ -198,7 +198,7 @@ OptionGroup timed_run_options(SliceArguments& target) {
         target.limits.max_memory));
     group.options.push_back(
         row("timeout", ValueKind::number, "SECONDS",
-            "stop after so long, say how far it came (exit code 5), and leave no output",
+            "stop after this time, report how far it came (exit code 5), and leave no output",
             [&target](const std::string& text) { target.timeout = parse_positive(text); }));
     return group;
 }
@@ -301,7 +301,7 @@ std::string summary(const FileJob& job, const FileResult& result) {
     text += fmt::format("sliced   {} from z = {} to {} mm: {}, {}{}\n",
                         counted(result.report.layers, "layer"), height(result.bottom), height(result.top),
                         counted(result.report.contours, "contour"), counted(result.report.points, "point"),
-                        result.slabs == 0 ? "" : fmt::format(", in {}", counted(result.slabs, "slab")));
+                        result.ranges == 0 ? "" : fmt::format(", in {}", counted(result.ranges, "slab")));
     if (job.shard)
         text += fmt::format("shard    {} of {}: layers {} to {} of {}\n", job.shard->number, job.shard->count,
                             result.shard.begin, result.shard.end - 1, result.planned_layers);
@@ -412,7 +412,7 @@ void check_job_of_team(const Command& command, const FileJob& job, Communicator&
 
 /// Checks early that statistics and stamp can be written, since they are written after hours of slicing. All
 /// processes fail together.
-void check_places(const SliceArguments& arguments, Communicator& processes) {
+void check_positions(const SliceArguments& arguments, Communicator& processes) {
     std::string refusal;
     if (processes.process() == 0) {
         try {
@@ -455,7 +455,7 @@ int run_slice(SliceArguments& arguments, const Context& context) {
         }
         if (arguments.team != nullptr)
             check_job_of_team(context.command, job, processes);
-        check_places(arguments, processes);
+        check_positions(arguments, processes);
         if (!origin.is_null())
             remove_stamp_without_output(job.output);
         return slice_file(job, run, processes);
@@ -501,8 +501,8 @@ int run_slice(SliceArguments& arguments, const Context& context) {
 Command slice_command(Communicator* team) {
     const auto arguments = std::make_shared<SliceArguments>();
     arguments->team = team;
-    OptionGroup pictures = picture_options(arguments->writing.picture);
-    pictures.options = with_output(std::move(pictures.options));
+    OptionGroup images = image_options(arguments->writing.image);
+    images.options = with_output(std::move(images.options));
     return {
         .name = "slice",
         .summary = "cut a mesh into layers and write a slice file",
@@ -510,8 +510,9 @@ Command slice_command(Communicator* team) {
             "Cuts meshes into layers and writes their contours: outer rings counter-clockwise, holes "
             "clockwise. Several files, and all that a 3MF or AMF file places, make up a build plate: they "
             "are cut "
-            "on common planes, and stay apart in formats that can tell parts. A mesh is taken as it is, "
-            "repaired only where options say so: where it has a hole, contours stay "
+            "on common planes, and stay separate in formats that distinguish parts. A mesh is taken as it "
+            "is, "
+            "repaired only if options ask for it: where it has a hole, contours stay "
             "open, are marked as such in the file, and a warning says so. The result does not depend on the "
             "number of threads nor on the order of the triangles.",
         .operands = {{.placeholder = "FILE",
@@ -524,12 +525,11 @@ Command slice_command(Communicator* team) {
                           [arguments](const std::string& text) {
                               add_input(*arguments, text);
                           }}},
-        .groups = {output_options(*arguments), std::move(pictures), layering_options(arguments->layering),
+        .groups = {output_options(*arguments), std::move(images), layering_options(arguments->layering),
                    shard_options(*arguments), repair_options(arguments->repair),
                    layer_step_options(arguments->making),
-                   scan_options(
-                       arguments->scanning,
-                       {flag("scan", "write scan vectors in the place of contours", arguments->scan)}),
+                   scan_options(arguments->scanning,
+                                {flag("scan", "write scan vectors instead of contours", arguments->scan)}),
                    input_options(*arguments), checking_options(*arguments), batch_options(arguments->batch),
                    timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",

@@ -50,7 +50,7 @@ PlateInput input_of(const ViewArguments& arguments) {
 
 Diagnosis diagnosis_of(const Plate& plate, const Execution& execution) {
     DiagnosisOptions options;
-    options.keep = page_places;
+    options.keep = page_locations;
     return diagnose(weld(joined(plate, execution), execution), options, execution);
 }
 
@@ -73,7 +73,7 @@ std::uint64_t view_mesh(const ViewArguments& arguments, MeshFile mesh, const std
         .path = output, .page = page_options(arguments.input), .notes = [&](const FileResult& result) {
             PageNotes notes = run_notes(result);
             notes.sections.insert(notes.sections.begin(), mesh_section(diagnosis.counts));
-            notes.places = places_of(diagnosis);
+            notes.locations = places_of(diagnosis);
             return notes;
         }};
     const FileResult result = slice_file(job, std::move(plate), execution);
@@ -90,7 +90,7 @@ std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const 
                     fmt::format("{}: holds layers, and these stay where they are; options of "
                                 "where a part stands and how it is cut are for meshes",
                                 file.path));
-    tell(file, file.warnings, false, messages);
+    warn_about(file, file.warnings, false, messages);
     PageNotes notes = file_notes(file);
     const std::vector<LayerChanges> planes = take_steps(arguments.making.steps(), file, false, messages,
                                                         execution, arguments.limits.max_memory.value_or(0))
@@ -107,7 +107,7 @@ std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const 
         return plane;
     };
     write_planes(*page, info.layers, parts_of, execution);
-    page->tell(std::move(notes));
+    page->add_notes(std::move(notes));
     page->finish();
     messages.warn_of(output_name(output), page->warnings());
     return info.layers;

@@ -23,13 +23,13 @@ constexpr std::string_view inputs_key = "input";
 constexpr std::string_view path_key = "path";
 
 /// Returns the option. Throws if the command has no such option or a file must not contain it.
-Option& option_of(Command& command, const std::string& place, std::string_view key) {
+Option& option_of(Command& command, const std::string& location, std::string_view key) {
     Option* const option = find_option(command, key);
     if (option != nullptr && !option->configurable)
-        refuse_toml(place, fmt::format("--{} goes on the command line only", key));
+        refuse_toml(location, fmt::format("--{} goes on the command line only", key));
     if (option == nullptr)
-        refuse_toml(place, fmt::format("lamella {} has no option \"{}\"{}", command.name, excerpt(key),
-                                       option_suggestion(command, key, "")));
+        refuse_toml(location, fmt::format("lamella {} has no option \"{}\"{}", command.name, excerpt(key),
+                                          option_suggestion(command, key, "")));
     return *option;
 }
 
@@ -83,14 +83,14 @@ class Reading {
     }
 
     ConfigEntry entry(const std::string& key, const TomlValue& value) const {
-        Option& option = option_of(command_, value.place, key);
+        Option& option = option_of(command_, value.location, key);
         const auto text = as_text(value);
         if (!text)
-            refuse_toml(value.place,
+            refuse_toml(value.location,
                         fmt::format("{}: this is no value for an option: expected a number, a text, "
                                     "true, false or a list of numbers",
                                     excerpt(key)));
-        return {value.place, &option, *text};
+        return {value.location, &option, *text};
     }
 
     std::vector<ConfiguredInput> inputs(const TomlValue& value) const {
@@ -98,7 +98,8 @@ class Reading {
         if (list == nullptr || !std::all_of(list->begin(), list->end(), [](const TomlValue& one) {
                 return one.as<TomlTable>() != nullptr;
             }))
-            refuse_toml(value.place, "expected [[input]], with the path of a file and options of that one");
+            refuse_toml(value.location,
+                        "expected [[input]], with the path of a file and options of that one");
         std::vector<ConfiguredInput> found;
         for (const TomlValue& one : *list)
             found.push_back(input(one));
@@ -115,13 +116,13 @@ class Reading {
             }
             found.options.push_back(entry(key, value));
             if (!found.options.back().option->of_each_file)
-                refuse_toml(value.place,
+                refuse_toml(value.location,
                             fmt::format("{} is no option of one file; it has to stand above the first "
                                         "[[input]]",
                                         excerpt(key)));
         }
         if (found.path.empty())
-            refuse_toml(table.place, "this [[input]] has no path = \"...\" of a file");
+            refuse_toml(table.location, "this [[input]] has no path = \"...\" of a file");
         return found;
     }
 

@@ -10,7 +10,7 @@
 namespace lamella::app {
 
 struct ConfigEntry {
-    std::string place; ///< file and line
+    std::string location; ///< file and line
     Option* option;
     std::string text; ///< in the form of the command line
 };

@@ -59,7 +59,7 @@ void prepare_for_crashes() noexcept {
     }
 }
 
-void tell_crashes(ProgressStyle style) noexcept {
+void report_crashes(ProgressStyle style) noexcept {
     told_as = style;
 }
 

@@ -22,6 +22,6 @@ namespace lamella::app {
 void prepare_for_crashes() noexcept;
 
 /// Sets the style of the report of exceeded processor time; by default it is for people.
-void tell_crashes(ProgressStyle style) noexcept;
+void report_crashes(ProgressStyle style) noexcept;
 
 } // namespace lamella::app

@@ -16,7 +16,7 @@ namespace {
 
 // Waiting for standard input, or for a reader of the results, may take for ever, so the program is ended soon
 // then. In between, releasing gigabytes and a temporary file takes longer.
-constexpr std::chrono::milliseconds short_patience{700};
+constexpr std::chrono::milliseconds short_work_budget{700};
 constexpr std::chrono::seconds patience{20};
 constexpr double longest_seconds = 1e9; // some thirty years, within the range of clocks
 
@@ -43,7 +43,7 @@ Deadline::~Deadline() {
 void Deadline::note_output(std::string output) {
     const std::lock_guard lock(mutex_);
     output_ = std::move(output);
-    told_ = true;
+    reported_ = true;
 }
 
 Execution Deadline::execution() {
@@ -88,13 +88,13 @@ void Deadline::watch() {
     stop_.request();
     lock.lock();
     const bool reading = !started_ || (last_.stage == Stage::read && last_.done < last_.total);
-    if (!done_.wait_for(lock, reading || told_ ? short_patience : patience, is_ending))
+    if (!done_.wait_for(lock, reading || reported_ ? short_work_budget : patience, is_ending))
         leave_at_once(messages_.last_words(message(), limit_exit_code), limit_exit_code);
 }
 
 std::string Deadline::message() const {
     std::string text = fmt::format("{}: stopped after {} s (--timeout)", what_, brief(*seconds_));
-    if (told_)
+    if (reported_)
         return text + " while results were written" +
                (output_.empty() || output_ == "-" ? "" : fmt::format("; {} is complete", output_));
     if (started_) {

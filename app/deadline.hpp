@@ -58,9 +58,9 @@ class Deadline {
     mutable std::mutex mutex_;
     mutable std::condition_variable done_; ///< notified when done or expired
     Progress last_;
-    bool started_ = false; ///< `last_` is valid
-    bool told_ = false;    ///< only reporting remains
-    std::string output_;   ///< the complete output; "" or "-" if it is not a file
+    bool started_ = false;  ///< `last_` is valid
+    bool reported_ = false; ///< only reporting remains
+    std::string output_;    ///< the complete output; "" or "-" if it is not a file
     bool ending_ = false;
     bool expired_ = false;
     std::thread watcher_;

@@ -83,19 +83,19 @@ Json bodies_json(const MeshFile& file) {
 struct Defect {
     DefectWords words;
     std::uint64_t count;
-    std::vector<std::string> places; ///< the first locations
-    std::string addition = {};       ///< appended to their meaning
+    std::vector<std::string> locations; ///< the first locations
+    std::string addition = {};          ///< appended to their meaning
 };
 
-template <class Places, class Tell>
-std::vector<std::string> tell_each(const Places& places, const Tell& tell) {
+template <class Places, class Describe>
+std::vector<std::string> describe_each(const Places& locations, const Describe& describe) {
     std::vector<std::string> texts;
-    for (std::size_t i = 0; i < std::min(listed, places.size()); ++i)
-        texts.push_back(tell(places[i]));
+    for (std::size_t i = 0; i < std::min(listed, locations.size()); ++i)
+        texts.push_back(describe(locations[i]));
     return texts;
 }
 
-std::string edge_text(const EdgePlace& edge) {
+std::string edge_text(const EdgeLocation& edge) {
     return fmt::format("from {} to {}", point_text(edge[0]), point_text(edge[1]));
 }
 
@@ -136,34 +136,34 @@ std::vector<Defect> defects_of(const Diagnosis& found) {
     const auto triangle = [](std::uint32_t i) {
         return fmt::format("triangle {}", grouped(i));
     };
-    const auto defect = [&](std::uint64_t Inspection::*count, std::vector<std::string> places,
+    const auto defect = [&](std::uint64_t Inspection::*count, std::vector<std::string> locations,
                             std::string addition = "") {
-        return Defect{words_of(count), counts.*count, std::move(places), std::move(addition)};
+        return Defect{words_of(count), counts.*count, std::move(locations), std::move(addition)};
     };
-    return {defect(&Inspection::boundary_edges, tell_each(found.loops, loop_text), slits_text(found)),
-            defect(&Inspection::orientation_conflicts, tell_each(found.conflicting_edges, edge_text)),
-            defect(&Inspection::nonmanifold_edges, tell_each(found.nonmanifold_edges, edge_text)),
-            {crowded_vertices, found.nonmanifold_vertices,
-             tell_each(found.vertices, [](const Point3& p) { return "at " + point_text(p); })},
-            defect(&Inspection::duplicate_triangles, tell_each(found.duplicate_triangles, triangle),
+    return {defect(&Inspection::boundary_edges, describe_each(found.loops, loop_text), slits_text(found)),
+            defect(&Inspection::orientation_conflicts, describe_each(found.conflicting_edges, edge_text)),
+            defect(&Inspection::nonmanifold_edges, describe_each(found.nonmanifold_edges, edge_text)),
+            {non_manifold_vertices, found.nonmanifold_vertices,
+             describe_each(found.vertices, [](const Point3& p) { return "at " + point_text(p); })},
+            defect(&Inspection::duplicate_triangles, describe_each(found.duplicate_triangles, triangle),
                    found.opposite_pairs > 0 ? ", also the other way round" : ""),
-            defect(&Inspection::degenerate_triangles, tell_each(found.degenerate_triangles, triangle)),
-            defect(&Inspection::inverted_shells, tell_each(inverted, shell_text))};
+            defect(&Inspection::degenerate_triangles, describe_each(found.degenerate_triangles, triangle)),
+            defect(&Inspection::inverted_shells, describe_each(inverted, shell_text))};
 }
 
-std::string meeting_text(const Meeting& meeting) {
-    return fmt::format("triangles {} and {} near {}", grouped(meeting.triangle_a),
-                       grouped(meeting.triangle_b), point_text(meeting.at));
+std::string intersection_text(const TriangleIntersection& intersection) {
+    return fmt::format("triangles {} and {} near {}", grouped(intersection.triangle_a),
+                       grouped(intersection.triangle_b), point_text(intersection.at));
 }
 
-std::vector<Defect> meetings_of(const SelfIntersections& found) {
+std::vector<Defect> intersections_of(const SelfIntersections& found) {
     std::vector<Defect> defects;
-    for (const MeetingWords& kind : meeting_words) {
-        std::vector<Meeting> meetings;
-        for (const Meeting& meeting : found.first)
-            if (words_of(meeting.kind).key == kind.words.key)
-                meetings.push_back(meeting);
-        defects.push_back({kind.words, found.*kind.count, tell_each(meetings, meeting_text)});
+    for (const IntersectionWords& kind : intersection_words) {
+        std::vector<TriangleIntersection> intersections;
+        for (const TriangleIntersection& intersection : found.first)
+            if (words_of(intersection.kind).key == kind.words.key)
+                intersections.push_back(intersection);
+        defects.push_back({kind.words, found.*kind.count, describe_each(intersections, intersection_text)});
     }
     return defects;
 }
@@ -177,8 +177,8 @@ std::string defects_text(std::string_view name, const std::vector<Defect>& defec
         text += result_line(name, fmt::format("{} {}: {}{}", grouped(defect.count),
                                               defect.count == 1 ? words.one : words.many, words.meaning,
                                               defect.addition));
-        for (const std::string& place : defect.places)
-            text += result_line("", "  " + place);
+        for (const std::string& location : defect.locations)
+            text += result_line("", "  " + location);
         name = "";
     }
     return text;
@@ -193,11 +193,11 @@ Json parts_json(const Plate& plate) {
     return parts;
 }
 
-Json edge_json(const EdgePlace& edge) {
+Json edge_json(const EdgeLocation& edge) {
     return {point_json(edge[0]), point_json(edge[1])};
 }
 
-Json places_json(const Diagnosis& found) {
+Json locations_json(const Diagnosis& found) {
     const auto loop = [](const BoundaryLoop& l) -> Json {
         return {{"edges", l.edges()},
                 {"length_mm", l.length_mm},
@@ -229,21 +229,21 @@ Json shells_json(const Diagnosis& found) {
     });
 }
 
-Json meetings_json(const SelfIntersections& found) {
-    const auto meeting = [](const Meeting& m) -> Json {
+Json intersections_json(const SelfIntersections& found) {
+    const auto intersection = [](const TriangleIntersection& m) -> Json {
         return {{"triangles", {m.triangle_a, m.triangle_b}},
                 {"kind", words_of(m.kind).key},
                 {"at", point_json(m.at)}};
     };
-    const auto pair = [](const PartMeetings& p) -> Json {
+    const auto pair = [](const PartIntersections& p) -> Json {
         return {{"shells", {p.part_a, p.part_b}},
                 {"crossing", p.crossing},
                 {"overlapping", p.overlapping},
                 {"touching", p.touching}};
     };
-    Json json = as_json(meeting_figures(found));
+    Json json = as_json(intersection_figures(found));
     json["flat_triangles"] = found.flat_triangles;
-    json["first"] = list_json(found.first, meeting);
+    json["first"] = list_json(found.first, intersection);
     json["shells"] = list_json(found.parts, pair);
     return json;
 }
@@ -270,11 +270,13 @@ std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate&
     const std::string defects = defects_text("defects", defects_of(found));
     text += defects.empty() ? result_line("defects", "none") : defects;
     if (found.self_intersections) {
-        const std::string meetings = defects_text("meetings", meetings_of(*found.self_intersections));
-        text += meetings.empty() ? result_line("meetings", "none: no two triangles cross, overlap or touch")
-                                 : meetings;
+        const std::string intersections =
+            defects_text("meetings", intersections_of(*found.self_intersections));
+        text += intersections.empty()
+                    ? result_line("meetings", "none: no two triangles cross, overlap or touch")
+                    : intersections;
         std::uint64_t pairs = 0;
-        for (const PartMeetings& part : found.self_intersections->parts)
+        for (const PartIntersections& part : found.self_intersections->parts)
             pairs += part.part_a != part.part_b ? 1 : 0;
         if (pairs > 0)
             text += result_line("", fmt::format("{} of shells {} involved", counted(pairs, "pair"),
@@ -296,9 +298,10 @@ Json mesh_json(const MeshFile& file, const Diagnosis& found, const Plate& plate)
                                          "shells", "cavities"})));
     json["defects"] = std::move(defects);
     json["boundary_length_mm"] = found.boundary_length_mm;
-    json["places"] = places_json(found);
+    json["locations"] = locations_json(found);
     json["shell_list"] = shells_json(found);
-    json["self_intersections"] = found.self_intersections ? meetings_json(*found.self_intersections) : Json();
+    json["self_intersections"] =
+        found.self_intersections ? intersections_json(*found.self_intersections) : Json();
     if (plate.parts.size() > 1)
         json["parts"] = parts_json(plate);
     if (!file.bodies.empty())

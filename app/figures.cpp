@@ -219,9 +219,9 @@ Figures defect_figures(const Inspection& found) {
     return figures;
 }
 
-Figures meeting_figures(const SelfIntersections& found) {
+Figures intersection_figures(const SelfIntersections& found) {
     Figures figures;
-    for (const MeetingWords& kind : meeting_words)
+    for (const IntersectionWords& kind : intersection_words)
         figures.push_back(defect(kind.words, found.*kind.count, Tone::warning));
     return figures;
 }
@@ -367,8 +367,8 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
         as_json(picked(run, {"read", "weld", "link", "slice", "polygon", "scan", "write", "total"}));
     stats["peak_rss_bytes"] = peak_rss_bytes();
     stats.update(as_json(picked(run, {"points", "contours", "open_chains", "volume_mm3"})));
-    if (result.slabs != 0)
-        stats["slabs"] = result.slabs;
+    if (result.ranges != 0)
+        stats["slabs"] = result.ranges;
     if (result.changes) {
         Json changes = {{"changed_layers", result.changes->changed_layers}};
         changes.update(changes_json(*result.changes));

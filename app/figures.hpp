@@ -29,7 +29,7 @@ using Figures = std::vector<Figure>;
 
 [[nodiscard]] Figures mesh_figures(const Inspection& found);
 [[nodiscard]] Figures defect_figures(const Inspection& found);
-[[nodiscard]] Figures meeting_figures(const SelfIntersections& found);
+[[nodiscard]] Figures intersection_figures(const SelfIntersections& found);
 [[nodiscard]] Figures layer_figures(std::uint64_t layers, const LayerMeasure& all, double volume_mm3);
 /// Returns the number in all files, usable or not.
 [[nodiscard]] std::uint64_t triangles_read(const FileResult& result);
@@ -43,11 +43,11 @@ using Figures = std::vector<Figure>;
 
 [[nodiscard]] Json point_json(const Point3& p);
 /// Returns the JSON that `tell` makes of the first few locations.
-template <class Places, class Tell>
-[[nodiscard]] Json list_json(const Places& places, const Tell& tell) {
+template <class Places, class Describe>
+[[nodiscard]] Json list_json(const Places& places, const Describe& describe) {
     Json list = Json::array();
     for (std::size_t i = 0; i < places.size() && i < 16; ++i)
-        list.push_back(tell(places[i]));
+        list.push_back(describe(places[i]));
     return list;
 }
 /// Returns [[x, y, z], [x, y, z]].

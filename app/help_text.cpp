@@ -37,10 +37,10 @@ std::string wrapped(std::string_view text, std::size_t indent) {
     return out;
 }
 
-std::string entry(std::string_view head, std::string_view body, std::size_t indent) {
-    if (head.size() + 4 > indent)
-        return fmt::format("  {}\n{}{}\n", head, std::string(indent, ' '), wrapped(body, indent));
-    return fmt::format("  {:<{}}{}\n", head, indent - 2, wrapped(body, indent));
+std::string entry(std::string_view header, std::string_view body, std::size_t indent) {
+    if (header.size() + 4 > indent)
+        return fmt::format("  {}\n{}{}\n", header, std::string(indent, ' '), wrapped(body, indent));
+    return fmt::format("  {:<{}}{}\n", header, indent - 2, wrapped(body, indent));
 }
 
 } // namespace
@@ -53,7 +53,7 @@ std::string synopsis(const Command& command) {
     return text + "[options]";
 }
 
-std::string option_head(const Option& option) {
+std::string option_header(const Option& option) {
     std::string text = option.letter != 0 ? fmt::format("-{}, ", option.letter) : "";
     text.append("--").append(option.name);
     if (option.kind != ValueKind::flag)
@@ -82,7 +82,7 @@ std::string program_help(std::span<const Command> commands) {
             "  lamella slice rook.stl -o rook.cli --layer-height 0.1\n"
             "  lamella verify rook.cli --mesh rook.stl\n"
             "  lamella convert rook.cli rook.svg\n\n"
-            "lamella COMMAND --help tells all about a command, lamella help --man all of it.\n"
+            "lamella COMMAND --help describes a command, lamella help --man all commands.\n"
             "Lengths are millimetres, angles are degrees, - is standard input or output.\n\n"
             "exit codes:\n";
     for (const ExitCode& code : exit_codes())
@@ -106,7 +106,7 @@ std::string command_help(const Command& command) {
     for (const OptionGroup& group : command.groups) {
         text += fmt::format("\n{}:\n", group.title);
         for (const Option& option : group.options)
-            text += entry(option_head(option), option_body(option), indent);
+            text += entry(option_header(option), option_body(option), indent);
     }
     if (!command.examples.empty())
         text += "\nExamples:\n";

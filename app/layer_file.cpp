@@ -31,8 +31,8 @@ Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
 }
 
 /// Reports inverted rings. Steps drop them as non-material, unless a fill rule defines the material.
-void tell_inverted(const LayerSteps& steps, const LayerFile& file, bool strict, Messages& messages,
-                   const Execution& execution, std::uint64_t max_memory) {
+void warn_about_inverted(const LayerSteps& steps, const LayerFile& file, bool strict, Messages& messages,
+                         const Execution& execution, std::uint64_t max_memory) {
     if (steps.fill != FillRule::none)
         return;
     std::vector<LayerStack> contours;
@@ -43,7 +43,7 @@ void tell_inverted(const LayerSteps& steps, const LayerFile& file, bool strict, 
         contours, file.rounding, steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick,
         execution, max_memory);
     if (inverted.rings > 0)
-        tell(file, {inverted.text_of_file(contours.front().size())}, strict, messages);
+        warn_about(file, {inverted.text_of_file(contours.front().size())}, strict, messages);
 }
 
 } // namespace
@@ -61,7 +61,8 @@ LayerFileInfo info_of(const LayerFile& file) {
     return info;
 }
 
-void tell(const LayerFile& file, const std::vector<std::string>& warnings, bool strict, Messages& messages) {
+void warn_about(const LayerFile& file, const std::vector<std::string>& warnings, bool strict,
+                Messages& messages) {
     if (strict && !warnings.empty())
         throw Error(ErrorKind::defect, fmt::format("{}: {}", file.path, warnings.front()));
     for (const std::string& warning : warnings)
@@ -77,7 +78,7 @@ StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Me
                                     "--min-area and --simplify are for contours: take these steps before "
                                     "lamella scan",
                                     file.path, one_line(part.label)));
-    tell_inverted(steps, file, strict, messages, execution, max_memory);
+    warn_about_inverted(steps, file, strict, messages, execution, max_memory);
     std::vector<LayerStack> parts;
     std::vector<std::string> names;
     for (LayerPart& part : file.parts) {
@@ -97,13 +98,13 @@ StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Me
     for (const LayerChanges& plane : changes.planes)
         changes.all += plane;
     if (changes.all.hatches_dropped > 0)
-        tell(file,
-             {fmt::format("{} left out: the contours that they fill were changed",
-                          counted(changes.all.hatches_dropped, "hatch line"))},
-             strict, messages);
+        warn_about(file,
+                   {fmt::format("{} left out: the contours that they fill were changed",
+                                counted(changes.all.hatches_dropped, "hatch line"))},
+                   strict, messages);
     if (const std::string nothing = nothing_left(changes.planes.size(), contours, changes.all);
         !nothing.empty())
-        tell(file, {nothing}, strict, messages);
+        warn_about(file, {nothing}, strict, messages);
     return changes;
 }
 

@@ -19,7 +19,8 @@ namespace lamella::app {
 
 /// Prints the warnings of the file, and its lost content. With `strict`, throws Error{defect} with the first
 /// one.
-void tell(const LayerFile& file, const std::vector<std::string>& warnings, bool strict, Messages& messages);
+void warn_about(const LayerFile& file, const std::vector<std::string>& warnings, bool strict,
+                Messages& messages);
 
 struct StepChanges {
     std::vector<LayerChanges> planes;

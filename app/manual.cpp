@@ -31,8 +31,8 @@ std::string plain(std::string_view text) {
     return out;
 }
 
-std::string tagged(std::string_view head, std::string_view body) {
-    return fmt::format(".TP\n.B {}\n{}\n", plain(head), plain(body));
+std::string tagged(std::string_view header, std::string_view body) {
+    return fmt::format(".TP\n.B {}\n{}\n", plain(header), plain(body));
 }
 
 std::string command_section(const Command& command) {
@@ -46,7 +46,7 @@ std::string command_section(const Command& command) {
     for (const OptionGroup& group : command.groups) {
         text += fmt::format(".PP\n.I {}\n", plain(group.title));
         for (const Option& option : group.options)
-            text += tagged(option_head(option), option_body(option));
+            text += tagged(option_header(option), option_body(option));
     }
     for (const Example& example : command.examples)
         text += fmt::format(".PP\nExample, {}:\n.PP\n.nf\n.RS\n{}\n.RE\n.fi\n", plain(example.effect),
@@ -87,7 +87,7 @@ std::string manual_page(std::span<const Command> commands) {
         ".SH ENVIRONMENT\n" +
         tagged("TMPDIR", "the folder of temporary files, of meshes and outputs that do not fit into memory; "
                          "/var/tmp unless set") +
-        tagged("SOURCE_DATE_EPOCH", "seconds since 1970 that files tell as the time when they were made");
+        tagged("SOURCE_DATE_EPOCH", "seconds since 1970, written into files as the time when they were made");
     return text;
 }
 

@@ -139,8 +139,8 @@ Option byte_limit(std::string name, std::string help, std::optional<std::uint64_
 }
 
 Option unit_option(std::string& target) {
-    Option option = choice("unit", "UNIT", "what a unit of the file is, where the file does not say",
-                           names_of(units), target);
+    Option option =
+        choice("unit", "UNIT", "the unit of the file, if the file does not give it", names_of(units), target);
     option.preset = "mm";
     return option;
 }
@@ -164,7 +164,7 @@ OptionGroup placement_options(PlacementOptions& target) {
     OptionGroup group = pose_options(target);
     group.options.insert(group.options.begin(), unit_option(target.unit));
     group.options.push_back(triple("direction", "X,Y,Z",
-                                   "slice along this direction instead of z: the part is turned so that it "
+                                   "slice along this direction instead of z: the part is rotated so that it "
                                    "points up",
                                    target.direction));
     return group;
@@ -234,7 +234,7 @@ Execution RunOptions::execution(const Context& context) const {
                                 : progress == "json" ? ProgressStyle::json
                                                      : ProgressStyle::none;
     context.messages.set_style(style);
-    tell_crashes(style);
+    report_crashes(style);
     return {.threads = static_cast<unsigned>(threads.value_or(0)),
             .progress = [&messages = context.messages](const Progress& p) { messages.progress(p); },
             .cancel = context.cancel};
@@ -321,7 +321,7 @@ LayerWriteOptions LayerOutputOptions::write_options(const LayerFormat& chosen) c
     options.units_mm = units_mm.value_or(options.units_mm);
     options.short_form = short_form;
     options.most_bytes = max_output.value_or(0);
-    picture.apply(chosen, options);
+    image.apply(chosen, options);
     options.page.viewer = viewer_page();
     options.page.no_viewer = no_viewer();
     return options;
@@ -360,7 +360,7 @@ OptionGroup layer_step_options(LayerStepOptions& target) {
              flag("largest-only", "keep the largest body of each layer, with its holes", target.largest_only),
              row("min-area", ValueKind::number, "MM2", "drop bodies and holes of a smaller area",
                  [&target](const std::string& text) { target.min_area = parse_positive(text); }),
-             length("simplify", "leave out points, contours moving by so much at most", target.simplify)}};
+             length("simplify", "leave out points; contours move by this much at most", target.simplify)}};
 }
 
 std::string changes_text(const LayerSteps& steps, const LayerChanges& changes) {

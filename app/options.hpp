@@ -11,7 +11,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "command.hpp"
-#include "picture_options.hpp"
+#include "image_options.hpp"
 
 #include <array>
 #include <cstdint>
@@ -98,7 +98,7 @@ struct LayerOutputOptions {
     std::optional<double> units_mm = {};
     bool short_form = false;
     std::optional<std::uint64_t> max_output = {}; ///< bytes
-    PictureArguments picture = {};
+    ImageArguments image = {};
 
     /// Throws Error{usage} if options do not apply to the format.
     [[nodiscard]] LayerWriteOptions write_options(const LayerFormat& chosen) const;

@@ -87,9 +87,9 @@ PageNotes mesh_notes(const MeshFile& file, const Diagnosis& found) {
         // the defects below.
         if (found.counts.sound() && met->crossing + met->overlapping > 0)
             mesh.facts.front() = {"Surface", "closed, but triangles cross or overlap", Tone::warning};
-        add(mesh, as_facts(picked(meeting_figures(*met), {"crossing", "overlapping"})));
+        add(mesh, as_facts(picked(intersection_figures(*met), {"crossing", "overlapping"})));
     }
-    return {.sections = {std::move(mesh), std::move(section)}, .places = places_of(found)};
+    return {.sections = {std::move(mesh), std::move(section)}, .locations = places_of(found)};
 }
 
 PageNotes file_notes(const LayerFile& file) {
@@ -99,7 +99,7 @@ PageNotes file_notes(const LayerFile& file) {
             {"Its coordinates are rounded to", fmt::format("{} mm", brief(file.rounding.step_mm))});
     for (const std::string& warning : file.warnings)
         section.facts.push_back({"Remark", warning, Tone::warning});
-    return {.sections = {section}, .places = {}};
+    return {.sections = {section}, .locations = {}};
 }
 
 } // namespace lamella::app

@@ -17,7 +17,7 @@
 namespace lamella::app {
 
 /// Upper bound on the marked locations of each kind of defect.
-inline constexpr std::size_t page_places = 500;
+inline constexpr std::size_t page_locations = 500;
 
 /// Returns the title of the page of a file: its name without its folder.
 [[nodiscard]] std::string title_of(const std::string& path);

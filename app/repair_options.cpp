@@ -39,10 +39,10 @@ std::string repairs_text(const MeshRepairs& repairs) {
                             grouped(dropped->opposite_triangles));
     if (const auto& oriented = repairs.oriented)
         text += fmt::format(
-            "oriented {} turned; {} of {} outward, {} inward as voids\n",
-            counted(oriented->turned_triangles, "triangle"), grouped(oriented->turned_outward),
+            "oriented {} flipped; {} of {} outward, {} inward as voids\n",
+            counted(oriented->flipped_triangles, "triangle"), grouped(oriented->flipped_outward),
             fmt::format("{} {}", grouped(oriented->patches), oriented->patches == 1 ? "patch" : "patches"),
-            grouped(oriented->turned_inward));
+            grouped(oriented->flipped_inward));
     return text;
 }
 
@@ -77,18 +77,18 @@ Json repairs_json(const MeshRepairs& repairs) {
                                   {"collapsed_triangles", welded->collapsed_triangles},
                                   {"pairs_apart", welded->pairs_apart},
                                   {"longest_move_mm", welded->longest_move_mm},
-                                  {"places", list_json(welded->places, point_json)}};
+                                  {"places", list_json(welded->locations, point_json)}};
     if (const auto& dropped = repairs.dropped)
         json["drop_duplicates"] = {{"repeated_triangles", dropped->repeated_triangles},
                                    {"opposite_triangles", dropped->opposite_triangles},
-                                   {"places", list_json(dropped->places, point_json)}};
+                                   {"places", list_json(dropped->locations, point_json)}};
     if (const auto& oriented = repairs.oriented)
-        json["orient"] = {{"turned_triangles", oriented->turned_triangles},
+        json["orient"] = {{"flipped_triangles", oriented->flipped_triangles},
                           {"patches", oriented->patches},
-                          {"turned_outward", oriented->turned_outward},
-                          {"turned_inward", oriented->turned_inward},
-                          {"one_sided_patches", oriented->one_sided_patches},
-                          {"places", list_json(oriented->places, point_json)}};
+                          {"flipped_outward", oriented->flipped_outward},
+                          {"flipped_inward", oriented->flipped_inward},
+                          {"non_orientable_patches", oriented->non_orientable_patches},
+                          {"places", list_json(oriented->locations, point_json)}};
     return json;
 }
 

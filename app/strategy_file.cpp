@@ -65,7 +65,7 @@ std::string found_text(const TomlValue& value) {
 }
 
 [[noreturn]] void refuse_value(const TomlValue& value, const std::string& name, const std::string& expected) {
-    refuse_toml(value.place, fmt::format("{} is {}, but has to be {}", name, found_text(value), expected));
+    refuse_toml(value.location, fmt::format("{} is {}, but has to be {}", name, found_text(value), expected));
 }
 
 std::string meant(std::string_view word, const std::vector<std::string>& candidates) {
@@ -176,7 +176,7 @@ class StrategyReading {
 
     /// Location of a value in the file, and its name there.
     struct Origin {
-        std::string place;
+        std::string location;
         std::string name;
     };
     struct Set {
@@ -199,7 +199,7 @@ class StrategyReading {
             };
             const auto other =
                 std::find_if(others.begin(), others.end(), [&](const auto& one) { return one.first == key; });
-            origins_[name] = {value.place, name};
+            origins_[name] = {value.location, name};
             if (const auto field = std::find_if(fields.begin(), fields.end(), is_it); field != fields.end())
                 std::visit([&](const auto member) { take(value, name, rule.*member); }, field->member);
             else if (other != others.end())
@@ -219,7 +219,7 @@ class StrategyReading {
         for (const auto& [name, read] : others)
             known.push_back(name);
         refuse_toml(
-            value.place,
+            value.location,
             fmt::format("{} has no \"{}\"{}",
                         path.empty() ? "a strategy" : fmt::format("[{}]", path.substr(0, path.size() - 1)),
                         excerpt(key), meant(key, known)));
@@ -272,7 +272,7 @@ class StrategyReading {
         for (const auto& [name, inner] : table_of(value, std::string(parameters_key))) {
             const std::string path = fmt::format("{}.{}", parameters_key, name);
             Set& set = sets_.try_emplace(name, named(name)).first->second;
-            set.origin = {inner.place, path};
+            set.origin = {inner.location, path};
             read_fields(path + ".", table_of(inner, path), set.parameters, parameter_fields(), {});
             for (const auto& [key, unused] : *inner.as<TomlTable>())
                 set.fields[key] = origins_[fmt::format("{}.{}", path, key)];
@@ -300,7 +300,7 @@ class StrategyReading {
             for (const auto& [name, set] : sets_)
                 names.push_back(name);
             const std::string key = fmt::format("{}.{}", rule, parameters_key);
-            refuse_toml(origins_.at(key).place,
+            refuse_toml(origins_.at(key).location,
                         fmt::format("{} is \"{}\", but there is no [{}.{}]{}", key, excerpt(parameters.name),
                                     parameters_key, excerpt(parameters.name), meant(parameters.name, names)));
         }
@@ -318,9 +318,9 @@ class StrategyReading {
             if (set.used)
                 used.push_back(name);
         for (const auto& [name, set] : sets_)
-            if (!set.used && !set.origin.place.empty())
-                refuse_toml(set.origin.place, fmt::format("[{}] is used nowhere{}", excerpt(set.origin.name),
-                                                          meant(name, used)));
+            if (!set.used && !set.origin.location.empty())
+                refuse_toml(set.origin.location, fmt::format("[{}] is used nowhere{}",
+                                                             excerpt(set.origin.name), meant(name, used)));
     }
 
     /// Adds the location to the library's error, which names the field; else the location of its table.
@@ -339,7 +339,7 @@ class StrategyReading {
                 field = found->second.name;
             text = field + text.substr(text.find('`', 1) + 1);
             std::erase(text, '`');
-            refuse_toml(found->second.place, text);
+            refuse_toml(found->second.location, text);
         }
     }
 
@@ -465,7 +465,7 @@ ScanStrategy read_strategy(const std::string& path) {
 
 std::string strategy_text(const ScanStrategy& strategy) {
     std::string text =
-        "# A strategy for --strategy of lamella slice and lamella scan. What a file does not say is "
+        "# A strategy for --strategy of lamella slice and lamella scan. A value that is left out is "
         "as by default.\n\n";
     text += rule_text(strategy, strategy_fields());
     text += fmt::format("\n# Lines along the outline of the part.\n[contours]\n{}",

@@ -100,8 +100,8 @@ std::string toml_quoted(const std::string& text) {
     return escaped;
 }
 
-void refuse_toml(const std::string& place, std::string_view text) {
-    throw Error(ErrorKind::usage, fmt::format("{}: {}", place, text));
+void refuse_toml(const std::string& location, std::string_view text) {
+    throw Error(ErrorKind::usage, fmt::format("{}: {}", location, text));
 }
 
 } // namespace lamella::app

@@ -17,7 +17,7 @@ using TomlTable = std::vector<TomlEntry>;
 using TomlList = std::vector<TomlValue>;
 
 struct TomlValue {
-    std::string place; ///< file and line of its key, or in a list of the value itself: "job.toml:3"
+    std::string location; ///< file and line of its key, or in a list of the value itself: "job.toml:3"
     /// Empty for dates and times.
     std::variant<std::monostate, std::string, bool, std::int64_t, double, TomlList, TomlTable> value;
 
@@ -40,6 +40,6 @@ struct TomlEntry {
 [[nodiscard]] std::string toml_quoted(const std::string& text);
 
 /// Throws Error{usage}: "job.toml:3: ...".
-[[noreturn]] void refuse_toml(const std::string& place, std::string_view text);
+[[noreturn]] void refuse_toml(const std::string& location, std::string_view text);
 
 } // namespace lamella::app

@@ -144,7 +144,7 @@ void WorkerTeam::serve(int socket) const {
     return_freed_memory();
     Messages messages;
     messages.set_style(ProgressStyle::silent);
-    tell_crashes(ProgressStyle::silent);
+    report_crashes(ProgressStyle::silent);
     std::optional<Interrupt> interrupt;
     try {
         interrupt.emplace(messages, stop_signals());

@@ -15,10 +15,10 @@
 namespace lamella::app {
 namespace {
 
-void append(std::vector<double>& z, double value, const std::string& place) {
+void append(std::vector<double>& z, double value, const std::string& location) {
     if (!z.empty() && !(value > z.back()))
         throw Error(ErrorKind::usage,
-                    fmt::format("{}: {} is not above the height before it, {}; heights must ascend", place,
+                    fmt::format("{}: {} is not above the height before it, {}; heights must ascend", location,
                                 value, z.back()));
     z.push_back(value);
 }
@@ -50,14 +50,14 @@ std::vector<double> from_lines(const std::string& name, std::string_view content
             text.remove_suffix(1);
         if (text.empty())
             continue;
-        const std::string place = fmt::format("{}:{}", name, line);
+        const std::string location = fmt::format("{}:{}", name, line);
         double value = 0;
         try {
             value = parse_number(text);
         } catch (const Error& error) {
-            throw Error(error.kind(), fmt::format("{}: {}", place, error.what()));
+            throw Error(error.kind(), fmt::format("{}: {}", location, error.what()));
         }
-        append(z, value, place);
+        append(z, value, location);
     }
     return z;
 }

@@ -82,7 +82,7 @@ Measured<Result> measure_in_child(const Body& body) {
 /// Columns of text, right-aligned except the first.
 class Table {
   public:
-    explicit Table(std::vector<std::string> head) : rows_{std::move(head)} {}
+    explicit Table(std::vector<std::string> header) : rows_{std::move(header)} {}
     void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
     [[nodiscard]] std::string text() const;
 

@@ -160,15 +160,15 @@ bool add_offset(Table& table, const Part& part, double distance, int rounds) {
     return right;
 }
 
-struct Meetings {
+struct Intersections {
     double weld = 0;
     double find = 0;
     std::uint64_t pairs = 0;
 };
 
-Meetings self_intersections(const Part& part, const Execution& execution) {
+Intersections self_intersections(const Part& part, const Execution& execution) {
     const OpenedPart opened = open_part(part, execution);
-    Meetings result;
+    Intersections result;
     const auto welding = Clock::now();
     const IndexedMesh mesh = weld(opened.mesh, execution);
     result.weld = seconds_since(welding);
@@ -230,18 +230,18 @@ int report(int argc, char** argv) {
             all_right = add_offset(moved, part, distance, rounds) && all_right;
     std::cout << moved.text() << '\n';
 
-    Table meetings({"part", "weld s", "self-intersections s", "to weld", "pairs"});
+    Table intersections({"part", "weld s", "self-intersections s", "to weld", "pairs"});
     for (const Part& part : parts) {
-        const Meetings found =
-            measure_in_child<Meetings>([&] { return self_intersections(part, execution); }).result;
-        const Meetings alone =
-            measure_in_child<Meetings>([&] { return self_intersections(part, {.threads = 1}); }).result;
+        const Intersections found =
+            measure_in_child<Intersections>([&] { return self_intersections(part, execution); }).result;
+        const Intersections alone =
+            measure_in_child<Intersections>([&] { return self_intersections(part, {.threads = 1}); }).result;
         all_right = all_right && alone.pairs == found.pairs;
-        meetings.add({part.name, fmt::format("{:.3f}", found.weld), fmt::format("{:.3f}", found.find),
-                      fmt::format("{:.1f}", found.find / found.weld),
-                      alone.pairs == found.pairs ? fmt::to_string(found.pairs) : "WRONG"});
+        intersections.add({part.name, fmt::format("{:.3f}", found.weld), fmt::format("{:.3f}", found.find),
+                           fmt::format("{:.1f}", found.find / found.weld),
+                           alone.pairs == found.pairs ? fmt::to_string(found.pairs) : "WRONG"});
     }
-    std::cout << meetings.text();
+    std::cout << intersections.text();
     return all_right ? 0 : 1;
 }
 

@@ -28,7 +28,7 @@ double pixel_mm(const Box3& box) {
     return std::max((box.max.x - box.min.x) / width, (box.max.y - box.min.y) / height);
 }
 
-PictureOptions pictures(const Box3& box, unsigned antialias) {
+ImageOptions images(const Box3& box, unsigned antialias) {
     const double mm = pixel_mm(box);
     return {.pixel_mm = {{mm, mm}},
             .pixels = {{width, height}},
@@ -40,7 +40,7 @@ std::unique_ptr<LayerWriter> open_job(const OpenedPart& opened, const std::strin
     return open_layer_writer(
         path, layer_format("sl1s", ""),
         {.box = opened.box, .layers = opened.plan.layers.size(), .bottom = opened.plan.layers.front().bottom},
-        {.picture = pictures(opened.box, antialias)});
+        {.image = images(opened.box, antialias)});
 }
 
 /// Slices the STL file into a job, on all threads.
@@ -70,7 +70,7 @@ RasterOptions raster_options(const Layer& layer, unsigned antialias) {
 struct Steps {
     Cost slicing;
     Cost raster;
-    Cost pictures; ///< the raster, the image files in memory, and the updates of the thumbnails
+    Cost images; ///< the raster, the image files in memory, and the updates of the thumbnails
 };
 
 Steps steps_of(const Part& part, const std::string& path, unsigned antialias) {
@@ -88,7 +88,7 @@ Steps steps_of(const Part& part, const std::string& path, unsigned antialias) {
             rasterise({&layer, 1}, grid, raster_options(layer, antialias), [](auto, auto) {});
     });
     const auto writer = open_job(opened, path, antialias);
-    steps.pictures = cost_of([&] {
+    steps.images = cost_of([&] {
         for (const Layer& layer : layers)
             static_cast<void>(writer->prepare(layer)); // makes the image; the function returned would write
                                                        // it
@@ -131,12 +131,12 @@ bool right(const Part& part, unsigned antialias) {
 }
 
 struct Costs {
-    std::vector<Cost> slicing, raster, pictures, job, touching;
+    std::vector<Cost> slicing, raster, images, job, touching;
 
     void add(const Steps& steps) {
         slicing.push_back(steps.slicing);
         raster.push_back(steps.raster);
-        pictures.push_back(steps.pictures);
+        images.push_back(steps.images);
     }
 };
 
@@ -179,7 +179,7 @@ int report(int argc, char** argv) {
             table.add({"antialias " + level, fmt::to_string(layers),
                        fmt::format("{:.1f}", static_cast<double>(std::filesystem::file_size(path)) / 1e6),
                        seconds(least(costs.slicing).cpu_s), seconds(raster),
-                       seconds(least(costs.pictures).cpu_s - raster), seconds(least(costs.job).cpu_s),
+                       seconds(least(costs.images).cpu_s - raster), seconds(least(costs.job).cpu_s),
                        seconds(least(costs.job).wall_s), seconds(least(costs.touching).cpu_s),
                        is_right ? "yes" : "WRONG"});
             std::filesystem::remove(path);

@@ -152,7 +152,7 @@ Job whole_job(const Part& part, const ScanStrategy& strategy) {
     for (std::size_t i = 1; i < layers.size(); ++i)
         layers[i].share_points(layers[i - 1]);
     const std::vector<ScanLayer> reversed(layers.rbegin(), layers.rend());
-    ScanMemory memory;
+    InsetCache memory;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const std::size_t below = std::min<std::size_t>(i, strategy.downskin.layers);
         const std::size_t above = std::min<std::size_t>(layers.size() - 1 - i, strategy.upskin.layers);

@@ -75,13 +75,13 @@ Faces unit_dodecahedron() {
 struct Dodecahedron {
     Point3 centre;
     double size = 1;    ///< half the edge of the cube whose corners are among its corners
-    double turned = 0;  ///< rotation about the z axis, in degrees
+    double rotated = 0; ///< rotation about the z axis, in degrees
     double tilted = 0;  ///< then rotation about the x axis
     bool frame = false; ///< has windows and a hollow, otherwise solid
 };
 
 Point3 placed(const Point3& p, const Dodecahedron& body, double share) {
-    const CosSin turn = cos_sin_degrees(body.turned);
+    const CosSin turn = cos_sin_degrees(body.rotated);
     const CosSin tilt = cos_sin_degrees(body.tilted);
     const double x = p.x * turn.cos - p.y * turn.sin;
     const double y = p.x * turn.sin + p.y * turn.cos;

@@ -204,11 +204,11 @@ class SoleMaker {
         if (r < thinnest)
             return false;
         const std::vector<Point2> foot = end(Face::lower_inside, lower, row, r);
-        const std::vector<Point2> head = end(Face::upper_inside, upper, row, r);
+        const std::vector<Point2> header = end(Face::upper_inside, upper, row, r);
         for (unsigned k = 0; k < strut_corners; ++k) {
             const unsigned next = (k + 1) % strut_corners;
             quad(on(Face::lower_inside, foot[k]), on(Face::lower_inside, foot[next]),
-                 on(Face::upper_inside, head[next]), on(Face::upper_inside, head[k]));
+                 on(Face::upper_inside, header[next]), on(Face::upper_inside, header[k]));
         }
         return true;
     }

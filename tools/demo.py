@@ -26,11 +26,11 @@ def main(program, folder):
         report(title, json.loads(stats.read_text(encoding="utf-8")),
                *(json.loads(run(program, "verify", file, "--mesh", mesh, "--json")) for file in (cli, svg)))
 
-    picture = folder / "rook_layers.svg"
-    run(sys.executable, Path(__file__).with_name("draw_layers.py"), folder / "rook.svg", picture)
+    image = folder / "rook_layers.svg"
+    run(sys.executable, Path(__file__).with_name("draw_layers.py"), folder / "rook.svg", image)
     if shutil.which("rsvg-convert"):
-        run("rsvg-convert", "--zoom", "2", "--output", picture.with_suffix(".png"), picture)
-        picture = picture.with_suffix(".png")
+        run("rsvg-convert", "--zoom", "2", "--output", image.with_suffix(".png"), image)
+        image = image.with_suffix(".png")
     print(f"The slice files are in {folder}/; for a picture open {picture}.")
     page = folder / "rook.html"
     if view(program, folder / "rook.stl", page):

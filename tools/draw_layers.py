@@ -118,9 +118,9 @@ def main(arguments):
     tops, layers = read_layers(arguments[1])
     if len(layers) < 2:
         sys.exit(f"draw_layers: {arguments[1]} has fewer than two layers with a ring in them")
-    picture = draw(tops, layers, float(arguments[3]) if len(arguments) == 4 else 0.93)
+    image = draw(tops, layers, float(arguments[3]) if len(arguments) == 4 else 0.93)
     with open(arguments[2], "w", encoding="utf-8") as file:
-        file.write(picture)
+        file.write(image)
 
 
 if __name__ == "__main__":

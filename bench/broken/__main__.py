@@ -39,11 +39,11 @@ def main(arguments):
               if options.cases is None or case.name in options.cases]
     for case in chosen:
         found.append(study.case(case))
-        tell(found[-1])
+        announce(found[-1])
         write()
     for mesh in meshes_of(options.folder, options.lamella):
         public.append(study.mesh(mesh))
-        tell(public[-1])
+        announce(public[-1])
         write()
     print(f"The report is in {folder}/broken.html")
 
@@ -69,7 +69,7 @@ def find(chosen):
             [rival.title for rival, version in versions if version is None])
 
 
-def tell(finding):
+def announce(finding):
     for view, off in finding.rows:
         said = view.ended if off is None else f"{100 * off.share:.3f}% off"
         print(f"{finding.name}: {view.title}: {said}", flush=True)

@@ -3,7 +3,7 @@
 import dataclasses
 import re
 
-from bench.broken.picture import picture
+from bench.broken.image import image
 from bench.harness.page import Chart, Page, Table
 
 
@@ -61,14 +61,14 @@ def show(page, finding, words):
         if view.last_words:
             page.say(f"{view.title} says: {view.last_words}")
     if finding.expected:
-        page.show(Chart(picture_name(finding), f"{finding.title}, one layer", layer_picture(finding)))
+        page.show(Chart(image_name(finding), f"{finding.title}, one layer", layer_image(finding)))
 
 
-def picture_name(finding):
+def image_name(finding):
     return "broken-" + re.sub(r"[^A-Za-z0-9.]+", "-", finding.name)
 
 
-def layer_picture(finding):
+def layer_image(finding):
     z = finding.z
     expected = next((layer.area_mm2 for layer in finding.expected if abs(layer.z - z) < 1e-3), 0.0)
     panels = []
@@ -76,7 +76,7 @@ def layer_picture(finding):
         area = next((layer.area_mm2 for layer in view.layers if abs(layer.z - z) < 1e-3), 0.0)
         open_chains = f", {len(drawn.chains)} open" if drawn is not None and drawn.chains else ""
         panels.append((view.title, drawn, f"{area:.1f} mm²{open_chains}" if view.ok else view.ended))
-    return picture(f"{finding.title}: the layer at z = {z:g}, {expected:.1f} mm² in truth", panels, finding.bounds)
+    return image(f"{finding.title}: the layer at z = {z:g}, {expected:.1f} mm² in truth", panels, finding.bounds)
 
 
 def percent(off):

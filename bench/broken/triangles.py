@@ -14,8 +14,8 @@ def read_stl(path):
 
 
 def write_stl(path, triangles):
-    head = b"binary STL".ljust(80) + struct.pack("<I", len(triangles))
-    Path(path).write_bytes(head + b"".join(RECORD.pack(0, 0, 0, *a, *b, *c, 0) for a, b, c in triangles))
+    header = b"binary STL".ljust(80) + struct.pack("<I", len(triangles))
+    Path(path).write_bytes(header + b"".join(RECORD.pack(0, 0, 0, *a, *b, *c, 0) for a, b, c in triangles))
 
 
 def single(corner):

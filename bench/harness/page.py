@@ -20,12 +20,12 @@ class Paragraph:
 
 @dataclass
 class Table:
-    head: list
+    header: list
     rows: list = field(default_factory=list)
     texts: int = 1  # number of columns from the left that contain text; the others contain numbers
 
     def add(self, *cells):
-        if len(cells) != len(self.head):
+        if len(cells) != len(self.header):
             raise ValueError(f"{len(cells)} cells in a table of {len(self.head)} columns")
         self.rows.append([str(cell) for cell in cells])
 
@@ -89,8 +89,8 @@ class Page:
 
 
 def markdown_table(table):
-    cells = [[cell.replace("|", "\\|") for cell in row] for row in [table.head, *table.rows]]
-    widths = [max(len(row[c]) for row in cells) for c in range(len(table.head))]
+    cells = [[cell.replace("|", "\\|") for cell in row] for row in [table.header, *table.rows]]
+    widths = [max(len(row[c]) for row in cells) for c in range(len(table.header))]
     lines = []
     for r, row in enumerate(cells):
         aligned = [cell.ljust(width) if c < table.texts else cell.rjust(width)
@@ -106,7 +106,7 @@ def html_table(table):
     def line(row, tag):
         return "<tr>" + "".join(f'<{tag} class="{"text" if c < table.texts else "number"}">{inline(cell)}</{tag}>'
                                 for c, cell in enumerate(row)) + "</tr>"
-    return ('<div class="wide"><table>\n<thead>' + line(table.head, "th") + "</thead>\n<tbody>"
+    return ('<div class="wide"><table>\n<thead>' + line(table.header, "th") + "</thead>\n<tbody>"
             + "\n".join(line(row, "td") for row in table.rows) + "</tbody>\n</table></div>")
 
 

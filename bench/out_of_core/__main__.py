@@ -86,16 +86,16 @@ class Bench:
         self.slice(mesh)  # fills the cache
         for _ in range(self.options.rounds):
             whole = self.slice(mesh)
-            slabs = self.slice(mesh, self.options.fitting_memory)
-            if whole["slabs"] != 0 or slabs["slabs"] < 2:
+            ranges = self.slice(mesh, self.options.fitting_memory)
+            if whole["slabs"] != 0 or ranges["slabs"] < 2:
                 raise SystemExit("the one that should fit does not, or the one that should not does")
-            if whole["layers"] != slabs["layers"]:
+            if whole["layers"] != ranges["layers"]:
                 raise SystemExit("the layers differ")
             times["whole"].append(whole["seconds"])
-            times["slabs"].append(slabs["seconds"])
+            times["slabs"].append(ranges["seconds"])
         seconds = {name: statistics.median(all_) for name, all_ in times.items()}
-        told = {"seconds": seconds, "ratio": seconds["slabs"] / seconds["whole"], "slabs": slabs["slabs"],
-                "peak_rss_bytes": {"whole": whole["peak_rss_bytes"], "slabs": slabs["peak_rss_bytes"]}}
+        told = {"seconds": seconds, "ratio": seconds["slabs"] / seconds["whole"], "slabs": ranges["slabs"],
+                "peak_rss_bytes": {"whole": whole["peak_rss_bytes"], "slabs": ranges["peak_rss_bytes"]}}
         print(f"whole: {seconds['whole']:.2f} s, {whole['peak_rss_bytes'] / 1e6:.0f} MB; with "
               f"{self.options.fitting_memory} in {slabs['slabs']} slabs: {seconds['slabs']:.2f} s, "
               f"{slabs['peak_rss_bytes'] / 1e6:.0f} MB: {told['ratio']:.2f} times the time", flush=True)

@@ -12,9 +12,9 @@ from pathlib import Path
 
 from bench.harness import machine, parts
 from bench.paper import growth as growths
-from bench.paper import pictures, report
+from bench.paper import images, report
 from bench.paper.cell import ENGINES, Laboratory
-from bench.rivals.__main__ import tell as tell_rival
+from bench.rivals.__main__ import announce as announce_rival
 from bench.rivals.compare import Comparison
 from bench.rivals.cura import CURA
 from bench.rivals.prusa_slicer import PRUSA_SLICER
@@ -33,7 +33,7 @@ class Measured:
     split_cells: list = field(default_factory=list)  # sheets split as a whole, for the engines that this slows down
     rival_cells: list = field(default_factory=list)
     rival_titles: dict = field(default_factory=dict)
-    pictures: dict = field(default_factory=dict)  # part name -> SVG
+    images: dict = field(default_factory=dict)  # part name -> SVG
     false_match: str = ""
     growth: growths.Growth = field(default_factory=growths.Growth)
 
@@ -59,10 +59,10 @@ def main(arguments):
         text = json.dumps(report.as_json(measured, here, options.timeout), indent=1)
         (folder / "paper.json").write_text(text + "\n", encoding="utf-8")
 
-    measured.false_match = pictures.of_false_match(options.lamella, work)
-    measured.pictures = {part.name: pictures.of_part(part, options.lamella, work, parts_folder)
-                         for part in chosen if part.name in pictures.VIEWS}
-    measured.growth = growths.measure(options.lamella, work, parts_folder, options.timeout, small=tiny, tell=tell_growth)
+    measured.false_match = images.of_false_match(options.lamella, work)
+    measured.images = {part.name: images.of_part(part, options.lamella, work, parts_folder)
+                         for part in chosen if part.name in images.VIEWS}
+    measured.growth = growths.measure(options.lamella, work, parts_folder, options.timeout, small=tiny, announce=announce_growth)
 
     def new_laboratory():
         return Laboratory(options.lamella, work, parts_folder, options.timeout, most_runs=2 if tiny else 5)
@@ -71,14 +71,14 @@ def main(arguments):
     sheets = {order: parts.sheet(4 if tiny else 100, order, 32 if tiny else None) for order in ("wall", "hole", "split", "shuffle")}
     measured.order_parts = {order: part.name for order, part in sheets.items()}
     for part in sheets.values():
-        measured.order_cells += new_laboratory().cells(part, ENGINES, tell)
+        measured.order_cells += new_laboratory().cells(part, ENGINES, announce)
     for part in chosen:
-        measured.cells += laboratory.cells(part, ENGINES, tell)
+        measured.cells += laboratory.cells(part, ENGINES, announce)
         write()  # an interrupted run leaves its results so far
     splitting = new_laboratory()
     for part in chosen:
         if part.family == "sheet" and "edge" not in part.name and part.name in figures["table5_seconds"]:
-            measured.split_cells += splitting.cells(parts.sheet(part.make[2], "split"), ["ecc-edge-match", "eecc"], tell)
+            measured.split_cells += splitting.cells(parts.sheet(part.make[2], "split"), ["ecc-edge-match", "eecc"], announce)
             write()
     measure_rivals(measured, figures, folder, options)
     write()
@@ -93,7 +93,7 @@ def measure_rivals(measured, figures, folder, options):
     comparison = Comparison(options.lamella, folder, options.rival_timeout, len(os.sched_getaffinity(0)))
     for part in measured.parts:
         if present and part.name in figures["table6_seconds"]:
-            measured.rival_cells += comparison.run(part, present, tell_rival)
+            measured.rival_cells += comparison.run(part, present, announce_rival)
 
 
 def parse(arguments):
@@ -109,12 +109,12 @@ def parse(arguments):
     return parser.parse_args(arguments)
 
 
-def tell(cell):
+def announce(cell):
     taken = f" {cell.seconds:.4f} s" if cell.ok else (f", estimated {cell.estimate:.0f} s" if cell.estimate else "")
     print(f"{cell.part}: {cell.engine}: {cell.ended}{taken}", flush=True)
 
 
-def tell_growth(sample):
+def announce_growth(sample):
     print(f"growth: {sample.engine}, {sample.order}, k {sample.k:.0f}, m {sample.m}: {sample.searches} searches, "
           f"{sample.comparisons} comparisons", flush=True)
 

@@ -58,7 +58,7 @@ class Laboratory:
     repeat_below: float = 1.0
     latest: dict = field(default_factory=dict)  # (engine, family) -> the cell of the next smaller part
 
-    def cells(self, part, engines, tell=lambda cell: None):
+    def cells(self, part, engines, announce=lambda cell: None):
         mesh = parts.make(part, self.program, self.parts_folder)
         mesh.read_bytes()  # all engines then read from the cache
         reference = self.slice(part, mesh, REFERENCE)[-1]
@@ -67,7 +67,7 @@ class Laboratory:
         found = []
         for engine in engines:
             found.append(self.cell(part, mesh, engine, reference))
-            tell(found[-1])
+            announce(found[-1])
         return found
 
     def cell(self, part, mesh, engine, reference):

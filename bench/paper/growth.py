@@ -37,7 +37,7 @@ class Growth:
     of_memory: list = field(default_factory=list)
 
 
-def measure(program, folder, parts_folder, timeout, small=False, tell=lambda sample: None):
+def measure(program, folder, parts_folder, timeout, small=False, announce=lambda sample: None):
     """Measures all sheets; `small` is for tests of the report."""
     holes = [4, 16] if small else [4, 16, 36, 64, 100, 196]
     planes = [2, 6] if small else [1, 3, 10, 30, 100]
@@ -49,7 +49,7 @@ def measure(program, folder, parts_folder, timeout, small=False, tell=lambda sam
             sample = count(program, folder, parts_folder, timeout, part, engine, m)
             if sample:
                 into.append(sample)
-                tell(sample)
+                announce(sample)
 
     for order in ("split", "hole", "wall", "shuffle"):
         for h in holes:

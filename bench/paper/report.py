@@ -6,7 +6,7 @@ from bench.harness import chart
 from bench.harness.page import Chart, Page, Table, brief
 from bench.paper import fit, growth, tables
 from bench.paper.cell import ENGINES
-from bench.paper.pictures import VIEWS
+from bench.paper.images import VIEWS
 from bench.paper.tables import ENGINE_TITLES
 
 
@@ -30,8 +30,8 @@ def build_page(measured, figures, machine, timeout):
              "the same kind, size and number of triangles. Each image shows the stack of layers up to one layer, and "
              "that layer from above.")
     for part in measured.parts:
-        if part.name in measured.pictures:
-            page.show(Chart(f"part-{part.name}", f"{part.title}, as in {VIEWS[part.name].figures}", measured.pictures[part.name]))
+        if part.name in measured.images:
+            page.show(Chart(f"part-{part.name}", f"{part.title}, as in {VIEWS[part.name].figures}", measured.images[part.name]))
     page.heading("Fig. 2: a false match")
     page.say("Two boxes touch along an edge, which every plane cuts in one point. The conventional method looks for an "
              "end with the same coordinates and takes the first that it finds, here one of the other box. ECC, EECC "

@@ -37,9 +37,9 @@ def make(lamella, body, folder):
     vertices, triangles = read_ply(folder / "solid.ply")
     points = [f"{x:.6f} {y:.6f} {z:.6f}\n" for x, y, z in vertices]
     faces = [f"3 {a} {b} {c}\n" for a, b, c in triangles]
-    head = (f"ply\nformat ascii 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\n"
+    header = (f"ply\nformat ascii 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\n"
             f"property float z\nelement face {len(faces)}\nproperty list uchar int vertex_indices\nend_header\n")
-    write(folder / "solid-ascii.ply", [head], points, faces)
+    write(folder / "solid-ascii.ply", [header], points, faces)
     write(folder / "solid.off", [f"OFF\n{len(points)} {len(faces)} 0\n"], points, faces)
     write(folder / "solid.obj", ["o solid\n"], [f"v {point}" for point in points],
           [f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in triangles])
@@ -85,9 +85,9 @@ def read_ply(path):
     """Reads vertices and triangles of a binary PLY file as the program writes it in single precision."""
     data = path.read_bytes()
     end = data.index(b"end_header\n") + len(b"end_header\n")
-    head = data[:end].decode("ascii").splitlines()
-    counts = [int(line.split()[2]) for line in head if line.startswith("element ")]
-    if "property float x" not in head:
+    header = data[:end].decode("ascii").splitlines()
+    counts = [int(line.split()[2]) for line in header if line.startswith("element ")]
+    if "property float x" not in header:
         raise SystemExit(f"{path}: expected single precision")
     vertex, face = struct.Struct("<3f"), struct.Struct("<B3I")
     faces_at = end + counts[0] * vertex.size

@@ -26,20 +26,20 @@ class Reader:
     told: Callable[[str, float], tuple]  # returns seconds and triangles from the output and the time of the process
 
 
-def told_by_us(text, _):
+def reported_by_us(text, _):
     """Reads the last line, which is JSON of our readers."""
     told = json.loads(text.strip().splitlines()[-1])
     return told["seconds"], told["triangles"]
 
 
-def told_by_admesh(text, seconds):
+def reported_by_admesh(text, seconds):
     """Reads the number in its table. The time is that of the whole process, which does little else."""
     return seconds, int(re.search(r"Number of facets\s*:\s*(\d+)", text).group(1))
 
 
 def python_reader(library, formats):
     command = (PYTHON, "-B", PYTHON_READER, library)
-    return Reader(library, library, formats, command, lambda: answer([*command, "--version"]), told_by_us)
+    return Reader(library, library, formats, command, lambda: answer([*command, "--version"]), reported_by_us)
 
 
 def readers(folder, lamella):
@@ -47,13 +47,13 @@ def readers(folder, lamella):
     folder = Path(folder)
     return [
         Reader("lamella", "Lamella", ALL, (folder / "lamella_reader",),
-               lambda: version([lamella, "--version"], r"(\d[\w.]*)"), told_by_us),
+               lambda: version([lamella, "--version"], r"(\d[\w.]*)"), reported_by_us),
         Reader("assimp", "assimp", ALL, (folder / "assimp_reader",),
-               lambda: answer([folder / "assimp_reader", "--version"]), told_by_us),
+               lambda: answer([folder / "assimp_reader", "--version"]), reported_by_us),
         Reader("lib3mf", "lib3mf", ("3mf",), (folder / "lib3mf_reader",),
-               lambda: answer([folder / "lib3mf_reader", "--version"]), told_by_us),
+               lambda: answer([folder / "lib3mf_reader", "--version"]), reported_by_us),
         Reader("admesh", "ADMesh", ("stl", "stl-ascii"), ("admesh", "--no-check"),
-               lambda: version(["admesh", "--version"], r"(\d[\d.]*\d)"), told_by_admesh),
+               lambda: version(["admesh", "--version"], r"(\d[\d.]*\d)"), reported_by_admesh),
         python_reader("numpy-stl", ("stl", "stl-ascii")),
         python_reader("meshio", PLAIN),
         python_reader("vtk", ("stl", "stl-ascii", "ply", "ply-ascii", "obj")),

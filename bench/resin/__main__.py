@@ -15,7 +15,7 @@ from typing import Optional
 
 from bench.harness import machine, parts, process
 from bench.harness.page import Page, Table, brief
-from bench.resin import pictures, slicers
+from bench.resin import images, slicers
 
 PARTS = parts.named(["rook", "head", "sole", "lattice", "sheet-100"], parts.ALL_PARTS)
 
@@ -29,7 +29,7 @@ class Cell:
     processor_seconds: Optional[float] = None
     peak_rss_bytes: Optional[int] = None
     file_bytes: Optional[int] = None
-    agreement: Optional[pictures.Agreement] = None  # of a rival's job with ours, if both finished
+    agreement: Optional[images.Agreement] = None  # of a rival's job with ours, if both finished
 
     @property
     def counts(self):
@@ -87,7 +87,7 @@ def measure(part, present, folder, options):
     ours = present[0]
     for slicer, cell in zip(present, cells):
         if slicer.name not in slicers.OURS and cell.ended == cells[0].ended == "ok":
-            cell.agreement = pictures.compare(output_of(ours, folder, part), output_of(slicer, folder, part))
+            cell.agreement = images.compare(output_of(ours, folder, part), output_of(slicer, folder, part))
         print(f"{part.name}: {slicer.title}: {cell.ended}" + ("" if cell.seconds is None else f", {cell.seconds:.3f} s")
               + ("" if cell.agreement is None else f", {cell.agreement.text()}"), flush=True)
     for slicer in present:
@@ -116,7 +116,7 @@ def build_page(cells, done, present, here, options):
              f"processes in turn, medians of {options.rounds} runs; limit for one run: {options.timeout:g} s. The second row "
              "is the same part as a slice file without pictures: what pictures cost lies between the two.",
              f"{here['processor']}, {here['threads']} threads, {here['memory']}; {here['system']}; {here['date']}; "
-             + ", ".join(f"{slicer.title} {version}" for slicer, version in present if slicer.pictures) + ".",
+             + ", ".join(f"{slicer.title} {version}" for slicer, version in present if slicer.images) + ".",
              f"{pictures.LOOKED_AT} pictures of each job are compared, pixel by pixel; a time counts when there are as many "
              f"pictures, or one fewer, and differences add up to less than {pictures.MOST_APART:g} of the covered area, and "
              "stands in brackets otherwise. The last layer is not looked at: where the part ends within it, programs cut it "

@@ -26,7 +26,7 @@ class Slicer:
     name: str
     title: str
     suffix: str  # of its output
-    pictures: bool  # the output is a job of images
+    images: bool  # the output is a job of images
     command: Callable[[Job, Path], list]
     version: Callable[[], Optional[str]]  # None: not installed
 
@@ -37,14 +37,14 @@ def pixel_mm(box):
     return float(f"{1.1 * max((right - left) / COLUMNS, (back - front) / ROWS):.3g}")
 
 
-def lamella(program, pictures):
+def lamella(program, images):
     def command(job, output):
         return [program, "slice", job.mesh, "-o", output, "--layer-height", f"{job.layer_height:g}", "--progress", "none",
                 *(["--display-size", ",".join(job.display), "--resolution", f"{COLUMNS}x{ROWS}",
-                   "--orientation", "landscape", "--mirror", "none"] if pictures else [])]
+                   "--orientation", "landscape", "--mirror", "none"] if images else [])]
 
-    return Slicer("lamella" if pictures else "layers", "Lamella" if pictures else "Lamella, layers as CLI",
-                  ".sl1s" if pictures else ".cli", pictures, command, lambda: version([program, "--version"], r"(\d[\w.]*)"))
+    return Slicer("lamella" if images else "layers", "Lamella" if images else "Lamella, layers as CLI",
+                  ".sl1s" if images else ".cli", images, command, lambda: version([program, "--version"], r"(\d[\w.]*)"))
 
 
 def prusa_slicer():

@@ -30,7 +30,7 @@ def main(arguments):
     comparison = Comparison(options.lamella, folder, options.timeout, threads)
     cells = []
     for part in chosen:
-        cells += comparison.run(part, [rival for rival, _ in present], tell)
+        cells += comparison.run(part, [rival for rival, _ in present], announce)
         # After each part, so that an interrupted run leaves its results so far.
         sliced = [one for one in chosen if any(cell.part == one.name for cell in cells)]
         page = report.build_page(cells, sliced, present, absent, here, options.timeout, threads)
@@ -75,7 +75,7 @@ def find(options):
     return present, absent
 
 
-def tell(cell):
+def announce(cell):
     taken = "" if cell.seconds is None else f" {cell.seconds:.3f} s"
     layers = "" if cell.agreement is None else f", layers: {cell.agreement.text()}"
     print(f"{cell.part}: {cell.slicer}: {cell.ended}{taken}{layers}", flush=True)

@@ -41,7 +41,7 @@ class Comparison:
         self.repeat_below, self.most_runs = repeat_below, most_runs
         self.timed_out = set()  # (slicer, family); larger members are skipped
 
-    def run(self, part, rivals, tell=lambda cell: None):
+    def run(self, part, rivals, announce=lambda cell: None):
         """Returns all cells of one part, Lamella's first."""
         mesh = parts.make(part, self.program, self.folder.parent / "parts")
         mesh.read_bytes()  # all slicers then read from the cache
@@ -51,12 +51,12 @@ class Comparison:
         for threads in dict.fromkeys((self.threads, 1)):
             cell, slicing = self.ours(part, mesh, work, threads)
             cells.append(cell)
-            tell(cell)
+            announce(cell)
         bottom = slicing.stats["input"]["bbox"][0][2]
         job = Job(mesh, work, part.layer_height, [layer["z"] for layer in slicing.stats["layers"]], bottom, self.threads)
         for rival in rivals:
             cells.append(self.theirs(part, rival, job, slicing.layers))
-            tell(cells[-1])
+            announce(cells[-1])
         return cells
 
     def ours(self, part, mesh, work, threads):

@@ -16,14 +16,14 @@ matplotlib.use("Agg")  # draws into files, without a screen
 from matplotlib.pyplot import subplots  # noqa: E402
 
 
-def main(mesh, layer_height, picture):
+def main(mesh, layer_height, image):
     measured = [(layer.z, layer.area, layer.thickness) for layer in lamella.iter_layers(mesh, float(layer_height))]
     z, area, thickness = np.array(measured).T
     steepest = np.abs(np.diff(area, append=area[-1])).argmax()
     figure, axes = subplots()
     axes.step(z, area, where="mid")
     axes.set(xlabel="z in mm", ylabel="area in mm²", title=f"volume {(area * thickness).sum():.1f} mm³")
-    figure.savefig(picture)
+    figure.savefig(image)
     print(f"{len(z)} layers, {(area * thickness).sum():.3f} mm3, largest step at z = {z[steepest]:.3f} mm")
 
 

@@ -22,14 +22,14 @@ def filled(layer):
     return Path.make_compound_path(*rings)
 
 
-def main(mesh, height, picture):
+def main(mesh, height, image):
     stack = lamella.slice(mesh, layer_height=0.1)
     layer = stack[int(np.abs(stack.z - float(height)).argmin())]
     figure, axes = subplots()
     axes.add_patch(PathPatch(filled(layer), facecolor="lightsteelblue", edgecolor="navy", linewidth=0.5))
     axes.set(xlim=stack.bounds[:, 0], ylim=stack.bounds[:, 1], aspect="equal", xlabel="x in mm", ylabel="y in mm")
     axes.set_title(f"z = {layer.z:.2f} mm: {layer.area:.1f} mm²")
-    figure.savefig(picture)
+    figure.savefig(image)
     print(f"{picture}: layer {layer.index} of {len(stack)}, {layer.area:.3f} mm2")
 
 

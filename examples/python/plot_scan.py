@@ -15,7 +15,7 @@ from matplotlib.collections import LineCollection  # noqa: E402
 from matplotlib.pyplot import subplots  # noqa: E402
 
 
-def main(mesh, height, picture, strategy=None):
+def main(mesh, height, image, strategy=None):
     stack = lamella.slice(mesh, layer_height=0.1)
     number = int(np.abs(stack.z - float(height)).argmin())
     # Skins depend on the layers around, so all of them are scanned up to this one.
@@ -31,7 +31,7 @@ def main(mesh, height, picture, strategy=None):
     axes.set(xlim=stack.bounds[:, 0], ylim=stack.bounds[:, 1], aspect="equal", xlabel="x in mm", ylabel="y in mm")
     axes.set_title(f"z = {scanned.z:.2f} mm: {sum(f.build_seconds for f in scanned.figures):.1f} s")
     axes.legend()
-    figure.savefig(picture)
+    figure.savefig(image)
     print(f"{picture}: layer {scanned.index}, {len(vectors)} lines")
 
 

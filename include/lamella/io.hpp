@@ -21,7 +21,7 @@
 #include "lamella/read/mesh_input.hpp"
 
 // Write layers, meshes and pages; draw images.
-#include "lamella/raster/picture.hpp"
+#include "lamella/raster/image.hpp"
 #include "lamella/write/layer_page.hpp"
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"

@@ -148,7 +148,7 @@ def placed(mesh: Mesh, where: Placing, threads: int) -> Mesh:
     direction, transform = where
     if transform is not None:
         mesh = mesh._transformed(transform, threads)
-    return mesh if direction == UPWARDS else mesh._turned(direction, threads)
+    return mesh if direction == UPWARDS else mesh._rotated(direction, threads)
 
 
 def inspect(

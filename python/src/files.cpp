@@ -8,12 +8,12 @@
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
+#include "gil_release.hpp"
 #include "layers.hpp"
 #include "placing.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
 #include "source_mesh.hpp"
-#include "unlocked.hpp"
 
 #include <pybind11/stl.h>
 
@@ -128,14 +128,14 @@ class StackWriter {
 
     py::list finish() {
         {
-            const Unlocked released;
+            const GilRelease released;
             writer().finish();
         }
         return message_texts(writer().warnings());
     }
 
     void close() {
-        const Unlocked released;
+        const GilRelease released;
         writer_.reset();
     }
 
@@ -166,18 +166,18 @@ LayerWriteOptions write_options(const py::dict& given) {
     options.strict = option<bool>(given, "strict").value_or(options.strict);
     options.units_mm = option<double>(given, "units_mm").value_or(options.units_mm);
     options.short_form = option<bool>(given, "short_form").value_or(options.short_form);
-    PictureOptions& picture = options.picture;
-    picture.pixel_mm = along_xy<double>(given, "pixel_mm");
-    picture.pixels = along_xy<std::uint32_t>(given, "pixels");
-    picture.display_mm = along_xy<double>(given, "display_mm");
+    ImageOptions& image = options.image;
+    image.pixel_mm = along_xy<double>(given, "pixel_mm");
+    image.pixels = along_xy<std::uint32_t>(given, "pixels");
+    image.display_mm = along_xy<double>(given, "display_mm");
     if (const auto orientation = option<std::string>(given, "orientation"))
-        picture.portrait = *orientation == "portrait";
+        image.portrait = *orientation == "portrait";
     if (const auto mirror = option<std::string>(given, "mirror")) {
-        picture.mirror_x = mirror->starts_with('x');
-        picture.mirror_y = mirror->ends_with('y');
+        image.mirror_x = mirror->starts_with('x');
+        image.mirror_y = mirror->ends_with('y');
     }
-    picture.raster.antialias = option<unsigned>(given, "antialias").value_or(picture.raster.antialias);
-    picture.raster.gamma = option<double>(given, "gamma").value_or(picture.raster.gamma);
+    image.raster.antialias = option<unsigned>(given, "antialias").value_or(image.raster.antialias);
+    image.raster.gamma = option<double>(given, "gamma").value_or(image.raster.gamma);
     options.exposure.normal_s = option<double>(given, "exposure_s");
     options.exposure.first_s = option<double>(given, "first_exposure_s");
     options.exposure.fade_layers =
@@ -190,7 +190,7 @@ std::vector<std::string> formats_with(const std::string& name) {
     const auto takes = name == "units"        ? &LayerFormat::units
                        : name == "short_form" ? &LayerFormat::short_form
                        : name == "exposure"   ? &LayerFormat::exposure
-                                              : &LayerFormat::picture;
+                                              : &LayerFormat::image;
     std::vector<std::string> found;
     for (const LayerFormat& format : layer_formats())
         if (format.*takes)
@@ -219,7 +219,7 @@ std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::str
 
 std::vector<std::string> write_mesh(const std::string& path, const std::string& extension,
                                     const MeshPointer& mesh, const std::string& name, bool strict) {
-    const Unlocked released;
+    const GilRelease released;
     std::vector<std::string> warnings;
     if (mesh->source().has_negatives()) {
         warnings.emplace_back("its negative volumes are not subtracted: only layers are without them");

@@ -3,7 +3,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 
-#include "unlocked.hpp"
+#include "gil_release.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -108,11 +108,11 @@ LayerPointer LayerStream::next() {
         for (Layer layer; !closed_;) {
             LayerQueue::Found found = LayerQueue::Found::nothing_yet;
             {
-                const Unlocked released;
+                const GilRelease released;
                 found = queue_.take(layer);
             }
             // A copy, since the listener may close the stream, which releases its listener.
-            tell(progress_, py::object(listener_));
+            report(progress_, py::object(listener_));
             check_signals();
             if (found == LayerQueue::Found::end)
                 close();
@@ -139,7 +139,7 @@ void LayerStream::close() {
     // If several threads close it, one gets the worker.
     std::thread worker = std::move(worker_);
     {
-        const Unlocked released;
+        const GilRelease released;
         queue_.close();
         if (worker.joinable())
             worker.join();

@@ -10,11 +10,11 @@
 #include "lamella/polygon/layer_steps.hpp"
 
 #include "arrays.hpp"
+#include "gil_release.hpp"
 #include "pickled.hpp"
 #include "placing.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
-#include "unlocked.hpp"
 
 #include <pybind11/stl.h>
 
@@ -61,14 +61,14 @@ py::array_t<std::int64_t> offsets_of(const py::object& self) {
 }
 
 const LayerMeasure& measure_of(const SharedLayer& layer) {
-    const Unlocked released;
+    const GilRelease released;
     return layer.measure();
 }
 
 std::string hash_text(const SharedLayer& layer) {
     std::uint64_t hash = 0;
     {
-        const Unlocked released;
+        const GilRelease released;
         hash = layer.hash();
     }
     std::array<char, 17> text{};
@@ -107,7 +107,7 @@ std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> polygons_of(co
 }
 
 /// The fields of a layer except the arrays, for construction and pickling.
-struct LayerHead {
+struct LayerHeader {
     std::uint64_t index = 0;
     double z = 0;
     double bottom = 0;
@@ -138,12 +138,12 @@ std::vector<std::uint64_t> offsets_of(const Numbers& numbers, std::size_t points
     return offsets;
 }
 
-LayerPointer layer_of_arrays(const LayerHead& head, const Doubles& points, const Numbers& offsets,
+LayerPointer layer_of_arrays(const LayerHeader& header, const Doubles& points, const Numbers& offsets,
                              std::size_t rings, const Doubles& hatches, std::optional<PlaneRule> rule) {
-    if (!(std::isfinite(head.bottom) && std::isfinite(head.top) && head.bottom <= head.z &&
-          head.z <= head.top))
+    if (!(std::isfinite(header.bottom) && std::isfinite(header.top) && header.bottom <= header.z &&
+          header.z <= header.top))
         throw Error(ErrorKind::input, "a layer is cut between its bottom and its top, which are finite");
-    Layer layer{.index = head.index, .z = head.z, .bottom = head.bottom, .top = head.top};
+    Layer layer{.index = header.index, .z = header.z, .bottom = header.bottom, .top = header.top};
     layer.points = points_of(points);
     layer.offsets = offsets_of(offsets, layer.points.size());
     layer.hatches = points_of(hatches);
@@ -170,7 +170,7 @@ void add_contour(const PointArray& points, bool closed, LayerBuilder& builder) {
 /// Makes a layer of contours in any order.
 LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z, double bottom, double top,
                                std::uint64_t index, const std::vector<Doubles>& chains) {
-    const Unlocked released;
+    const GilRelease released;
     LayerBuilder builder;
     for (const auto* contours : {&rings, &chains})
         for (const Doubles& contour : *contours)
@@ -239,12 +239,12 @@ py::tuple layer_state(const py::object& self) {
 }
 
 LayerPointer layer_of_state(const py::tuple& state) {
-    const LayerHead head{state[0].cast<std::uint64_t>(), state[1].cast<double>(), state[2].cast<double>(),
-                         state[3].cast<double>()};
+    const LayerHeader header{state[0].cast<std::uint64_t>(), state[1].cast<double>(), state[2].cast<double>(),
+                             state[3].cast<double>()};
     std::optional<PlaneRule> rule;
     if (!state[8].is_none())
         rule = rule_named(state[8].cast<std::string>());
-    return layer_of_arrays(head, state[4].cast<Doubles>(), state[5].cast<Numbers>(),
+    return layer_of_arrays(header, state[4].cast<Doubles>(), state[5].cast<Numbers>(),
                            state[6].cast<std::size_t>(), state[7].cast<Doubles>(), rule);
 }
 
@@ -283,7 +283,7 @@ template <class T, class Value>
 auto measures_of(const Value& value) {
     return [value](const Stack& stack) {
         {
-            const Unlocked released;
+            const GilRelease released;
             for (const LayerPointer& layer : stack.layers)
                 static_cast<void>(layer->measure());
         }
@@ -292,7 +292,7 @@ auto measures_of(const Value& value) {
 }
 
 double volume_of(const Stack& stack) {
-    const Unlocked released;
+    const GilRelease released;
     double volume = 0;
     for (const LayerPointer& layer : stack.layers)
         volume += layer->measure().area_mm2 * layer->get().thickness();

@@ -49,7 +49,7 @@ Transform transform_of(const Matrix& rows) {
     if (rows[3] != std::array<double, 4>{0, 0, 0, 1})
         throw Error(ErrorKind::usage,
                     "transform: the last row of a transform must be 0, 0, 0, 1, and this one is " +
-                        row_text(rows[3]) + ": meshes are moved, turned and scaled, but not projected");
+                        row_text(rows[3]) + ": meshes are moved, rotated and scaled, but not projected");
     Transform map;
     for (std::size_t r = 0; r < 3; ++r) {
         map.linear[r] = {rows[r][0], rows[r][1], rows[r][2]};

@@ -1,6 +1,6 @@
 #include "run.hpp"
 
-#include "unlocked.hpp"
+#include "gil_release.hpp"
 
 #include <chrono>
 #include <exception>
@@ -13,7 +13,7 @@ namespace lamella::python {
 namespace {
 
 /// Signals the end of the work.
-class Bell {
+class Event {
   public:
     void ring() {
         const std::lock_guard lock(mutex_);
@@ -23,7 +23,7 @@ class Bell {
 
     /// Waits for a moment. Returns true if the work is done.
     bool wait() {
-        const Unlocked released;
+        const GilRelease released;
         std::unique_lock lock(mutex_);
         return changed_.wait_for(lock, between_signals, [&] { return rung_; });
     }
@@ -36,7 +36,7 @@ class Bell {
 
 /// Joins without the interpreter lock: the end of the thread may take a while, for example to free gigabytes.
 void join(std::thread& worker) {
-    const Unlocked released;
+    const GilRelease released;
     worker.join();
 }
 
@@ -55,7 +55,7 @@ std::vector<Progress> ProgressBox::take() {
     return std::exchange(waiting_, {});
 }
 
-void tell(ProgressBox& box, const py::object& listener) {
+void report(ProgressBox& box, const py::object& listener) {
     if (listener.is_none())
         return;
     for (const Progress& progress : box.take())
@@ -69,7 +69,7 @@ void check_signals() {
 
 void run(unsigned threads, const py::object& listener, const std::function<void(const Execution&)>& work) {
     ProgressBox box;
-    Bell bell;
+    Event bell;
     std::exception_ptr failure;
     Execution execution{.threads = threads};
     if (!listener.is_none())
@@ -89,7 +89,7 @@ void run(unsigned threads, const py::object& listener, const std::function<void(
     try {
         for (bool done = false; !done;) {
             done = bell.wait();
-            tell(box, listener);
+            report(box, listener);
             check_signals();
         }
     } catch (...) {
@@ -105,7 +105,7 @@ void run(unsigned threads, const py::object& listener, const std::function<void(
 void run_alone(const std::function<void(const Execution&)>& work) {
     struct Job {
         std::function<void(const Execution&)> work;
-        Bell bell;
+        Event bell;
         CancelFlag cancel;
         std::exception_ptr failure;
     };

@@ -5,7 +5,7 @@
 
 #include "lamella/core/execution.hpp"
 
-#include "unlocked.hpp"
+#include "gil_release.hpp"
 
 #include <pybind11/pybind11.h>
 
@@ -34,7 +34,7 @@ class ProgressBox {
 };
 
 /// Calls `listener(stage, done, total)` for all reports in the box. None is no listener.
-void tell(ProgressBox& box, const pybind11::object& listener);
+void report(ProgressBox& box, const pybind11::object& listener);
 
 /// Interval at which a waiting thread of Python checks for signals.
 inline constexpr std::chrono::milliseconds between_signals{50};
@@ -68,7 +68,7 @@ template <class Work>
 [[nodiscard]] auto result_of_points(std::size_t points, const Work& work) {
     constexpr std::size_t few = 1000;
     if (points <= few) {
-        const Unlocked released;
+        const GilRelease released;
         return work(Execution{.threads = 1});
     }
     const auto result = std::make_shared<std::optional<decltype(work(Execution{}))>>();

@@ -8,11 +8,11 @@
 #include "lamella/scan/strategy.hpp"
 #include "lamella/scan/strategy_fields.hpp"
 
+#include "gil_release.hpp"
 #include "layers.hpp"
 #include "pickled.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
-#include "unlocked.hpp"
 
 #include <pybind11/stl.h>
 
@@ -169,7 +169,7 @@ Scanned scanned_support(const LayerPointer& layer, const ScanStrategy& strategy,
 
 std::vector<ScanFigures> measured(const std::vector<LayerPointer>& vectors,
                                   const std::vector<Exposure>& exposures) {
-    const Unlocked released;
+    const GilRelease released;
     std::vector<ScanFigures> figures;
     std::optional<Point2> beam;
     for (std::size_t i = 0; i < vectors.size(); ++i)

@@ -8,6 +8,7 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "arrays.hpp"
+#include "gil_release.hpp"
 #include "layer_stream.hpp"
 #include "layers.hpp"
 #include "pickled.hpp"
@@ -15,7 +16,6 @@
 #include "run.hpp"
 #include "shared_layer.hpp"
 #include "source_mesh.hpp"
-#include "unlocked.hpp"
 
 #include <pybind11/stl.h>
 
@@ -80,7 +80,7 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const CutPlan& cuts,
 
 /// Returns the defects of the mesh that its layers reveal.
 std::vector<std::string> doubts_of(const Stack& stack) {
-    const Unlocked released;
+    const GilRelease released;
     MeshDoubts doubts{.layers = stack.layers.size()};
     for (const LayerPointer& shared : stack.layers) {
         const Layer& layer = shared->get();

@@ -6,11 +6,11 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "arrays.hpp"
+#include "gil_release.hpp"
 #include "layers.hpp"
 #include "pickled.hpp"
 #include "placing.hpp"
 #include "run.hpp"
-#include "unlocked.hpp"
 
 #include <pybind11/stl.h>
 
@@ -72,7 +72,7 @@ MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
         throw Error(ErrorKind::input, "vertices and faces must be arrays of the shapes (n, 3) and (m, 3)");
     if (static_cast<std::uint64_t>(vertices.shape(0)) > std::numeric_limits<std::uint32_t>::max())
         throw Error(ErrorKind::limit, "vertices: a mesh has 2^32 - 1 at most");
-    const Unlocked released;
+    const GilRelease released;
     IndexedMesh mesh;
     mesh.vertices = vertices_of(vertices);
     mesh.triangles = triangles_of(faces, mesh.vertices.size());
@@ -160,7 +160,7 @@ py::str mesh_text(const SourceMesh& source) {
 }
 
 const IndexedMesh& welded_of(const SourceMesh& source) {
-    const Unlocked released;
+    const GilRelease released;
     return source.welded({});
 }
 
@@ -269,14 +269,14 @@ void bind_meshes(py::module_& module) {
         .def_property_readonly(
             "volume",
             [](const SourceMesh& self) {
-                const Unlocked released;
+                const GilRelease released;
                 return volume(self.mesh());
             },
             "The volume in cubic millimetres: meaningful for a closed mesh, negative for one turned inside "
             "out.")
         .def_property_readonly(
             "matrix", [](const SourceMesh& self) { return matrix_of(self.origin().matrix); },
-            "How it was moved and turned since it was read or made: a (4, 4) matrix.")
+            "Its transform since it was read or made: a (4, 4) matrix.")
         .def_property_readonly(
             "path", [](const SourceMesh& self) { return path_text(self.origin().path); },
             "The file it was read from; empty for a mesh made of arrays.")

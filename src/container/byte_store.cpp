@@ -30,25 +30,25 @@ void ByteStore::add(std::string_view bytes) {
     assert(size_ == blocks_.size() * block_bytes + spilled_ + last_.size());
 }
 
-void ByteStore::read(std::uint64_t place, std::span<char> bytes) const {
-    assert(place + bytes.size() <= size_);
+void ByteStore::read(std::uint64_t position, std::span<char> bytes) const {
+    assert(position + bytes.size() <= size_);
     const std::uint64_t in_blocks = blocks_.size() * block_bytes;
     while (!bytes.empty()) {
         std::size_t part = 0;
-        if (place < in_blocks) {
-            const std::uint64_t within = place % block_bytes;
+        if (position < in_blocks) {
+            const std::uint64_t within = position % block_bytes;
             part = std::min<std::uint64_t>(bytes.size(), block_bytes - within);
-            std::memcpy(bytes.data(), blocks_[place / block_bytes].data() + within, part);
-        } else if (place < in_blocks + spilled_) {
-            const std::uint64_t within = place - in_blocks;
+            std::memcpy(bytes.data(), blocks_[position / block_bytes].data() + within, part);
+        } else if (position < in_blocks + spilled_) {
+            const std::uint64_t within = position - in_blocks;
             part = std::min<std::uint64_t>(bytes.size(), spilled_ - within);
             file_->read(within, std::as_writable_bytes(bytes.first(part)));
         } else {
             part = bytes.size();
-            std::memcpy(bytes.data(), last_.data() + (place - in_blocks - spilled_), part);
+            std::memcpy(bytes.data(), last_.data() + (position - in_blocks - spilled_), part);
         }
         bytes = bytes.subspan(part);
-        place += part;
+        position += part;
     }
 }
 

@@ -27,7 +27,7 @@ class ByteStore {
     [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
     /// Copies the bytes from offset `place` on into `bytes`. Requires that the store holds them.
-    void read(std::uint64_t place, std::span<char> bytes) const;
+    void read(std::uint64_t position, std::span<char> bytes) const;
 
     static constexpr std::size_t block_bytes = std::size_t{8} << 20;
 

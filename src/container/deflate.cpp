@@ -40,7 +40,7 @@ Deflater::~Deflater() {
     deflateEnd(&state_->stream);
 }
 
-void Deflater::append_piece(std::string_view bytes, std::string& out) {
+void Deflater::append_chunk(std::string_view bytes, std::string& out) {
     z_stream& stream = state_->stream;
     for (; !bytes.empty(); bytes.remove_prefix(std::min(bytes.size(), most_at_once))) {
         const std::string_view part = bytes.substr(0, most_at_once);
@@ -71,7 +71,7 @@ std::string deflated(std::string_view bytes) {
             stream += c;
         return stream.append(bytes);
     }
-    Deflater().append_piece(bytes, stream);
+    Deflater().append_chunk(bytes, stream);
     stream += deflate_end;
     return stream;
 }

@@ -26,7 +26,7 @@ class Deflater {
     Deflater& operator=(const Deflater&) = delete;
 
     /// Appends `bytes` as one chunk; appends nothing if there are no bytes.
-    void append_piece(std::string_view bytes, std::string& out);
+    void append_chunk(std::string_view bytes, std::string& out);
 
   private:
     struct State;

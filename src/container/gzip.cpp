@@ -36,14 +36,14 @@ class Inflater {
     };
 
     /// Decompresses as much as is available and fits. Both spans must be smaller than 4 GiB.
-    [[nodiscard]] Step unpack(std::span<const std::byte> packed, std::span<std::byte> room) {
+    [[nodiscard]] Step unpack(std::span<const std::byte> compressed, std::span<std::byte> room) {
         // zlib only reads from this pointer, but its type lacks const.
-        stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(packed.data()));
-        stream_.avail_in = static_cast<uInt>(packed.size());
+        stream_.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(compressed.data()));
+        stream_.avail_in = static_cast<uInt>(compressed.size());
         stream_.next_out = reinterpret_cast<Bytef*>(room.data());
         stream_.avail_out = static_cast<uInt>(room.size());
         const int code = inflate(&stream_, Z_NO_FLUSH);
-        return {packed.size() - stream_.avail_in, room.size() - stream_.avail_out, code};
+        return {compressed.size() - stream_.avail_in, room.size() - stream_.avail_out, code};
     }
 
     /// Prepares for the next member.
@@ -102,33 +102,33 @@ ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes, const Exe
             whole =
                 std::all_of(rest.begin(), rest.end(), [](std::byte byte) { return byte == std::byte{0}; });
             if (!whole && !is_gzip(rest))
-                fail("something else follows what is packed with gzip, expected the end of the file");
+                fail("something else follows the gzip data, expected the end of the file");
             inflater.start_again();
         } else if (code == Z_MEM_ERROR) {
             throw std::bad_alloc();
         } else if (code == Z_BUF_ERROR || (code == Z_OK && at == source.bytes.size() && made < room.size())) {
-            fail("the file ends before what is packed with gzip in it; it is cut off");
+            fail("the file ends within its gzip data; it is cut off");
         } else if (code != Z_OK) {
-            fail(fmt::format("what is packed with gzip is broken ({}); fetch the file once more",
-                             inflater.message()));
+            fail(fmt::format("the gzip data are damaged ({}); fetch the file once more", inflater.message()));
         }
     }
     if (memory->size() == 0)
-        fail("nothing is packed in it, expected a file with content");
+        fail("the gzip file is empty, expected a file with content");
     memory->trim();
     return {source.name, memory->bytes(), memory};
 }
 
-std::string first_inflated(std::string_view packed, std::size_t most) {
+std::string first_inflated(std::string_view compressed, std::size_t most) {
     // libdeflate returns all bytes or none.
     z_stream stream{};
     constexpr int raw_window = -15;
     if (inflateInit2(&stream, raw_window) != Z_OK)
         throw std::bad_alloc();
     std::string bytes(most, '\0');
-    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data())); // zlib only reads from it
+    stream.next_in =
+        reinterpret_cast<Bytef*>(const_cast<char*>(compressed.data())); // zlib only reads from it
     stream.avail_in =
-        static_cast<uInt>(std::min<std::size_t>(packed.size(), std::numeric_limits<uInt>::max()));
+        static_cast<uInt>(std::min<std::size_t>(compressed.size(), std::numeric_limits<uInt>::max()));
     stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
     stream.avail_out = static_cast<uInt>(most);
     static_cast<void>(::inflate(&stream, Z_SYNC_FLUSH));

@@ -29,14 +29,14 @@ inline constexpr std::uint64_t most_inflation = 1032;
 
 /// Returns the default limit for the decompressed size of a file: 64 times its compressed size, at least 64
 /// MiB, which meshes and layers do not exceed, but at most `usual_memory`.
-[[nodiscard]] std::uint64_t usual_most_unpacked(std::uint64_t packed_bytes);
+[[nodiscard]] std::uint64_t usual_most_unpacked(std::uint64_t compressed_bytes);
 
 /// Decompresses a raw Deflate stream into a buffer of exactly the expected size. Pages of the buffer beyond
 /// the end of the stream are not touched.
-[[nodiscard]] Inflated inflate(std::string_view packed, std::span<std::byte> room);
+[[nodiscard]] Inflated inflate(std::string_view compressed, std::span<std::byte> room);
 
 /// Returns the first `most` bytes of the contents of a raw Deflate stream; fewer if the stream ends or is
 /// damaged before.
-[[nodiscard]] std::string first_inflated(std::string_view packed, std::size_t most);
+[[nodiscard]] std::string first_inflated(std::string_view compressed, std::size_t most);
 
 } // namespace lamella

@@ -3,7 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/parse_number.hpp"
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/utf8.hpp"
 
 #include <fmt/format.h>

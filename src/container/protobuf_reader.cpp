@@ -11,7 +11,7 @@ namespace lamella {
 
 void ProtobufReader::fail(const std::string& found, const std::string& expected) const {
     throw Error(ErrorKind::input,
-                fmt::format("{}, byte {}: found {}; {}", *name_, field_place_, found, expected));
+                fmt::format("{}, byte {}: found {}; {}", *name_, field_offset_, found, expected));
 }
 
 std::uint64_t ProtobufReader::take_varint() {
@@ -21,7 +21,7 @@ std::uint64_t ProtobufReader::take_varint() {
             fail("the end of a message within a number", "the file is damaged or truncated");
         const auto byte = static_cast<unsigned char>(rest_.front());
         rest_.remove_prefix(1);
-        ++place_;
+        ++position_;
         value |= std::uint64_t{byte & 0x7FU} << shift;
         if (byte < 0x80)
             return value;
@@ -33,16 +33,16 @@ std::string_view ProtobufReader::take(std::uint64_t size) {
     if (size > rest_.size())
         fail(fmt::format("a value of {} bytes", size), fmt::format("the message has {} more", rest_.size()));
     const std::string_view value = rest_.substr(0, size);
-    value_place_ = place_;
+    value_offset_ = position_;
     rest_.remove_prefix(size);
-    place_ += size;
+    position_ += size;
     return value;
 }
 
 bool ProtobufReader::next() {
     if (rest_.empty())
         return false;
-    field_place_ = place_;
+    field_offset_ = position_;
     const std::uint64_t tag = take_varint();
     constexpr std::uint64_t most_field = (std::uint64_t{1} << 29) - 1;
     if (tag >> 3U == 0 || tag >> 3U > most_field)
@@ -91,12 +91,12 @@ std::string_view ProtobufReader::bytes() const {
     return value_;
 }
 
-ProtobufReader ProtobufReader::delimited(std::string_view file, std::uint64_t& place,
+ProtobufReader ProtobufReader::delimited(std::string_view file, std::uint64_t& position,
                                          const std::string& name) {
-    ProtobufReader all(file.substr(std::min<std::uint64_t>(place, file.size())), place, name);
+    ProtobufReader all(file.substr(std::min<std::uint64_t>(position, file.size())), position, name);
     const std::string_view bytes = all.take(all.take_varint());
-    place = all.place_;
-    return {bytes, all.value_place_, name};
+    position = all.position_;
+    return {bytes, all.value_offset_, name};
 }
 
 } // namespace lamella

@@ -15,8 +15,8 @@ namespace lamella {
 class ProtobufReader {
   public:
     /// Reads `bytes`, which begin at offset `place` of the file `name`.
-    ProtobufReader(std::string_view bytes, std::uint64_t place, const std::string& name)
-        : rest_(bytes), place_(place), name_(&name), field_place_(place) {}
+    ProtobufReader(std::string_view bytes, std::uint64_t position, const std::string& name)
+        : rest_(bytes), position_(position), name_(&name), field_offset_(position) {}
 
     /// Moves to the next field; false at the end.
     [[nodiscard]] bool next();
@@ -27,7 +27,7 @@ class ProtobufReader {
     [[nodiscard]] std::int64_t integer() const;
     [[nodiscard]] float real() const;
     [[nodiscard]] std::string_view bytes() const;
-    [[nodiscard]] ProtobufReader message() const { return {bytes(), value_place_, *name_}; }
+    [[nodiscard]] ProtobufReader message() const { return {bytes(), value_offset_, *name_}; }
 
     /// Calls take(value) for each integer of the field: a single value, or several if the list is in one
     /// field.
@@ -43,11 +43,11 @@ class ProtobufReader {
     }
 
     /// Returns the offset of the field in the file.
-    [[nodiscard]] std::uint64_t place() const noexcept { return field_place_; }
+    [[nodiscard]] std::uint64_t position() const noexcept { return field_offset_; }
 
     /// Returns the message whose length is at offset `place` of the file, and moves `place` after the
     /// message.
-    [[nodiscard]] static ProtobufReader delimited(std::string_view file, std::uint64_t& place,
+    [[nodiscard]] static ProtobufReader delimited(std::string_view file, std::uint64_t& position,
                                                   const std::string& name);
 
     [[noreturn]] void fail(const std::string& found, const std::string& expected) const;
@@ -58,14 +58,14 @@ class ProtobufReader {
     void check(ProtobufType type) const;
 
     std::string_view rest_;
-    std::uint64_t place_;
+    std::uint64_t position_;
     const std::string* name_;
-    std::uint64_t field_place_;
+    std::uint64_t field_offset_;
     std::uint32_t field_ = 0;
     ProtobufType type_{};
     std::uint64_t integer_ = 0;
     std::string_view value_;
-    std::uint64_t value_place_ = 0;
+    std::uint64_t value_offset_ = 0;
 };
 
 } // namespace lamella

@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 
 #include <expat.h>
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr int deepest_element = 256;
 constexpr std::size_t most_attributes = 1000;
-constexpr std::size_t piece = std::size_t{4} << 20;
+constexpr std::size_t chunk = std::size_t{4} << 20;
 constexpr std::size_t longest_token = std::size_t{64} << 20;
 constexpr char namespace_end = '\n'; // Expat's separator between namespace and name; no URI contains it
 
@@ -151,7 +151,7 @@ class Parse {
     void feed(std::size_t end, bool last) {
         do {
             const std::string_view part =
-                bytes_.substr(at_, waiting() == 0 ? std::min(end - at_, piece) : more_of_token());
+                bytes_.substr(at_, waiting() == 0 ? std::min(end - at_, chunk) : more_of_token());
             at_ += part.size();
             fed_ += static_cast<XML_Index>(part.size());
             const XML_Status status = XML_Parse(parser_.get(), part.data(), static_cast<int>(part.size()),
@@ -167,7 +167,7 @@ class Parse {
             parsed_ = std::max(parsed_, XML_GetCurrentByteIndex(parser_.get())); // -1 if Expat does not know
             if (waiting() >= longest_token)
                 fail(fmt::format("found a tag, text or comment longer than {} MB", longest_token >> 20));
-            tell_progress(at_);
+            report_progress(at_);
         } while (at_ < end);
     }
 
@@ -186,10 +186,10 @@ class Parse {
         return enough - waiting();
     }
 
-    void tell_progress(std::size_t place) {
-        if (handlers_.progress && (place - told_ >= piece || place == bytes_.size())) {
-            handlers_.progress(place - told_);
-            told_ = place;
+    void report_progress(std::size_t position) {
+        if (handlers_.progress && (position - reported_ >= chunk || position == bytes_.size())) {
+            handlers_.progress(position - reported_);
+            reported_ = position;
         }
     }
 
@@ -218,7 +218,7 @@ class Parse {
             }
             count_lines(bytes_.substr(at_, *tag + skimmed - at_));
             at_ = from = *tag + skimmed;
-            tell_progress(at_);
+            report_progress(at_);
         }
     }
 
@@ -267,7 +267,7 @@ class Parse {
     std::size_t skimmed_lines_ = 0;
     std::vector<std::size_t> next_tags_; ///< for each of `many`, its first offset that the last search had
                                          ///< not passed
-    std::size_t told_ = 0;
+    std::size_t reported_ = 0;
 };
 
 } // namespace

@@ -54,7 +54,7 @@ struct XmlHandlers {
     /// are whole, well-formed elements. If it returns 0, the parser reads the elements, and `skim` may not be
     /// called again for a while.
     std::vector<std::string_view> many = {};
-    std::function<std::size_t(std::string_view document, std::size_t place)> skim = {};
+    std::function<std::size_t(std::string_view document, std::size_t position)> skim = {};
 };
 
 struct XmlRules {

@@ -8,11 +8,11 @@
 namespace lamella {
 
 /// Signatures: the first four bytes of each kind of record.
-constexpr std::uint32_t zip_entry_mark = 0x04034b50;
-constexpr std::uint32_t zip_directory_mark = 0x02014b50;
-constexpr std::uint32_t zip_end_mark = 0x06054b50;
-constexpr std::uint32_t zip_end64_mark = 0x06064b50;
-constexpr std::uint32_t zip_end64_place_mark = 0x07064b50;
+constexpr std::uint32_t zip_entry_signature = 0x04034b50;
+constexpr std::uint32_t zip_directory_signature = 0x02014b50;
+constexpr std::uint32_t zip_end_signature = 0x06054b50;
+constexpr std::uint32_t zip_end64_signature = 0x06064b50;
+constexpr std::uint32_t zip_end64_locator_signature = 0x07064b50;
 
 /// These values in a field mean that the actual value is in the zip64 records.
 constexpr std::uint64_t full16 = 0xFFFF;
@@ -27,8 +27,8 @@ enum class ZipMethod : std::uint16_t { stored = 0, deflated = 8 };
 struct ZipEntry {
     std::string name; ///< with `/` between folders and no leading one
     std::uint64_t size = 0;
-    std::uint64_t packed_size = 0;
-    std::uint64_t place =
+    std::uint64_t compressed_size = 0;
+    std::uint64_t offset =
         0; ///< in the reader, offset of the compressed bytes; in the writer, offset of the entry's header
     std::uint32_t crc = 0;
     ZipMethod method = ZipMethod::stored;

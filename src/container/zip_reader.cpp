@@ -6,7 +6,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/inflate.hpp"
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/lower_case.hpp"
 #include "core/pages.hpp"
 
@@ -23,11 +23,11 @@ namespace lamella {
 
 namespace {
 
-constexpr std::size_t entry_head = 30;
-constexpr std::size_t directory_head = 46;
-constexpr std::size_t end_head = 22;
-constexpr std::size_t end64_head = 56;
-constexpr std::size_t end64_place_size = 20;
+constexpr std::size_t entry_header = 30;
+constexpr std::size_t directory_header = 46;
+constexpr std::size_t end_header = 22;
+constexpr std::size_t end64_header = 56;
+constexpr std::size_t end64_locator_size = 20;
 
 constexpr unsigned flag_encrypted = 1U;
 constexpr unsigned flag_strongly_encrypted = 1U << 6;
@@ -52,8 +52,8 @@ std::uint64_t u64(std::string_view bytes, std::size_t at) {
     return number(bytes, at, 8);
 }
 
-bool has_mark(std::string_view bytes, std::uint64_t at, std::uint32_t mark, std::size_t head) {
-    return at <= bytes.size() && bytes.size() - at >= head && u32(bytes, at) == mark;
+bool has_signature(std::string_view bytes, std::uint64_t at, std::uint32_t mark, std::size_t header) {
+    return at <= bytes.size() && bytes.size() - at >= header && u32(bytes, at) == mark;
 }
 
 /// Replaces the values that are full by their 64-bit forms, which have the same order in the extra field.
@@ -79,7 +79,7 @@ bool widen(std::string_view extra, std::initializer_list<std::uint64_t*> values)
 
 /// Position and extent of the directory.
 struct Directory {
-    std::uint64_t place = 0;
+    std::uint64_t offset = 0;
     std::uint64_t size = 0;
     std::uint64_t entries = 0;
     std::uint64_t trailing = 0; ///< bytes after the end of the archive
@@ -92,22 +92,22 @@ class DirectoryFinder {
     Directory find() const {
         const std::size_t end = find_end();
         Directory directory{u32(bytes_, end + 16), u32(bytes_, end + 12), u16(bytes_, end + 10), 0};
-        directory.trailing = bytes_.size() - end - end_head - u16(bytes_, end + 20);
+        directory.trailing = bytes_.size() - end - end_header - u16(bytes_, end + 20);
         std::uint64_t directory_end = end;
-        if (end >= end64_place_size &&
-            has_mark(bytes_, end - end64_place_size, zip_end64_place_mark, end64_place_size)) {
-            directory_end = u64(bytes_, end - end64_place_size + 8);
+        if (end >= end64_locator_size && has_signature(bytes_, end - end64_locator_size,
+                                                       zip_end64_locator_signature, end64_locator_size)) {
+            directory_end = u64(bytes_, end - end64_locator_size + 8);
             read_end64(directory_end, end, directory);
         } else if (u16(bytes_, end + 4) != 0 || u16(bytes_, end + 6) != 0 ||
                    u16(bytes_, end + 8) != directory.entries) {
             fail("is one of several discs of a zip archive, expected a whole one");
         }
-        if (directory.size > directory_end || directory.place != directory_end - directory.size)
+        if (directory.size > directory_end || directory.offset != directory_end - directory.size)
             fail(
                 fmt::format("the directory of the zip archive should take {} bytes from byte {}, but its end "
                             "stands at byte {}; the file is cut off, or something is in front of it",
-                            directory.size, directory.place, directory_end));
-        if (directory.entries > directory.size / directory_head)
+                            directory.size, directory.offset, directory_end));
+        if (directory.entries > directory.size / directory_header)
             fail(fmt::format("the zip archive claims {} entries in a directory of {} bytes",
                              directory.entries, directory.size));
         return directory;
@@ -121,13 +121,13 @@ class DirectoryFinder {
     /// Finds the end record. A comment or appended data of any content may follow it.
     std::size_t find_end() const {
         std::optional<std::size_t> before_others;
-        if (bytes_.size() >= end_head) {
-            const std::size_t last = bytes_.size() - end_head;
+        if (bytes_.size() >= end_header) {
+            const std::size_t last = bytes_.size() - end_header;
             const std::size_t first = last - std::min<std::size_t>(last, full16);
             for (std::size_t at = last + 1; at-- > first;) {
-                if (!has_mark(bytes_, at, zip_end_mark, end_head))
+                if (!has_signature(bytes_, at, zip_end_signature, end_header))
                     continue;
-                const std::size_t end = at + end_head + u16(bytes_, at + 20);
+                const std::size_t end = at + end_header + u16(bytes_, at + 20);
                 if (end == bytes_.size())
                     return at;
                 if (end < bytes_.size() && !before_others)
@@ -143,17 +143,17 @@ class DirectoryFinder {
     /// them: otherwise two readers could find two directories.
     void read_end64(std::uint64_t at, std::size_t end, Directory& directory) const {
         constexpr std::size_t before_size_counts = 12;
-        const bool is_there = has_mark(bytes_, at, zip_end64_mark, end64_head);
+        const bool is_there = has_signature(bytes_, at, zip_end64_signature, end64_header);
         const std::uint64_t size = is_there ? u64(bytes_, at + 4) : 0;
-        if (size < end64_head - before_size_counts || size > end ||
-            at + before_size_counts + size + end64_place_size != end)
+        if (size < end64_header - before_size_counts || size > end ||
+            at + before_size_counts + size + end64_locator_size != end)
             fail(fmt::format("the zip archive should have its (64-bit) end at byte {}, but has not", at));
         const Directory classic = std::exchange(directory, {u64(bytes_, at + 48), u64(bytes_, at + 40),
                                                             u64(bytes_, at + 32), directory.trailing});
         if (u32(bytes_, at + 16) != 0 || u32(bytes_, at + 20) != 0 ||
             u64(bytes_, at + 24) != directory.entries)
             fail("is one of several discs of a zip archive, expected a whole one");
-        if ((classic.place != full32 && classic.place != directory.place) ||
+        if ((classic.offset != full32 && classic.offset != directory.offset) ||
             (classic.size != full32 && classic.size != directory.size) ||
             (classic.entries != full16 && classic.entries != directory.entries))
             fail("the two ends of the zip archive contradict each other, expected one directory");
@@ -198,32 +198,32 @@ void ZipReader::read_directory() {
     const std::string_view bytes = source_.text();
     const Directory directory = DirectoryFinder(bytes, source_.name).find();
     if (directory.trailing != 0)
-        oddities_.push_back(fmt::format("{} bytes follow the end of the zip archive; they were left out",
-                                        directory.trailing));
+        counted_warnings_.push_back(fmt::format(
+            "{} bytes follow the end of the zip archive; they were left out", directory.trailing));
     const auto fail = [&](std::uint64_t at, const std::string& what) {
         throw Error(ErrorKind::input, fmt::format("{}: byte {}: {}", source_.name, at, what));
     };
-    std::uint64_t at = directory.place;
-    const std::uint64_t end = directory.place + directory.size;
+    std::uint64_t at = directory.offset;
+    const std::uint64_t end = directory.offset + directory.size;
     entries_.reserve(directory.entries);
     for (std::uint64_t i = 0; i < directory.entries; ++i) {
-        if (end - at < directory_head || u32(bytes, at) != zip_directory_mark)
+        if (end - at < directory_header || u32(bytes, at) != zip_directory_signature)
             fail(at, fmt::format("entry {} of {} of the zip directory is missing", i + 1, directory.entries));
         ZipEntry entry;
         entry.flags = static_cast<std::uint16_t>(u16(bytes, at + 8));
         entry.method = static_cast<ZipMethod>(u16(bytes, at + 10));
         entry.crc = static_cast<std::uint32_t>(u32(bytes, at + 16));
-        entry.packed_size = u32(bytes, at + 20);
+        entry.compressed_size = u32(bytes, at + 20);
         entry.size = u32(bytes, at + 24);
-        entry.place = u32(bytes, at + 42);
+        entry.offset = u32(bytes, at + 42);
         const std::uint64_t name_size = u16(bytes, at + 28);
         const std::uint64_t extra_size = u16(bytes, at + 30);
-        const std::uint64_t size = directory_head + name_size + extra_size + u16(bytes, at + 32);
+        const std::uint64_t size = directory_header + name_size + extra_size + u16(bytes, at + 32);
         if (end - at < size)
             fail(at, fmt::format("entry {} of the zip directory reaches beyond its end", i + 1));
-        entry.name = bytes.substr(at + directory_head, name_size);
-        const std::string_view extra = bytes.substr(at + directory_head + name_size, extra_size);
-        if (!widen(extra, {&entry.size, &entry.packed_size, &entry.place}))
+        entry.name = bytes.substr(at + directory_header, name_size);
+        const std::string_view extra = bytes.substr(at + directory_header + name_size, extra_size);
+        if (!widen(extra, {&entry.size, &entry.compressed_size, &entry.offset}))
             fail(at, fmt::format("entry {} of the zip directory lacks its 64-bit sizes", i + 1));
         if (const std::uint64_t disc = u16(bytes, at + 34); disc != 0 && disc != full16)
             fail(at, fmt::format("entry {} of the zip directory is on disc {}, expected a single one", i + 1,
@@ -232,19 +232,20 @@ void ZipReader::read_directory() {
         entries_.push_back(std::move(entry));
     }
     if (at != end)
-        oddities_.push_back(
+        counted_warnings_.push_back(
             fmt::format("byte {}: {} bytes follow the last entry of the zip directory", at, end - at));
-    settle_places(directory.place);
+    settle_offsets(directory.offset);
     settle_names();
 }
 
 /// Reads the header of each entry, changes `place` to the offset of the compressed bytes, and checks that no
 /// two entries overlap.
-void ZipReader::settle_places(std::uint64_t directory_place) {
+void ZipReader::settle_offsets(std::uint64_t directory_offset) {
     const std::string_view bytes = source_.text();
     const auto fail = [&](const ZipEntry& entry, const std::string& what) {
-        throw Error(ErrorKind::input, fmt::format("{}: byte {}: zip entry '{}' {}", source_.name, entry.place,
-                                                  printable(entry.name, longest_shown_name), what));
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: byte {}: zip entry '{}' {}", source_.name, entry.offset,
+                                printable(entry.name, longest_shown_name), what));
     };
     struct Span {
         std::uint64_t begin;
@@ -254,30 +255,31 @@ void ZipReader::settle_places(std::uint64_t directory_place) {
     std::vector<Span> spans;
     spans.reserve(entries_.size());
     for (ZipEntry& entry : entries_) {
-        const std::uint64_t at = entry.place;
-        if (!has_mark(bytes.substr(0, directory_place), at, zip_entry_mark, entry_head))
+        const std::uint64_t at = entry.offset;
+        if (!has_signature(bytes.substr(0, directory_offset), at, zip_entry_signature, entry_header))
             fail(entry, "does not begin where the directory says");
         const std::uint64_t name_size = u16(bytes, at + 26);
         const std::uint64_t extra_size = u16(bytes, at + 28);
-        const std::uint64_t place = at + entry_head + name_size + extra_size;
-        if (place > directory_place || entry.packed_size > directory_place - place)
-            fail(entry, fmt::format("of {} bytes reaches into the directory at byte {}", entry.packed_size,
-                                    directory_place));
-        if (bytes.substr(at + entry_head, name_size) != entry.name)
-            fail(entry, fmt::format("calls itself '{}'",
-                                    printable(bytes.substr(at + entry_head, name_size), longest_shown_name)));
+        const std::uint64_t offset = at + entry_header + name_size + extra_size;
+        if (offset > directory_offset || entry.compressed_size > directory_offset - offset)
+            fail(entry, fmt::format("of {} bytes reaches into the directory at byte {}",
+                                    entry.compressed_size, directory_offset));
+        if (bytes.substr(at + entry_header, name_size) != entry.name)
+            fail(entry, fmt::format("calls itself '{}'", printable(bytes.substr(at + entry_header, name_size),
+                                                                   longest_shown_name)));
         const auto flags = static_cast<std::uint16_t>(u16(bytes, at + 6));
-        std::uint64_t packed_size = u32(bytes, at + 18);
+        std::uint64_t compressed_size = u32(bytes, at + 18);
         std::uint64_t size = u32(bytes, at + 22);
         const bool sizes_known = (flags & flag_sizes_behind) == 0;
         if (static_cast<ZipMethod>(u16(bytes, at + 8)) != entry.method ||
             (sizes_known &&
-             (!widen(bytes.substr(at + entry_head + name_size, extra_size), {&size, &packed_size}) ||
-              size != entry.size || packed_size != entry.packed_size || u32(bytes, at + 14) != entry.crc)))
+             (!widen(bytes.substr(at + entry_header + name_size, extra_size), {&size, &compressed_size}) ||
+              size != entry.size || compressed_size != entry.compressed_size ||
+              u32(bytes, at + 14) != entry.crc)))
             fail(entry, "has another method, size or checksum than the directory says");
         entry.flags |= flags;
-        spans.push_back({at, place + entry.packed_size, spans.size()});
-        entry.place = place;
+        spans.push_back({at, offset + entry.compressed_size, spans.size()});
+        entry.offset = offset;
     }
     std::sort(spans.begin(), spans.end(), [](const Span& a, const Span& b) { return a.begin < b.begin; });
     for (std::size_t i = 1; i < spans.size(); ++i)
@@ -302,10 +304,10 @@ void ZipReader::settle_names() {
         }
     }
     if (backslashes != 0)
-        oddities_.push_back(
+        counted_warnings_.push_back(
             fmt::format("{} names in the zip archive have '\\' between folders, taken for '/'", backslashes));
     if (rooted != 0)
-        oddities_.push_back(
+        counted_warnings_.push_back(
             fmt::format("{} names in the zip archive begin with '/', which was left out", rooted));
     const std::vector<std::size_t> order = order_of_names(entries_);
     for (std::size_t i = 1; i < order.size(); ++i)
@@ -339,13 +341,13 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
     if ((entry.flags & (flag_encrypted | flag_strongly_encrypted | flag_masked)) != 0)
         fail("is encrypted, which cannot be read; save the file without a password");
     if (entry.method != ZipMethod::stored && entry.method != ZipMethod::deflated)
-        fail(fmt::format("is packed by method {}, expected 0 (stored) or 8 (Deflate)",
+        fail(fmt::format("is compressed by method {}, expected 0 (stored) or 8 (Deflate)",
                          static_cast<unsigned>(entry.method)));
     // Checked before memory is allocated: a few bytes must not reserve memory that others need.
-    if (entry.method == ZipMethod::deflated ? entry.size / most_inflation > entry.packed_size
-                                            : entry.size != entry.packed_size)
-        fail(
-            fmt::format("claims to hold {} bytes in {}, which is impossible", entry.size, entry.packed_size));
+    if (entry.method == ZipMethod::deflated ? entry.size / most_inflation > entry.compressed_size
+                                            : entry.size != entry.compressed_size)
+        fail(fmt::format("claims to hold {} bytes in {}, which is impossible", entry.size,
+                         entry.compressed_size));
     const std::uint64_t before = unpacked_.fetch_add(entry.size);
     if (entry.size > max_unpacked_ || before > max_unpacked_ - entry.size)
         throw Error(ErrorKind::limit,
@@ -353,15 +355,15 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
                                 "`max_memory` allows more",
                                 source_.name, shown, entry.size, max_unpacked_));
 
-    const std::span<const std::byte> packed = source_.bytes.subspan(entry.place, entry.packed_size);
+    const std::span<const std::byte> compressed = source_.bytes.subspan(entry.offset, entry.compressed_size);
     ByteSource content{fmt::format("{}, part '{}'", source_.name, shown), {}, source_.owner};
     if (entry.method == ZipMethod::stored) {
-        content.bytes = packed;
+        content.bytes = compressed;
     } else {
         const auto room = std::make_shared<PageArray<std::byte>>(entry.size);
         const Inflated inflated =
-            inflate(source_.text().substr(entry.place, entry.packed_size), room->span());
-        release(source_, packed);
+            inflate(source_.text().substr(entry.offset, entry.compressed_size), room->span());
+        release(source_, compressed);
         switch (inflated) {
         case Inflated::whole:
             break;
@@ -372,7 +374,7 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
             fail(fmt::format("holds more than the {} bytes that it claims", entry.size));
             break;
         case Inflated::broken:
-            fail("is damaged: its packed bytes make no sense");
+            fail("is damaged: its compressed bytes are invalid");
         }
         content.bytes = room->span();
         content.owner = room;
@@ -383,12 +385,12 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
 }
 
 std::string ZipReader::first_bytes(const ZipEntry& entry, std::size_t most) const {
-    const std::string_view packed = source_.text().substr(entry.place, entry.packed_size);
+    const std::string_view compressed = source_.text().substr(entry.offset, entry.compressed_size);
     if ((entry.flags & (flag_encrypted | flag_strongly_encrypted | flag_masked)) != 0)
         return {};
     if (entry.method == ZipMethod::stored)
-        return std::string(packed.substr(0, most));
-    return entry.method == ZipMethod::deflated ? first_inflated(packed, most) : std::string();
+        return std::string(compressed.substr(0, most));
+    return entry.method == ZipMethod::deflated ? first_inflated(compressed, most) : std::string();
 }
 
 } // namespace lamella

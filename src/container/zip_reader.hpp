@@ -48,14 +48,16 @@ class ZipReader {
     [[nodiscard]] std::string first_bytes(const ZipEntry& entry, std::size_t most) const;
 
     /// Returns warnings about the archive, one line each.
-    [[nodiscard]] const std::vector<std::string>& oddities() const noexcept { return oddities_; }
+    [[nodiscard]] const std::vector<std::string>& counted_warnings() const noexcept {
+        return counted_warnings_;
+    }
     [[nodiscard]] const std::string& name() const noexcept { return source_.name; }
     /// Returns the number of bytes read from entries.
     [[nodiscard]] std::uint64_t unpacked() const noexcept { return unpacked_.load(); }
 
   private:
     void read_directory();
-    void settle_places(std::uint64_t directory_place);
+    void settle_offsets(std::uint64_t directory_offset);
     void settle_names();
 
     ByteSource source_;
@@ -63,7 +65,7 @@ class ZipReader {
     mutable std::atomic<std::uint64_t> unpacked_{0};
     std::vector<ZipEntry> entries_;
     std::vector<std::size_t> by_name_; ///< indices of entries in the order of their names
-    std::vector<std::string> oddities_;
+    std::vector<std::string> counted_warnings_;
 };
 
 } // namespace lamella

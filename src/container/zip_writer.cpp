@@ -59,34 +59,34 @@ Record zip64_extra(const Record& sizes) {
 }
 
 // Writes the fields after the version that the entry's header and its directory record have in common.
-void put_common(const ZipEntry& entry, std::uint64_t packed_size, std::uint64_t size, const Record& extra,
+void put_common(const ZipEntry& entry, std::uint64_t compressed_size, std::uint64_t size, const Record& extra,
                 Record& to) {
     to.u16(entry.flags)
         .u16(static_cast<std::uint64_t>(entry.method))
         .u16(midnight)
         .u16(first_of_january_1980);
-    to.u32(entry.crc).u32(packed_size).u32(size).u16(entry.name.size()).u16(extra.view().size());
+    to.u32(entry.crc).u32(compressed_size).u32(size).u16(entry.name.size()).u16(extra.view().size());
 }
 
 bool is_large(const ZipEntry& entry) {
-    return entry.size >= full32 || entry.packed_size >= full32;
+    return entry.size >= full32 || entry.compressed_size >= full32;
 }
 
 // Returns the header of an entry. A large entry has 64-bit sizes. `room` reserves space for them if the size
 // is not known yet; if they are not needed, it becomes a growth hint of Open Packaging (0xA220).
-std::string head_of(const ZipEntry& entry, bool room = false) {
+std::string header_of(const ZipEntry& entry, bool room = false) {
     const bool large = is_large(entry);
     Record sizes;
     if (large)
-        sizes.u64(entry.size).u64(entry.packed_size);
+        sizes.u64(entry.size).u64(entry.compressed_size);
     Record extra = zip64_extra(sizes);
     if (room && !large)
         extra.u16(0xA220).u16(16).u16(0xA028).u16(0).u64(0).u32(0);
-    Record head;
-    head.u32(zip_entry_mark).u16(large ? version_zip64 : version_plain);
-    put_common(entry, large ? full32 : entry.packed_size, large ? full32 : entry.size, extra, head);
-    head.text(entry.name).text(extra.view());
-    return std::string(head.view());
+    Record header;
+    header.u32(zip_entry_signature).u16(large ? version_zip64 : version_plain);
+    put_common(entry, large ? full32 : entry.compressed_size, large ? full32 : entry.size, extra, header);
+    header.text(entry.name).text(extra.view());
+    return std::string(header.view());
 }
 
 } // namespace
@@ -111,58 +111,58 @@ ZipEntry& ZipWriter::add_entry(std::string_view name, ZipMethod method, bool siz
     entry.method = method;
     entry.flags =
         static_cast<std::uint16_t>((plain ? 0U : flag_utf8_name) | (sizes_behind ? flag_sizes_behind : 0U));
-    entry.place = file_.bytes();
+    entry.offset = file_.bytes();
     return entry;
 }
 
-void ZipWriter::add_ready(std::string_view name, ZipMethod method, const ZipPiece& content) {
+void ZipWriter::add_ready(std::string_view name, ZipMethod method, const ZipChunk& content) {
     ZipEntry& entry = add_entry(name, method, false);
     entry.size = content.size;
-    entry.packed_size = content.bytes.size();
+    entry.compressed_size = content.bytes.size();
     entry.crc = content.crc;
-    file_.append(head_of(entry));
+    file_.append(header_of(entry));
     file_.append(content.bytes);
 }
 
-void ZipWriter::begin(std::string_view name, ZipMethod method, std::size_t head_size) {
+void ZipWriter::begin(std::string_view name, ZipMethod method, std::size_t header_size) {
     const bool stored = method == ZipMethod::stored;
     const ZipEntry& entry = add_entry(name, method, !stored);
     open_ = true;
-    file_.append(head_of(entry, stored));
-    file_.append(std::string(head_size, '\0'));
+    file_.append(header_of(entry, stored));
+    file_.append(std::string(header_size, '\0'));
 }
 
-void ZipWriter::append(const ZipPiece& piece) {
+void ZipWriter::append(const ZipChunk& chunk) {
     ZipEntry& entry = entries_.back();
-    entry.crc = crc32_joined(entry.crc, piece.crc, piece.size);
-    entry.packed_size += piece.bytes.size();
-    entry.size += piece.size;
-    file_.append(piece.bytes);
+    entry.crc = crc32_joined(entry.crc, chunk.crc, chunk.size);
+    entry.compressed_size += chunk.bytes.size();
+    entry.size += chunk.size;
+    file_.append(chunk.bytes);
 }
 
 void ZipWriter::append_stored(std::string_view content) {
     append({content, content.size(), crc32_of(content)});
 }
 
-void ZipWriter::end(std::string_view head) {
+void ZipWriter::end(std::string_view header) {
     open_ = false;
     ZipEntry& entry = entries_.back();
     if (entry.method == ZipMethod::stored) {
-        entry.crc = crc32_joined(crc32_of(head), entry.crc, entry.size);
-        entry.size += head.size();
-        entry.packed_size = entry.size;
-        file_.overwrite(entry.place, head_of(entry, true) + std::string(head));
+        entry.crc = crc32_joined(crc32_of(header), entry.crc, entry.size);
+        entry.size += header.size();
+        entry.compressed_size = entry.size;
+        file_.overwrite(entry.offset, header_of(entry, true) + std::string(header));
         return;
     }
-    assert(head.empty());
+    assert(header.empty());
     file_.append(deflate_end);
-    entry.packed_size += deflate_end.size();
+    entry.compressed_size += deflate_end.size();
     Record descriptor;
     descriptor.u32(0x08074b50).u32(entry.crc);
     if (is_large(entry))
-        descriptor.u64(entry.packed_size).u64(entry.size);
+        descriptor.u64(entry.compressed_size).u64(entry.size);
     else
-        descriptor.u32(entry.packed_size).u32(entry.size);
+        descriptor.u32(entry.compressed_size).u32(entry.size);
     file_.append(descriptor.view());
 }
 
@@ -170,16 +170,16 @@ void ZipWriter::append_directory() {
     for (const ZipEntry& entry : entries_) {
         // Only the values that do not fit, in this order.
         Record large;
-        for (const std::uint64_t value : {entry.size, entry.packed_size, entry.place})
+        for (const std::uint64_t value : {entry.size, entry.compressed_size, entry.offset})
             if (value >= full32)
                 large.u64(value);
         const Record extra = zip64_extra(large);
         const unsigned version = large.view().empty() ? version_plain : version_zip64;
         Record record;
-        record.u32(zip_directory_mark).u16(version).u16(version);
-        put_common(entry, capped(entry.packed_size), capped(entry.size), extra, record);
+        record.u32(zip_directory_signature).u16(version).u16(version);
+        put_common(entry, capped(entry.compressed_size), capped(entry.size), extra, record);
         record.u16(0).u16(0).u16(0).u32(0); // no comment, first disk, no attributes
-        record.u32(capped(entry.place)).text(entry.name).text(extra.view());
+        record.u32(capped(entry.offset)).text(entry.name).text(extra.view());
         file_.append(record.view());
     }
 }
@@ -187,21 +187,26 @@ void ZipWriter::append_directory() {
 void ZipWriter::finish() {
     if (open_)
         throw Error(ErrorKind::internal, fmt::format("zip entry '{}' was not ended", entries_.back().name));
-    const std::uint64_t place = file_.bytes();
+    const std::uint64_t offset = file_.bytes();
     append_directory();
-    const std::uint64_t size = file_.bytes() - place;
+    const std::uint64_t size = file_.bytes() - offset;
     const std::uint64_t count = entries_.size();
-    if (count >= full16 || size >= full32 || place >= full32) {
+    if (count >= full16 || size >= full32 || offset >= full32) {
         constexpr unsigned rest_of_record = 44;
         Record record;
-        record.u32(zip_end64_mark).u64(rest_of_record).u16(version_zip64).u16(version_zip64).u32(0).u32(0);
-        record.u64(count).u64(count).u64(size).u64(place);
-        record.u32(zip_end64_place_mark).u32(0).u64(place + size).u32(1);
+        record.u32(zip_end64_signature)
+            .u64(rest_of_record)
+            .u16(version_zip64)
+            .u16(version_zip64)
+            .u32(0)
+            .u32(0);
+        record.u64(count).u64(count).u64(size).u64(offset);
+        record.u32(zip_end64_locator_signature).u32(0).u64(offset + size).u32(1);
         file_.append(record.view());
     }
     Record end;
-    end.u32(zip_end_mark).u16(0).u16(0).u16(std::min(count, full16)).u16(std::min(count, full16));
-    end.u32(capped(size)).u32(capped(place)).u16(0);
+    end.u32(zip_end_signature).u16(0).u16(0).u16(std::min(count, full16)).u16(std::min(count, full16));
+    end.u32(capped(size)).u32(capped(offset)).u16(0);
     file_.append(end.view());
     file_.commit();
 }

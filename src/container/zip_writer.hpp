@@ -13,7 +13,7 @@
 namespace lamella {
 
 /// Bytes of an entry that were prepared beforehand, perhaps by another thread.
-struct ZipPiece {
+struct ZipChunk {
     std::string_view bytes; ///< the bytes in the archive: output of Deflater for deflated entries
     std::uint64_t size = 0; ///< number of uncompressed bytes
     std::uint32_t crc = 0;  ///< CRC of the uncompressed bytes (`crc32_of`)
@@ -36,14 +36,14 @@ class ZipWriter {
     /// Adds a whole entry; compresses it here if it is deflated.
     void add(std::string_view name, std::string_view content, ZipMethod method = ZipMethod::stored);
     /// Adds a whole entry that was prepared beforehand. If it is deflated, `bytes` is a stream with its end.
-    void add_ready(std::string_view name, ZipMethod method, const ZipPiece& content);
+    void add_ready(std::string_view name, ZipMethod method, const ZipChunk& content);
 
     /// Begin and end an entry that is written in chunks. A stored one requires Overwriting::yes; `end` may
-    /// then replace its first `head_size` bytes.
-    void begin(std::string_view name, ZipMethod method, std::size_t head_size = 0);
-    void append(const ZipPiece& piece);
+    /// then replace its first `header_size` bytes.
+    void begin(std::string_view name, ZipMethod method, std::size_t header_size = 0);
+    void append(const ZipChunk& chunk);
     void append_stored(std::string_view content);
-    void end(std::string_view head = {});
+    void end(std::string_view header = {});
 
     /// Writes the directory and publishes the file under its name. Must be called once, after the last entry.
     void finish();

@@ -23,12 +23,12 @@ class NearestPoints {
     static constexpr std::size_t none = ~std::size_t{0};
 
     explicit NearestPoints(std::vector<Point2> points)
-        : points_(std::move(points)), order_(points_.size()), place_(points_.size()), nodes_(points_.size()),
-          gone_(points_.size(), false) {
+        : points_(std::move(points)), order_(points_.size()), position_(points_.size()),
+          nodes_(points_.size()), gone_(points_.size(), false) {
         std::iota(order_.begin(), order_.end(), std::size_t{0});
         build({0, order_.size()});
-        for (std::size_t place = 0; place < order_.size(); ++place)
-            place_[order_[place]] = place;
+        for (std::size_t position = 0; position < order_.size(); ++position)
+            position_[order_[position]] = position;
     }
 
     /// Calls visit(number, distance, below) for remaining points that are closer than `below`, which the
@@ -55,9 +55,9 @@ class NearestPoints {
     void remove(std::size_t number) {
         assert(number < points_.size() && !gone_[number]);
         Range range{0, order_.size()};
-        for (;; range = place_[number] < range.middle() ? range.before() : range.after()) {
+        for (;; range = position_[number] < range.middle() ? range.before() : range.after()) {
             --nodes_[range.middle()].left;
-            if (place_[number] == range.middle())
+            if (position_[number] == range.middle())
                 break;
         }
         gone_[number] = true;
@@ -91,13 +91,13 @@ class NearestPoints {
     void build(const Range& range) {
         if (range.empty())
             return;
-        const auto at = [&](std::size_t place) {
-            return order_.begin() + static_cast<std::ptrdiff_t>(place);
+        const auto at = [&](std::size_t position) {
+            return order_.begin() + static_cast<std::ptrdiff_t>(position);
         };
         Point2 low = points_[*at(range.begin)];
         Point2 high = low;
-        for (std::size_t place = range.begin; place < range.end; ++place) {
-            const Point2& p = points_[*at(place)];
+        for (std::size_t position = range.begin; position < range.end; ++position) {
+            const Point2& p = points_[*at(position)];
             low = {std::min(low.x, p.x), std::min(low.y, p.y)};
             high = {std::max(high.x, p.x), std::max(high.y, p.y)};
         }
@@ -130,7 +130,7 @@ class NearestPoints {
 
     std::vector<Point2> points_;
     std::vector<std::size_t> order_;
-    std::vector<std::size_t> place_; ///< index of a point in `order_`
+    std::vector<std::size_t> position_; ///< index of a point in `order_`
     std::vector<Node> nodes_;
     std::vector<bool> gone_;
 };

@@ -68,19 +68,19 @@ std::size_t smallest_rotation_with_repeats(std::span<const Point2> ring, std::si
 class Rotated {
   public:
     Rotated(std::span<const Point2> contour, std::size_t start)
-        : head_(contour.subspan(start)), tail_(contour.first(start)) {}
+        : header_(contour.subspan(start)), tail_(contour.first(start)) {}
 
-    [[nodiscard]] std::size_t size() const { return head_.size() + tail_.size(); }
+    [[nodiscard]] std::size_t size() const { return header_.size() + tail_.size(); }
     const Point2& operator[](std::size_t i) const {
-        return i < head_.size() ? head_[i] : tail_[i - head_.size()];
+        return i < header_.size() ? header_[i] : tail_[i - header_.size()];
     }
     Point2* copy_to(Point2* out) const {
-        out = std::copy(head_.begin(), head_.end(), out);
+        out = std::copy(header_.begin(), header_.end(), out);
         return std::copy(tail_.begin(), tail_.end(), out);
     }
 
   private:
-    std::span<const Point2> head_;
+    std::span<const Point2> header_;
     std::span<const Point2> tail_;
 };
 
@@ -108,7 +108,7 @@ class ContourSet {
     }
 
     // Returns the normal form; index, z, bottom and top are those of `head`; no hatches.
-    Layer laid_out(const Layer& head) && {
+    Layer laid_out(const Layer& header) && {
         std::size_t size = 0;
         for (std::vector<Rotated>* const group : {&rings_, &chains_}) {
             std::sort(group->begin(), group->end(), before<Rotated>);
@@ -116,7 +116,7 @@ class ContourSet {
                 size += contour.size();
         }
         const auto points = std::make_shared<const PageArray<Point2>>(size);
-        Layer layer{.index = head.index, .z = head.z, .bottom = head.bottom, .top = head.top};
+        Layer layer{.index = header.index, .z = header.z, .bottom = header.bottom, .top = header.top};
         layer.rings = rings_.size();
         layer.offsets.reserve(rings_.size() + chains_.size() + 1);
         Point2* end = points->data();

@@ -54,9 +54,9 @@ CosSin cos_sin_turn(std::uint64_t i, std::uint64_t n) noexcept {
 }
 
 CosSin cos_sin_degrees(double degrees) noexcept {
-    const double turned = std::fmod(std::fabs(degrees), 360.0); // exact, and so is the subtraction below
-    const auto octant = static_cast<unsigned>(turned / 45);
-    double rest = turned - 45 * octant;
+    const double rotated = std::fmod(std::fabs(degrees), 360.0); // exact, and so is the subtraction below
+    const auto octant = static_cast<unsigned>(rotated / 45);
+    double rest = rotated - 45 * octant;
     if (octant % 2 != 0)
         rest = 45 - rest;
     CosSin v = in_octant(octant, first_octant(rest * (std::numbers::pi / 180)));

@@ -27,13 +27,13 @@ class BoxTree {
     /// Number of leaves; a leaf has up to `leaf_size` positions.
     [[nodiscard]] std::size_t leaves() const noexcept { return levels_.empty() ? 0 : levels_[0].size(); }
     /// The triangle at a position in the order of the curve.
-    [[nodiscard]] std::uint32_t triangle(std::size_t place) const noexcept { return order_[place]; }
+    [[nodiscard]] std::uint32_t triangle(std::size_t position) const noexcept { return order_[position]; }
 
     /// The positions of a leaf, as a half-open interval.
-    [[nodiscard]] std::pair<std::size_t, std::size_t> places(std::size_t leaf) const noexcept {
+    [[nodiscard]] std::pair<std::size_t, std::size_t> positions(std::size_t leaf) const noexcept {
         return {leaf * leaf_size, std::min((leaf + 1) * leaf_size, order_.size())};
     }
-    /// Calls visit(place_a, place_b) for overlapping boxes with place_a < place_b and place_a in the leaf.
+    /// Calls visit(point_a, point_b) for overlapping boxes with point_a < point_b and point_a in the leaf.
     template <class Visit>
     void close_to_leaf(std::size_t leaf, const Visit& visit) const;
 
@@ -70,13 +70,13 @@ class BoxTree {
                 std::max({box.max.x / 4 - low[0], box.max.y / 4 - low[1], box.max.z / 4 - low[2]});
             scale = extent > 1e-300 ? 1 / extent : 0;
         }
-        [[nodiscard]] float place(double x, std::size_t axis) const noexcept {
+        [[nodiscard]] float position(double x, std::size_t axis) const noexcept {
             return static_cast<float>((x / 4 - low[axis]) * scale);
         }
     };
 
     /// Interleaves the bits of three numbers of 21 bits (Morton order).
-    static std::uint64_t curve_place(const Bounds& bounds) noexcept {
+    static std::uint64_t curve_position(const Bounds& bounds) noexcept {
         std::uint64_t code = 0;
         for (std::size_t k = 0; k < 3; ++k) {
             const float middle = (bounds.min[k] + bounds.max[k]) / 2;
@@ -103,7 +103,7 @@ BoxTree::BoxTree(Executor& executor, const IndexedMesh& mesh, const Box3& box, c
         Bounds bounds;
         for (const std::uint32_t v : mesh.triangles[i]) {
             const Point3& p = mesh.vertices[v];
-            const std::array at{frame.place(p.x, 0), frame.place(p.y, 1), frame.place(p.z, 2)};
+            const std::array at{frame.position(p.x, 0), frame.position(p.y, 1), frame.position(p.z, 2)};
             bounds.add({at, at});
         }
         return bounds;
@@ -114,7 +114,7 @@ BoxTree::BoxTree(Executor& executor, const IndexedMesh& mesh, const Box3& box, c
             sorted.emplace_back(0, i);
     executor.for_chunks(sorted.size(), chunk, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i)
-            sorted[i].first = curve_place(bounds_of(sorted[i].second));
+            sorted[i].first = curve_position(bounds_of(sorted[i].second));
     });
     std::sort(sorted.begin(), sorted.end());
     order_.resize(sorted.size());
@@ -141,9 +141,9 @@ BoxTree::BoxTree(Executor& executor, const IndexedMesh& mesh, const Box3& box, c
 template <class Visit>
 void BoxTree::close_to_leaf(std::size_t leaf, const Visit& visit) const {
     const Bounds& mine = levels_[0][leaf];
-    const auto mine_at = places(leaf);
+    const auto mine_at = positions(leaf);
     const auto compare_with = [&](std::size_t other) {
-        const auto [from, to] = places(other);
+        const auto [from, to] = positions(other);
         for (std::size_t a = mine_at.first; a < mine_at.second; ++a) {
             if (other != leaf && !boxes_[a].overlaps(levels_[0][other]))
                 continue;

@@ -42,31 +42,31 @@ void for_each_loop(const std::vector<VertexPair>& edges, const Visit& visit) {
     std::vector<std::uint32_t> path;
     // Position of a vertex in the path; a vertex without outgoing edges ends the path.
     constexpr std::uint32_t nowhere = 0xffffffff;
-    std::vector<std::uint32_t> place(edges.size(), nowhere);
+    std::vector<std::uint32_t> position(edges.size(), nowhere);
     const auto walk_from = [&](std::uint32_t start) {
         path.clear();
         for (std::uint32_t vertex = start;;) {
             const std::size_t first = first_of(vertex);
             const bool leaves = first < edges.size() && edges[first].first == vertex;
-            if (leaves && place[first] != nowhere) {
-                const std::uint32_t from = place[first];
+            if (leaves && position[first] != nowhere) {
+                const std::uint32_t from = position[first];
                 visit(std::span<const std::uint32_t>(path).subspan(from), true);
                 for (std::size_t i = from; i < path.size(); ++i)
-                    place[first_of(path[i])] = nowhere;
+                    position[first_of(path[i])] = nowhere;
                 path.resize(from);
             }
             const std::size_t next = first + (leaves ? used[first] : 0);
             path.push_back(vertex);
             if (!leaves || next >= edges.size() || edges[next].first != vertex)
                 break;
-            place[first] = static_cast<std::uint32_t>(path.size() - 1);
+            position[first] = static_cast<std::uint32_t>(path.size() - 1);
             ++used[first];
             vertex = edges[next].second;
         }
         for (const std::uint32_t vertex : path)
             if (const std::size_t first = first_of(vertex);
                 first < edges.size() && edges[first].first == vertex)
-                place[first] = nowhere;
+                position[first] = nowhere;
         if (path.size() > 1)
             visit(std::span<const std::uint32_t>(path), false);
     };
@@ -174,7 +174,7 @@ void find_nonmanifold_vertices(Executor& executor, const IndexedMesh& mesh, std:
         }
 }
 
-std::vector<Shell> tell_shells(const Survey& all, const IndexedMesh& mesh) {
+std::vector<Shell> report_shells(const Survey& all, const IndexedMesh& mesh) {
     std::vector<Shell> shells(all.shells.size());
     for (std::size_t s = 0; s < shells.size(); ++s) {
         Shell& shell = shells[s];
@@ -210,19 +210,19 @@ Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options, con
     found.counts = all.found;
     found.opposite_pairs = all.opposite_pairs;
 
-    const auto keep_first = [&](auto& places) {
-        if (places.size() > options.keep)
-            places.resize(options.keep);
+    const auto keep_first = [&](auto& positions) {
+        if (positions.size() > options.keep)
+            positions.resize(options.keep);
     };
-    find_loops(mesh, all.places.boundary, found);
+    find_loops(mesh, all.locations.boundary, found);
     keep_first(found.loops);
-    const auto keep_edges = [&](const std::vector<VertexPair>& edges, std::vector<EdgePlace>& kept) {
+    const auto keep_edges = [&](const std::vector<VertexPair>& edges, std::vector<EdgeLocation>& kept) {
         for (std::size_t i = 0; i < std::min(edges.size(), options.keep); ++i)
             kept.push_back({mesh.vertices[edges[i].first], mesh.vertices[edges[i].second]});
     };
-    keep_edges(all.places.nonmanifold, found.nonmanifold_edges);
-    keep_edges(all.places.conflicts, found.conflicting_edges);
-    found.duplicate_triangles = all.places.duplicates;
+    keep_edges(all.locations.nonmanifold, found.nonmanifold_edges);
+    keep_edges(all.locations.conflicts, found.conflicting_edges);
+    found.duplicate_triangles = all.locations.duplicates;
     keep_first(found.duplicate_triangles);
     for (std::uint32_t i = 0; i < mesh.triangles.size() && found.degenerate_triangles.size() < options.keep &&
                               found.degenerate_triangles.size() < found.counts.degenerate_triangles;
@@ -231,7 +231,7 @@ Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options, con
             found.degenerate_triangles.push_back(i);
     find_nonmanifold_vertices(executor, mesh, options.keep, found);
 
-    found.shells = tell_shells(all, mesh);
+    found.shells = report_shells(all, mesh);
     keep_first(found.shells);
     if (options.self_intersections)
         found.self_intersections = find_self_intersections(

@@ -35,8 +35,8 @@ DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& exec
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         if (!dropped[i])
             result.mesh.triangles.push_back(mesh.triangles[i]);
-        else if (result.places.size() < repair_places)
-            result.places.push_back(middle(corners(mesh, i)));
+        else if (result.locations.size() < repair_locations)
+            result.locations.push_back(middle(corners(mesh, i)));
     }
     if (result.mesh.triangles.size() < mesh.triangles.size())
         drop_unused_vertices(result.mesh, executor);

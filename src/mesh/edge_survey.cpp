@@ -15,7 +15,7 @@ namespace {
 struct Worker {
     Inspection counts;
     std::uint64_t opposite_pairs = 0;
-    EdgePlaces places;
+    EdgeLocations locations;
     std::vector<TriangleOverEdge> triangles;
 };
 
@@ -45,7 +45,7 @@ void for_each_same(const IndexedMesh& mesh, std::span<const EdgeUse> uses,
 
 } // namespace
 
-EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_places) {
+EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_locations) {
     const std::size_t n = mesh.triangles.size();
     EdgeSurvey survey{.parts = UnionFind(n), .open = PageArray<std::atomic<std::uint8_t>>(n, Fill::zero)};
     std::vector<Worker> workers(executor.workers());
@@ -70,34 +70,34 @@ EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_p
                 group.begin(), group.end(), [](const TriangleOverEdge& t) { return t.upwards; }));
             worker.counts.duplicate_triangles += group.size() - 1;
             worker.opposite_pairs += std::min(same_way, group.size() - same_way);
-            if (with_places)
+            if (with_locations)
                 for (const TriangleOverEdge& t : group.subspan(1))
-                    worker.places.duplicates.push_back(t.triangle);
+                    worker.locations.duplicates.push_back(t.triangle);
         });
-        if (!with_places || !(boundary || nonmanifold || conflict))
+        if (!with_locations || !(boundary || nonmanifold || conflict))
             return;
         const VertexPair edge = ends_of(mesh, uses[0]);
         if (boundary)
-            worker.places.boundary.push_back(up == 1 ? VertexPair{edge.second, edge.first} : edge);
+            worker.locations.boundary.push_back(up == 1 ? VertexPair{edge.second, edge.first} : edge);
         if (nonmanifold)
-            worker.places.nonmanifold.push_back(edge);
+            worker.locations.nonmanifold.push_back(edge);
         if (conflict)
-            worker.places.conflicts.push_back(edge);
+            worker.locations.conflicts.push_back(edge);
     });
     for (const Worker& worker : workers) {
         add(survey.counts, worker.counts);
         survey.opposite_pairs += worker.opposite_pairs;
     }
-    const auto gather = [&](auto EdgePlaces::*kind) {
-        auto& all = survey.places.*kind;
+    const auto gather = [&](auto EdgeLocations::*kind) {
+        auto& all = survey.locations.*kind;
         for (const Worker& worker : workers)
-            all.insert(all.end(), (worker.places.*kind).begin(), (worker.places.*kind).end());
+            all.insert(all.end(), (worker.locations.*kind).begin(), (worker.locations.*kind).end());
         std::sort(all.begin(), all.end());
     };
-    gather(&EdgePlaces::boundary);
-    gather(&EdgePlaces::nonmanifold);
-    gather(&EdgePlaces::conflicts);
-    gather(&EdgePlaces::duplicates);
+    gather(&EdgeLocations::boundary);
+    gather(&EdgeLocations::nonmanifold);
+    gather(&EdgeLocations::conflicts);
+    gather(&EdgeLocations::duplicates);
     return survey;
 }
 

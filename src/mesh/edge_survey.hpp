@@ -21,7 +21,7 @@ namespace lamella {
 using VertexPair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// In ascending order.
-struct EdgePlaces {
+struct EdgeLocations {
     std::vector<VertexPair> boundary;    ///< directed against the triangle
     std::vector<VertexPair> nonmanifold; ///< low, high
     std::vector<VertexPair> conflicts;   ///< low, high
@@ -33,13 +33,13 @@ struct EdgeSurvey {
     std::uint64_t opposite_pairs = 0;          ///< as in Diagnosis
     UnionFind parts;                           ///< sets of triangles connected by edges
     PageArray<std::atomic<std::uint8_t>> open; ///< 1 for one triangle at each edge that is not balanced
-    EdgePlaces places = {};
+    EdgeLocations locations = {};
 };
 
 /// Adds counts and sizes of another mesh, or of another part of the same mesh, to `sum`.
 void add(Inspection& sum, const Inspection& other) noexcept;
 
-[[nodiscard]] EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_places);
+[[nodiscard]] EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_locations);
 
 /// A triangle, named by its highest vertex among triangles whose two lowest vertices are the same.
 struct TriangleOverEdge {

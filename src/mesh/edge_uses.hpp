@@ -23,7 +23,7 @@ namespace lamella {
 
 /// One side of one triangle, on the edge between the vertices `low` < `high`.
 struct EdgeUse {
-    std::uint32_t place; ///< index of `low` in its partition, and the two flags
+    std::uint32_t position; ///< index of `low` in its partition, and the two flags
     std::uint32_t high;
     std::uint32_t triangle;
 
@@ -31,10 +31,10 @@ struct EdgeUse {
     static constexpr std::uint32_t lowest_bit = 1U << 30;
 
     /// Returns true if the triangle runs from `low` to `high`.
-    [[nodiscard]] bool upwards() const noexcept { return (place & upwards_bit) != 0; }
+    [[nodiscard]] bool upwards() const noexcept { return (position & upwards_bit) != 0; }
     /// Returns true if these are the two lowest vertices of the triangle, as for exactly one of its sides.
-    [[nodiscard]] bool lowest_side() const noexcept { return (place & lowest_bit) != 0; }
-    [[nodiscard]] std::uint32_t low_in_partition() const noexcept { return place & (lowest_bit - 1); }
+    [[nodiscard]] bool lowest_side() const noexcept { return (position & lowest_bit) != 0; }
+    [[nodiscard]] std::uint32_t low_in_partition() const noexcept { return position & (lowest_bit - 1); }
 };
 
 /// Returns the vertices of a side, the lower one first.

@@ -15,15 +15,15 @@
 namespace lamella {
 
 /// Elements per chunk.
-inline constexpr std::size_t fold_piece = std::size_t{1} << 15;
+inline constexpr std::size_t fold_chunk = std::size_t{1} << 15;
 
 /// Computes piece(begin, end) -> Value for chunks of [0, n), then merge(total, value) in ascending order.
 template <class Value, class Piece, class Merge>
 [[nodiscard]] Value fold(Executor& executor, std::size_t n, Value total, const Piece& piece,
                          const Merge& merge) {
-    std::vector<Value> values((n + fold_piece - 1) / fold_piece, total);
-    executor.for_chunks(n, fold_piece, [&](std::size_t begin, std::size_t end, unsigned) {
-        values[begin / fold_piece] = piece(begin, end);
+    std::vector<Value> values((n + fold_chunk - 1) / fold_chunk, total);
+    executor.for_chunks(n, fold_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
+        values[begin / fold_chunk] = piece(begin, end);
     });
     for (const Value& value : values)
         merge(total, value);

@@ -26,9 +26,9 @@ void add(Inspection& sum, const Inspection& other) noexcept {
         sum.*kind.count += other.*kind.count;
 }
 
-Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places) {
+Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_locations) {
     const std::size_t n = mesh.triangles.size();
-    EdgeSurvey edges = survey_edges(executor, mesh, with_places);
+    EdgeSurvey edges = survey_edges(executor, mesh, with_locations);
     Survey all{.shells = find_shells(executor, mesh, edges)};
     Inspection& found = all.found;
     found = edges.counts;
@@ -36,7 +36,7 @@ Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places) {
     found.vertices = mesh.vertices.size();
     found.box = fold_box(executor, mesh.vertices);
     all.opposite_pairs = edges.opposite_pairs;
-    all.places = std::move(edges.places);
+    all.locations = std::move(edges.locations);
 
     const auto piece = [&](std::size_t begin, std::size_t end) {
         Inspection some;
@@ -73,9 +73,9 @@ Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places) {
         if (inside == no_shell || size(enclosure.encloser) < size(inside))
             inside = enclosure.encloser;
     };
-    if (with_places ? shells.size() > 1 : std::find(inward.begin(), inward.end(), true) != inward.end())
+    if (with_locations ? shells.size() > 1 : std::find(inward.begin(), inward.end(), true) != inward.end())
         for_each_enclosure(executor, mesh, shells, all.boxes,
-                           with_places ? std::vector<bool>(shells.size(), true) : inward, note);
+                           with_locations ? std::vector<bool>(shells.size(), true) : inward, note);
     all.cavity.resize(shells.size());
     for (std::size_t s = 0; s < shells.size(); ++s)
         if (inward[s]) {

@@ -43,7 +43,7 @@ constexpr std::uint32_t no_neighbour = 0xffffffff;
 
 PageArray<std::uint32_t> find_neighbours(Executor& executor, const IndexedMesh& mesh) {
     PageArray<std::uint32_t> neighbours(3 * mesh.triangles.size());
-    executor.for_chunks(neighbours.size(), fold_piece, [&](std::size_t begin, std::size_t end, unsigned) {
+    executor.for_chunks(neighbours.size(), fold_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
         std::fill(neighbours.data() + begin, neighbours.data() + end, no_neighbour);
     });
     for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned) {
@@ -62,8 +62,8 @@ PageArray<std::uint32_t> find_neighbours(Executor& executor, const IndexedMesh& 
 }
 
 struct Patches {
-    Shells shells;            ///< the patches, as if they were shells
-    std::vector<bool> turned; ///< triangles flipped
+    Shells shells;             ///< the patches, as if they were shells
+    std::vector<bool> flipped; ///< triangles flipped
     std::vector<bool> one_sided;
 };
 
@@ -73,7 +73,7 @@ Patches flood(const IndexedMesh& mesh, const PageArray<std::uint32_t>& neighbour
     Shells& shells = patches.shells;
     shells.of_triangle = PageArray<std::uint32_t>(n);
     std::fill(shells.of_triangle.data(), shells.of_triangle.data() + n, no_shell);
-    patches.turned.assign(n, false);
+    patches.flipped.assign(n, false);
     std::vector<std::uint32_t> members;
     for (std::uint32_t start = 0; start < n; ++start) {
         if (shells.of_triangle[start] != no_shell || degenerate(mesh.triangles[start]))
@@ -90,19 +90,19 @@ Patches flood(const IndexedMesh& mesh, const PageArray<std::uint32_t>& neighbour
                 if (neighbour == no_neighbour)
                     continue;
                 const std::uint32_t j = neighbour / 2;
-                const bool turn = patches.turned[i] != (neighbour % 2 != 0);
+                const bool turn = patches.flipped[i] != (neighbour % 2 != 0);
                 if (shells.of_triangle[j] == no_shell) {
                     shells.of_triangle[j] = patch;
-                    patches.turned[j] = turn;
+                    patches.flipped[j] = turn;
                     members.push_back(j);
-                } else if (patches.turned[j] != turn) {
+                } else if (patches.flipped[j] != turn) {
                     patches.one_sided[patch] = true;
                 }
             }
         }
         if (patches.one_sided[patch])
             for (const std::uint32_t i : members)
-                patches.turned[i] = false;
+                patches.flipped[i] = false;
     }
     return patches;
 }
@@ -117,19 +117,19 @@ struct TiedTriangle {
 /// Swaps flipped and unflipped triangles in each shell of which more than half is flipped. If exactly half
 /// is, the lexicographically smallest triangle that does not occur in both orientations decides. So neither
 /// the order of triangles nor their first corner matters.
-void turn_the_minority(const IndexedMesh& mesh, const Shells& shells, std::vector<bool>& turned) {
+void flip_the_minority(const IndexedMesh& mesh, const Shells& shells, std::vector<bool>& flipped) {
     const std::size_t n = mesh.triangles.size();
     std::vector<std::int64_t> lead(shells.size(), 0);
     for (std::size_t i = 0; i < n; ++i)
         if (const std::uint32_t s = shells.of_triangle[i]; s != no_shell)
-            lead[s] += turned[i] ? 1 : -1;
+            lead[s] += flipped[i] ? 1 : -1;
     std::vector<TiedTriangle> tied;
     for (std::size_t i = 0; i < n; ++i) {
         const std::uint32_t s = shells.of_triangle[i];
         if (s == no_shell || lead[s] != 0)
             continue;
         const Triangle3 t = corners(mesh, i);
-        tied.push_back({s, in_order(t), runs_in_order(t) != turned[i] ? 1 : -1});
+        tied.push_back({s, in_order(t), runs_in_order(t) != flipped[i] ? 1 : -1});
     }
     std::sort(tied.begin(), tied.end(), [](const TiedTriangle& a, const TiedTriangle& b) {
         return std::tie(a.shell, a.corners) < std::tie(b.shell, b.corners);
@@ -145,7 +145,7 @@ void turn_the_minority(const IndexedMesh& mesh, const Shells& shells, std::vecto
     }
     for (std::size_t i = 0; i < n; ++i)
         if (const std::uint32_t s = shells.of_triangle[i]; s != no_shell && lead[s] > 0)
-            turned[i] = !turned[i];
+            flipped[i] = !flipped[i];
 }
 
 using Balance = std::pair<std::uint32_t, int>;
@@ -176,7 +176,7 @@ std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& m
     std::vector<std::vector<UnevenUse>> found(executor.workers());
     for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned worker) {
         const auto upwards = [&](const EdgeUse& use) {
-            return use.upwards() != patches.turned[use.triangle];
+            return use.upwards() != patches.flipped[use.triangle];
         };
         if (uses.size() == 2 && upwards(uses[0]) != upwards(uses[1]))
             return;
@@ -215,14 +215,14 @@ void for_each_uneven_edge(const std::vector<UnevenUse>& uneven, const Visit& vis
 /// Groups of tied patches: each patch is oriented as the first one of its group, or opposite to it.
 class Ties {
   public:
-    struct Place {
+    struct Position {
         std::uint32_t first; ///< identifies the group
         bool against;        ///< opposite to the first
     };
 
     explicit Ties(std::size_t patches) : ways_(2 * patches) {}
 
-    [[nodiscard]] Place place(std::uint32_t patch) const noexcept {
+    [[nodiscard]] Position position(std::uint32_t patch) const noexcept {
         const std::uint32_t lowest = ways_.find(2 * patch);
         return {lowest / 2, lowest % 2 != 0};
     }
@@ -245,7 +245,7 @@ class Ties {
 std::vector<Balance> tied_balances(std::span<const UnevenUse> uses, const Ties& ties) {
     std::vector<Balance> all;
     for (const UnevenUse& use : uses) {
-        const Ties::Place at = ties.place(use.patch);
+        const Ties::Position at = ties.position(use.patch);
         all.emplace_back(at.first, at.against ? -use.balance : use.balance);
     }
     add_up(all);
@@ -280,9 +280,9 @@ Ties fit(std::size_t patches, const std::vector<UnevenUse>& uneven) {
             contradicted.push_back(a);
     std::vector<bool> refused(patches, false);
     for (const std::uint32_t a : contradicted)
-        refused[together.place(a).first] = true;
+        refused[together.position(a).first] = true;
     for (const auto& [a, b] : turns)
-        if (!refused[together.place(a).first])
+        if (!refused[together.position(a).first])
             (void)ties.tie(a, b, true);
     return ties;
 }
@@ -296,7 +296,7 @@ Shells tied_shells(const Shells& patches, const Ties& ties) {
         shells.of_triangle[i] = no_shell;
         if (patches.of_triangle[i] == no_shell)
             continue;
-        std::uint32_t& shell = number[ties.place(patches.of_triangle[i]).first];
+        std::uint32_t& shell = number[ties.position(patches.of_triangle[i]).first];
         if (shell == no_shell) {
             shell = static_cast<std::uint32_t>(shells.size());
             shells.first.push_back(static_cast<std::uint32_t>(i));
@@ -384,19 +384,19 @@ std::map<ShellPair, bool> find_contacts(Executor& executor, const IndexedMesh& m
         const bool second = may_lie(pair.second, pair.first);
         if (!first && !second)
             return;
-        const std::optional<MeetingKind> kind =
+        const std::optional<IntersectionKind> kind =
             contact({corners(mesh, a), {0, 1, 2}}, {corners(mesh, b), {3, 4, 5}});
         if (!kind)
             return;
         if (first)
-            found[worker][pair] |= *kind == MeetingKind::crossing;
+            found[worker][pair] |= *kind == IntersectionKind::crossing;
         if (second)
-            found[worker][{pair.second, pair.first}] |= *kind == MeetingKind::crossing;
+            found[worker][{pair.second, pair.first}] |= *kind == IntersectionKind::crossing;
     };
     executor.for_chunks(tree.leaves(), 256, [&](std::size_t begin, std::size_t end, unsigned worker) {
         for (std::size_t leaf = begin; leaf < end && !executor.stopping(); ++leaf)
-            tree.close_to_leaf(leaf, [&](std::size_t place_a, std::size_t place_b) {
-                compare(tree.triangle(place_a), tree.triangle(place_b), worker);
+            tree.close_to_leaf(leaf, [&](std::size_t point_a, std::size_t point_b) {
+                compare(tree.triangle(point_a), tree.triangle(point_b), worker);
             });
     });
     executor.check_cancelled();
@@ -453,18 +453,18 @@ std::vector<Sense> find_senses(Executor& executor, const IndexedMesh& mesh, cons
     return senses;
 }
 
-IndexedMesh turned_where(IndexedMesh mesh, const std::vector<bool>& turned) {
-    for (std::size_t i = 0; i < turned.size(); ++i)
-        if (turned[i])
+IndexedMesh flipped_where(IndexedMesh mesh, const std::vector<bool>& flipped) {
+    for (std::size_t i = 0; i < flipped.size(); ++i)
+        if (flipped[i])
             std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
     return mesh;
 }
 
 /// Flips shells as a whole if the sign of their volume is certain.
-void turn_by_volume(Executor& executor, const IndexedMesh& mesh, Patches& patches,
+void flip_by_volume(Executor& executor, const IndexedMesh& mesh, Patches& patches,
                     const std::vector<UnevenUse>& uneven, const Ties& ties, Shells& shells,
                     OrientedMesh& result) {
-    const IndexedMesh now = turned_where(mesh, patches.turned);
+    const IndexedMesh now = flipped_where(mesh, patches.flipped);
     const std::vector<Box3> boxes = shell_boxes(now, shells);
     const std::vector<Content> contents =
         measure_shells(executor, now, boxes, uneven, patches.shells, ties, shells);
@@ -480,10 +480,10 @@ void turn_by_volume(Executor& executor, const IndexedMesh& mesh, Patches& patche
     };
     for (std::size_t i = 0; i < now.triangles.size(); ++i)
         if (const std::uint32_t s = shells.of_triangle[i]; s != no_shell && turns(s))
-            patches.turned[i] = !patches.turned[i];
+            patches.flipped[i] = !patches.flipped[i];
     for (const std::uint32_t first : patches.shells.first)
         if (const std::uint32_t s = shells.of_triangle[first]; turns(s))
-            ++(senses[s] == Sense::inward ? result.turned_inward : result.turned_outward);
+            ++(senses[s] == Sense::inward ? result.flipped_inward : result.flipped_outward);
 }
 
 } // namespace
@@ -497,8 +497,8 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
     Patches patches = flood(mesh, find_neighbours(executor, mesh));
     const std::size_t count = patches.shells.size();
     const std::vector<std::uint32_t>& first = patches.shells.first;
-    std::vector<bool>& turned = patches.turned;
-    turn_the_minority(mesh, patches.shells, turned);
+    std::vector<bool>& flipped = patches.flipped;
+    flip_the_minority(mesh, patches.shells, flipped);
     std::vector<UnevenUse> uneven = find_uneven_uses(executor, mesh, patches);
 
     OrientedMesh result;
@@ -511,31 +511,32 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
         std::vector<bool> before;
         bool fitted = false;
         for (std::size_t p = 0; p < count; ++p) {
-            before.push_back(turned[first[p]]);
-            fitted = fitted || ties.place(static_cast<std::uint32_t>(p)).against;
+            before.push_back(flipped[first[p]]);
+            fitted = fitted || ties.position(static_cast<std::uint32_t>(p)).against;
         }
         for (std::size_t i = 0; i < n; ++i)
-            if (const std::uint32_t p = patches.shells.of_triangle[i]; p != no_shell && ties.place(p).against)
-                turned[i] = !turned[i];
-        turn_the_minority(mesh, shells, turned);
+            if (const std::uint32_t p = patches.shells.of_triangle[i];
+                p != no_shell && ties.position(p).against)
+                flipped[i] = !flipped[i];
+        flip_the_minority(mesh, shells, flipped);
         if (!fitted) {
             settled = shells.size();
-            result.turned_outward = result.turned_inward = 0; // only the flips of the largest groups count
-            turn_by_volume(executor, mesh, patches, uneven, ties, shells, result);
+            result.flipped_outward = result.flipped_inward = 0; // only the flips of the largest groups count
+            flip_by_volume(executor, mesh, patches, uneven, ties, shells, result);
         }
         for (UnevenUse& use : uneven)
-            if (turned[first[use.patch]] != before[use.patch])
+            if (flipped[first[use.patch]] != before[use.patch])
                 use.balance = -use.balance;
     }
 
-    result.one_sided_patches =
+    result.non_orientable_patches =
         static_cast<std::uint64_t>(std::count(patches.one_sided.begin(), patches.one_sided.end(), true));
-    result.mesh = turned_where(mesh, turned);
+    result.mesh = flipped_where(mesh, flipped);
     for (std::size_t i = 0; i < n; ++i)
-        if (turned[i]) {
-            ++result.turned_triangles;
-            if (result.places.size() < repair_places)
-                result.places.push_back(middle(corners(mesh, i)));
+        if (flipped[i]) {
+            ++result.flipped_triangles;
+            if (result.locations.size() < repair_locations)
+                result.locations.push_back(middle(corners(mesh, i)));
         }
     return result;
 }

@@ -46,8 +46,8 @@ bool between(const Point2& at, const Point2& right, const Point2& left, const Po
     return orientation(at, right, q) > 0 && orientation(at, q, left) > 0;
 }
 
-std::size_t cell_of(double place, std::size_t cells) {
-    return place > 0 ? std::min(static_cast<std::size_t>(std::min(place, 1e9)), cells - 1) : 0;
+std::size_t cell_of(double position, std::size_t cells) {
+    return position > 0 ? std::min(static_cast<std::size_t>(std::min(position, 1e9)), cells - 1) : 0;
 }
 
 /// Returns the least and the largest x of a triangle between y = row and y = row + 1, with a margin. The grid
@@ -218,8 +218,8 @@ void PolygonTriangulator::build_grid() {
             cells_per_mm_ = {0, 0};
     }
     const auto cell = [&](const Point2& p) {
-        const Point2 place = cells(p);
-        return cell_of(place.y, rows_) * columns_ + cell_of(place.x, columns_);
+        const Point2 position = cells(p);
+        return cell_of(position.y, rows_) * columns_ + cell_of(position.x, columns_);
     };
     // A counting sort: count per cell, find where each cell begins, then distribute.
     cell_begin_.assign(columns_ * rows_ + 2, 0);

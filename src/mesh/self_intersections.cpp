@@ -25,7 +25,7 @@ namespace {
 struct Pair {
     std::uint32_t a;
     std::uint32_t b;
-    MeetingKind kind;
+    IntersectionKind kind;
 
     friend bool operator<(const Pair& p, const Pair& q) noexcept {
         return std::pair(p.a, p.b) < std::pair(q.a, q.b);
@@ -51,8 +51,8 @@ struct Found {
     /// Number of pairs of each kind.
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::array<std::uint64_t, 3>> parts;
 
-    void add(const Pair& pair, const MeetingOptions& options) {
-        add_to(pair.kind == MeetingKind::touching ? beside : through, pair, options.keep);
+    void add(const Pair& pair, const IntersectionOptions& options) {
+        add_to(pair.kind == IntersectionKind::touching ? beside : through, pair, options.keep);
         const auto part_of = [&](std::uint32_t triangle) {
             return options.parts.empty() ? 0U : options.parts[triangle];
         };
@@ -66,7 +66,7 @@ NamedTriangle named(const IndexedMesh& mesh, std::uint32_t i) {
 
 } // namespace
 
-SelfIntersections find_self_intersections(const IndexedMesh& mesh, const MeetingOptions& options,
+SelfIntersections find_self_intersections(const IndexedMesh& mesh, const IntersectionOptions& options,
                                           const Execution& execution) {
     Executor executor(execution);
     SelfIntersections result;
@@ -75,7 +75,7 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Meeting
         throw Error(
             ErrorKind::usage,
             fmt::format(
-                "MeetingOptions::parts has {} numbers and the mesh {} triangles; it needs one for each",
+                "IntersectionOptions::parts has {} numbers and the mesh {} triangles; it needs one for each",
                 options.parts.size(), n));
 
     const PageArray<std::uint8_t> without_area(n, Fill::zero);
@@ -98,14 +98,15 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Meeting
     const auto search = [&](std::size_t first_leaf, std::size_t last_leaf, unsigned worker) {
         std::vector<ContactSeeker> seekers;
         for (std::size_t leaf = first_leaf; leaf < last_leaf && !executor.stopping(); ++leaf) {
-            const auto [begin, end] = tree.places(leaf);
+            const auto [begin, end] = tree.positions(leaf);
             seekers.clear();
-            for (std::size_t place = begin; place < end; ++place)
-                seekers.emplace_back(named(mesh, tree.triangle(place)));
-            tree.close_to_leaf(leaf, [&, first = begin](std::size_t place_a, std::size_t place_b) {
-                const std::uint32_t a = tree.triangle(place_a);
-                const std::uint32_t b = tree.triangle(place_b);
-                if (const std::optional<MeetingKind> kind = seekers[place_a - first].with(named(mesh, b)))
+            for (std::size_t position = begin; position < end; ++position)
+                seekers.emplace_back(named(mesh, tree.triangle(position)));
+            tree.close_to_leaf(leaf, [&, first = begin](std::size_t point_a, std::size_t point_b) {
+                const std::uint32_t a = tree.triangle(point_a);
+                const std::uint32_t b = tree.triangle(point_b);
+                if (const std::optional<IntersectionKind> kind =
+                        seekers[point_a - first].with(named(mesh, b)))
                     found[worker].add({std::min(a, b), std::max(a, b), *kind}, options);
             });
         }
@@ -127,7 +128,7 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Meeting
         std::sort(first->begin(), first->end());
         for (const Pair& pair : *first)
             result.first.push_back({pair.a, pair.b, pair.kind,
-                                    contact_place(corners(mesh, pair.a), corners(mesh, pair.b), pair.kind)});
+                                    contact_point(corners(mesh, pair.a), corners(mesh, pair.b), pair.kind)});
     }
     for (const auto& [parts, counts] : all.parts) {
         const auto& [crossing, overlapping, touching] = counts;

@@ -16,7 +16,7 @@ Shells find_shells(Executor& executor, const IndexedMesh& mesh, const EdgeSurvey
     const std::size_t n = mesh.triangles.size();
     Shells shells;
     shells.of_triangle = PageArray<std::uint32_t>(n);
-    executor.for_chunks(n, fold_piece, [&](std::size_t begin, std::size_t end, unsigned) {
+    executor.for_chunks(n, fold_chunk, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i)
             shells.of_triangle[i] =
                 degenerate(mesh.triangles[i]) ? no_shell : survey.parts.find(static_cast<std::uint32_t>(i));
@@ -159,7 +159,7 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
         };
         for_triangles_above(executor, mesh, std::span(points).subspan(begin, end - begin), keep);
     };
-    const auto tell = [&] {
+    const auto report_progress = [&] {
         std::vector<Enclosure> all;
         for (std::vector<Enclosure>& part : hits) {
             all.insert(all.end(), part.begin(), part.end());
@@ -176,7 +176,7 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
     };
     find(0, points.size());
     if (found <= most_hits) {
-        tell();
+        report_progress();
         return;
     }
     // There are too many for one pass, but now the number of hits of each point is known.
@@ -189,7 +189,7 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
         for (std::vector<Enclosure>& part : hits)
             part.clear();
         find(begin, end);
-        tell();
+        report_progress();
     }
 }
 

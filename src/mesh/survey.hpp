@@ -17,7 +17,7 @@ namespace lamella {
 struct Survey {
     Inspection found = {};
     std::uint64_t opposite_pairs = 0;
-    EdgePlaces places = {};
+    EdgeLocations locations = {};
     Shells shells;
     std::vector<ShellContent> contents = {}; ///< of the shells, each measured from one of its corners
     std::vector<Box3> boxes = {};
@@ -29,6 +29,6 @@ struct Survey {
     std::vector<std::uint32_t> inside = {};
 };
 
-[[nodiscard]] Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_places);
+[[nodiscard]] Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_locations);
 
 } // namespace lamella

@@ -66,8 +66,8 @@ bool in_a_point(const Signs& s) noexcept {
 
 /// For triangles in different planes that share no edge. `p_signs` are the signs of p's corners relative to
 /// the plane of q.
-std::optional<MeetingKind> contact_in_a_line(Triangle3 p, Triangle3 q, Signs p_signs, Signs q_signs,
-                                             bool share_a_corner) noexcept {
+std::optional<IntersectionKind> contact_in_a_line(Triangle3 p, Triangle3 q, Signs p_signs, Signs q_signs,
+                                                  bool share_a_corner) noexcept {
     put_lone_corner_first(p, p_signs, q, q_signs);
     put_lone_corner_first(q, q_signs, p, p_signs);
     const int first = orientation(p[0], p[1], q[0], q[1]);
@@ -77,8 +77,8 @@ std::optional<MeetingKind> contact_in_a_line(Triangle3 p, Triangle3 q, Signs p_s
     const bool segment = first < 0 && second < 0 && !in_a_point(p_signs) && !in_a_point(q_signs);
     if (!segment && share_a_corner)
         return std::nullopt;
-    return segment && both_sides(p_signs) && both_sides(q_signs) ? MeetingKind::crossing
-                                                                 : MeetingKind::touching;
+    return segment && both_sides(p_signs) && both_sides(q_signs) ? IntersectionKind::crossing
+                                                                 : IntersectionKind::touching;
 }
 
 bool all_outside(const Flat& edges_of, const Flat& corners, bool strictly) noexcept {
@@ -123,8 +123,8 @@ Shared shared_corners(const NamedTriangle& p, const NamedTriangle& q) noexcept {
     return shared;
 }
 
-std::optional<MeetingKind> contact_in_a_plane(const Triangle3& p, const Triangle3& q,
-                                              const Shared& shared) noexcept {
+std::optional<IntersectionKind> contact_in_a_plane(const Triangle3& p, const Triangle3& q,
+                                                   const Shared& shared) noexcept {
     // Any projection in which p keeps an area will do; the largest component of its normal is the safest one.
     const Point3 n = normal(p);
     const std::array<double, 3> sizes{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
@@ -148,12 +148,12 @@ std::optional<MeetingKind> contact_in_a_plane(const Triangle3& p, const Triangle
     if (area_sign(q) < 0)
         turn(fq, at_q);
     if (!all_outside(fp, fq, false) && !all_outside(fq, fp, false))
-        return MeetingKind::overlapping;
+        return IntersectionKind::overlapping;
     // The triangles are separate, except for the line between them. If they share a corner there, they have
     // more in common if edges run along each other from there.
     const bool touch = shared.count == 0 ? !all_outside(fp, fq, true) && !all_outside(fq, fp, true)
                                          : shared.count == 1 && edges_together(fp, at_p, fq, at_q);
-    return touch ? std::optional(MeetingKind::touching) : std::nullopt;
+    return touch ? std::optional(IntersectionKind::touching) : std::nullopt;
 }
 
 } // namespace
@@ -170,10 +170,10 @@ bool flat(const Triangle3& t) noexcept {
 // Triangles in different planes follow Guigue and Devillers (2003). With the lone corner of each triangle
 // first (the one alone on its side of the other's plane), each triangle intersects the common line of both
 // planes in an interval; the ends of the intervals are compared by orientations of four corners.
-std::optional<MeetingKind> ContactSeeker::with_close_one(const NamedTriangle& other) const noexcept {
+std::optional<IntersectionKind> ContactSeeker::with_close_one(const NamedTriangle& other) const noexcept {
     const Shared shared = shared_corners(triangle_, other);
     if (shared.count >= 3)
-        return MeetingKind::overlapping;
+        return IntersectionKind::overlapping;
     const auto signs_by = [](const NamedTriangle& of_plane, const Plane& plane, const NamedTriangle& of) {
         Signs signs{};
         for (std::size_t k = 0; k < 3; ++k) {
@@ -199,8 +199,8 @@ std::optional<MeetingKind> ContactSeeker::with_close_one(const NamedTriangle& ot
     return contact_in_a_line(triangle_.corners, other.corners, signs, other_signs, share_a_corner);
 }
 
-Point3 contact_place(const Triangle3& p, const Triangle3& q, MeetingKind kind) noexcept {
-    if (kind == MeetingKind::crossing) {
+Point3 contact_point(const Triangle3& p, const Triangle3& q, IntersectionKind kind) noexcept {
+    if (kind == IntersectionKind::crossing) {
         // The edges of each triangle intersect the plane of the other in four points on a line; the middle
         // two are the ends of the intersection.
         std::array<Point3, 4> ends;

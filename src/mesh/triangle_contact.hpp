@@ -31,7 +31,7 @@ class ContactSeeker {
 
     /// Returns nullopt if the triangles have nothing in common except vertices or an edge. Neither triangle
     /// may be flat. Symmetric, and independent of orientation. Exact for all finite coordinates.
-    [[nodiscard]] std::optional<MeetingKind> with(const NamedTriangle& other) const noexcept {
+    [[nodiscard]] std::optional<IntersectionKind> with(const NamedTriangle& other) const noexcept {
         const int side = plane_.likely_side(other.corners[0]);
         if (side != 0 && side == plane_.likely_side(other.corners[1]) &&
             side == plane_.likely_side(other.corners[2]))
@@ -40,20 +40,20 @@ class ContactSeeker {
     }
 
   private:
-    [[nodiscard]] std::optional<MeetingKind> with_close_one(const NamedTriangle& other) const noexcept;
+    [[nodiscard]] std::optional<IntersectionKind> with_close_one(const NamedTriangle& other) const noexcept;
 
     NamedTriangle triangle_;
     Plane plane_;
 };
 
 /// Compares two triangles: see ContactSeeker::with.
-[[nodiscard]] inline std::optional<MeetingKind> contact(const NamedTriangle& p,
-                                                        const NamedTriangle& q) noexcept {
+[[nodiscard]] inline std::optional<IntersectionKind> contact(const NamedTriangle& p,
+                                                             const NamedTriangle& q) noexcept {
     return ContactSeeker(p).with(q);
 }
 
 /// Returns an approximate location: the middle of the common segment of triangles that cross, otherwise of
 /// the intersection of their boxes.
-[[nodiscard]] Point3 contact_place(const Triangle3& p, const Triangle3& q, MeetingKind kind) noexcept;
+[[nodiscard]] Point3 contact_point(const Triangle3& p, const Triangle3& q, IntersectionKind kind) noexcept;
 
 } // namespace lamella

@@ -51,7 +51,7 @@ struct PointPair {
 /// evenly: with even cells, one vertex far away would make the cell numbers unbounded.
 class CellGrid {
   public:
-    CellGrid(std::span<const Point3> points, double tolerance) : places_(points.size()) {
+    CellGrid(std::span<const Point3> points, double tolerance) : positions_(points.size()) {
         std::vector<std::pair<double, std::uint32_t>> along(points.size());
         for (double Point3::*const axis : {&Point3::x, &Point3::y, &Point3::z}) {
             for (std::uint32_t i = 0; i < points.size(); ++i)
@@ -65,27 +65,27 @@ class CellGrid {
                     ++stretch;
                     start = x;
                 }
-                Place& place = places_[i];
-                place = {place.first << 32 | place.second >> 32, stretch << 32 | i};
+                Position& position = positions_[i];
+                position = {position.first << 32 | position.second >> 32, stretch << 32 | i};
             }
         }
-        std::sort(places_.begin(), places_.end());
+        std::sort(positions_.begin(), positions_.end());
     }
 
-    [[nodiscard]] std::size_t size() const noexcept { return places_.size(); }
+    [[nodiscard]] std::size_t size() const noexcept { return positions_.size(); }
 
     /// Returns a lower bound on the number of pairs within the tolerance. An eighth of a cell has a diagonal
     /// below the tolerance, so c points in a cell make at least (c^2 - 8 c) / 16 pairs. `after` visits at
     /// most 14 c^2.
     [[nodiscard]] std::size_t least_pairs() const noexcept {
         std::size_t squares = 0;
-        for (std::size_t i = 0, begin = 0; i < places_.size(); ++i) {
-            const auto [row, at] = places_[begin];
-            if (row != places_[i].first || at >> 32 != places_[i].second >> 32)
+        for (std::size_t i = 0, begin = 0; i < positions_.size(); ++i) {
+            const auto [row, at] = positions_[begin];
+            if (row != positions_[i].first || at >> 32 != positions_[i].second >> 32)
                 begin = i;
             squares += 2 * (i - begin) + 1;
         }
-        return squares / 16 - std::min(squares / 16, places_.size() / 2);
+        return squares / 16 - std::min(squares / 16, positions_.size() / 2);
     }
 
     /// Calls visit(point, other) for the i-th point in the order of the grid and all that follow it in its
@@ -93,24 +93,24 @@ class CellGrid {
     template <class Visit>
     void after(std::size_t i, const Visit& visit) const {
         constexpr std::uint64_t next = std::uint64_t{1} << 32;
-        const auto from = places_.begin() + static_cast<std::ptrdiff_t>(i);
+        const auto from = positions_.begin() + static_cast<std::ptrdiff_t>(i);
         const std::uint64_t cell = from->second & ~(next - 1);
         // The three cells of a row are consecutive in the order.
         const auto visit_row = [&](auto k, std::uint64_t row) {
-            for (; k != places_.end() && k->first == row && k->second < cell + 2 * next; ++k)
+            for (; k != positions_.end() && k->first == row && k->second < cell + 2 * next; ++k)
                 visit(static_cast<std::uint32_t>(from->second), static_cast<std::uint32_t>(k->second));
         };
         visit_row(from + 1, from->first);
         for (const std::uint64_t row :
              {from->first + 1, from->first + next - 1, from->first + next, from->first + next + 1})
-            visit_row(std::lower_bound(from, places_.end(), Place{row, cell - next}), row);
+            visit_row(std::lower_bound(from, positions_.end(), Position{row, cell - next}), row);
     }
 
   private:
     /// The cells along x and y; the cell along z, and the point.
-    using Place = std::pair<std::uint64_t, std::uint64_t>;
+    using Position = std::pair<std::uint64_t, std::uint64_t>;
 
-    std::vector<Place> places_;
+    std::vector<Position> positions_;
 };
 
 Error too_coarse(double tolerance) {
@@ -187,18 +187,18 @@ ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm, const Ex
     ToleranceWeld result;
     for (const PointPair& pair : pairs)
         result.pairs_apart += groups.find(pair.a) != groups.find(pair.b) ? 1 : 0;
-    std::vector<std::uint32_t> places;
+    std::vector<std::uint32_t> positions;
     for (std::uint32_t i = 0; i < points.size(); ++i) {
         const std::uint32_t to = groups.find(i);
         if (to == i)
             continue;
         result.longest_move_mm = std::max(result.longest_move_mm, distance(points[i], points[to]));
-        places.push_back(to);
+        positions.push_back(to);
     }
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    for (std::size_t i = 0; i < std::min(places.size(), repair_places); ++i)
-        result.places.push_back(points[places[i]]);
+    std::sort(positions.begin(), positions.end());
+    positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+    for (std::size_t i = 0; i < std::min(positions.size(), repair_locations); ++i)
+        result.locations.push_back(points[positions[i]]);
 
     // Vertices are numbered in the order of the first vertex of each group in the mesh.
     constexpr std::uint32_t none = 0xffffffff;

@@ -34,7 +34,7 @@ constexpr std::uint64_t passes = 3;
 constexpr std::uint64_t record_bytes = 50; // of a binary STL file
 
 /// The first wish that needs the whole mesh in memory, as the program names it; "" if there is none.
-std::string wish_for_whole_mesh(const FileJob& job, const Engine& engine) {
+std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& engine) {
     if (engine.welds)
         return fmt::format("the engine {}", engine.name);
     if (job.strict)
@@ -55,9 +55,9 @@ std::string wish_for_whole_mesh(const FileJob& job, const Engine& engine) {
 /// The part of n triangles that a process reads: whole pieces of a fold, so that sums have the bits that one
 /// process finds.
 RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes) {
-    const std::uint64_t pieces = (n + fold_piece - 1) / fold_piece;
+    const std::uint64_t chunks = (n + fold_chunk - 1) / fold_chunk;
     const auto bound = [&](std::size_t p) {
-        return std::min(n, pieces * p / processes * fold_piece);
+        return std::min(n, chunks * p / processes * fold_chunk);
     };
     return {bound(process), bound(process + 1)};
 }
@@ -66,13 +66,13 @@ RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes)
 /// close to one another is read with them.
 std::vector<RecordRange> records_on(PlaneRange planes, std::span<const PlaneRange> cuts,
                                     std::uint64_t records) {
-    constexpr std::uint64_t close = 4 * fold_piece;
+    constexpr std::uint64_t close = 4 * fold_chunk;
     std::vector<RecordRange> ranges;
     for (std::size_t batch = 0; batch < cuts.size(); ++batch) {
         if (cuts[batch].end <= planes.begin || planes.end <= cuts[batch].begin)
             continue;
-        const std::uint64_t begin = batch * fold_piece;
-        const std::uint64_t end = std::min(records, begin + fold_piece);
+        const std::uint64_t begin = batch * fold_chunk;
+        const std::uint64_t end = std::min(records, begin + fold_chunk);
         if (ranges.empty() || ranges.back().end + close < begin)
             ranges.push_back({begin, end});
         else
@@ -88,7 +88,7 @@ std::optional<std::uint32_t> neighbours_of(const FileJob& job) {
 }
 
 /// The most points on so many planes one above the other.
-std::uint64_t most_points(const SlabSurvey& survey, std::uint32_t planes) {
+std::uint64_t most_points(const RangeSurvey& survey, std::uint32_t planes) {
     std::uint64_t most = 0;
     std::uint64_t points = 0;
     for (std::uint32_t p = 0; p < survey.planes(); ++p) {
@@ -122,7 +122,7 @@ void check_size(const std::string& path, std::span<const MeshFile> files, const 
         throw Error(
             ErrorKind::limit,
             fmt::format("{}: to slice {} triangles{} takes up to {} of memory, above the {} of "
-                        "`max_memory`; only STL files that are not packed are sliced in pieces: write "
+                        "`max_memory`; only STL files that are not compressed are sliced in ranges: write "
                         "the mesh as one, or allow more",
                         path, triangles, files.size() > 1 ? ", those of the files before it among them," : "",
                         byte_amount(bytes), byte_amount(memory.limit)));
@@ -170,12 +170,12 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
     std::uint64_t too_large = bytes > memory_.limit ? 1 : 0;
     processes.sum(std::span(&too_large, 1));
 
-    const std::string needs_all = wish_for_whole_mesh(job, engine);
+    const std::string needs_all = first_option_needing_whole_mesh(job, engine);
     const bool can_stream = not_streamed.empty() && needs_all.empty();
-    in_pieces_ = can_stream && too_large != 0;
+    in_ranges_ = can_stream && too_large != 0;
     if (processes.size() > 1 && can_stream && divisible)
         among_ = &processes;
-    if (in_pieces_ || among_->size() > 1) {
+    if (in_ranges_ || among_->size() > 1) {
         look_at(job, std::move(inputs), execution);
         return;
     }
@@ -188,7 +188,7 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
                         !needs_all.empty()
                             ? fmt::format("{}, which needs the whole mesh", needs_all)
                             : fmt::format("{}, which has to be read whole: only STL files that are not "
-                                          "packed can be read in pieces",
+                                          "compressed can be read in parts",
                                           not_streamed)));
     in_agreement(processes, [&] { read(job, std::move(inputs), execution); });
 }
@@ -238,9 +238,9 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
         Box3 box;
         std::uint64_t unusable = 0;
         std::uint64_t first_unusable = read.stored_triangles;
-        const std::string packed =
+        const std::string compressed =
             Packer().put(mine.box).put(mine.unusable).put(mine.first_unusable).put(mine.first_corner).take();
-        for (const std::string& message : among_->gather(packed)) {
+        for (const std::string& message : among_->gather(compressed)) {
             Unpacker from(message);
             const Seen seen{from.get<Box3>(), from.get<std::uint64_t>(), from.get<std::uint64_t>(),
                             from.get<Point3f>()}; // in the order in which they were put
@@ -339,7 +339,7 @@ void Feed::count_streams(const Plan& plan, const Execution& execution) {
     in_agreement(*among_, [&] {
         for (File& file : files_) {
             const std::uint64_t records = file.part ? 0 : file.records.value_or(0);
-            file.cuts.assign((records + fold_piece - 1) / fold_piece, {});
+            file.cuts.assign((records + fold_chunk - 1) / fold_chunk, {});
             static_cast<void>(stream(
                 file,
                 [&](const TriangleSoup& batch, std::uint64_t number) {
@@ -371,9 +371,9 @@ void Feed::count_streams(const Plan& plan, const Execution& execution) {
                 near_[shape].add(Unpacker(messages[process]).get_all<NearFaces>());
         if (measure_volume_)
             for (const std::string& message :
-                 among_->gather(Packer().put_all(std::span(volumes[shape].pieces())).take()))
-                for (const double piece : Unpacker(message).get_all<double>())
-                    six_volumes[shape] += piece;
+                 among_->gather(Packer().put_all(std::span(volumes[shape].chunks())).take()))
+                for (const double chunk : Unpacker(message).get_all<double>())
+                    six_volumes[shape] += chunk;
     }
     volume_mm3_ = 0;
     for (const PlatePart& part : plate_.parts)
@@ -428,14 +428,14 @@ std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange
     if (files_.empty())
         return mine.size() > 0 ? std::vector{mine} : std::vector<PlaneRange>{};
     in_agreement(*among_, [&] {
-        shares_ = shares_of(plan, mine, thread_count(execution));
+        ranges_ = ranges_of(plan, mine, thread_count(execution));
         if (is_cheap_to_read_again())
             plan_ = plan;
         else
-            store_.emplace(plan, shares_, counts_);
+            store_.emplace(plan, ranges_, counts_);
     });
     for (const PlaneCounts& shape : counts_)
-        figures_.triangles_sliced += SlabSurvey(shape).triangles(mine);
+        figures_.triangles_sliced += RangeSurvey(shape).triangles(mine);
     if (among_->size() > 1)
         exchange(plan, division, execution);
     else if (store_)
@@ -444,14 +444,14 @@ std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange
         if (execution.progress)
             execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
     });
-    return shares_;
+    return ranges_;
 }
 
 /// Whether it is to read parts of the files for each share, against writing down what there is for all of
 /// them and reading that. Not known before the triangles were counted.
 bool Feed::is_cheap_to_read_again() const {
     constexpr std::uint64_t times_the_files = 2;
-    if (shares_.size() <= 1)
+    if (ranges_.size() <= 1)
         return false;
     std::uint64_t room = 0;
     std::uint64_t records = 0;
@@ -459,24 +459,24 @@ bool Feed::is_cheap_to_read_again() const {
         if (file.cuts.empty())
             return false;
         room += times_the_files * file.records.value();
-        for (const PlaneRange& share : shares_)
-            for (const RecordRange& range : records_on(share, file.cuts, file.records.value()))
-                records += range.end - range.begin;
+        for (const PlaneRange& range : ranges_)
+            for (const RecordRange& records_here : records_on(range, file.cuts, file.records.value()))
+                records += records_here.end - records_here.begin;
     }
     return records <= room;
 }
 
-std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsigned threads) const {
+std::vector<PlaneRange> Feed::ranges_of(const Plan& plan, PlaneRange mine, unsigned threads) const {
     if (mine.size() == 0)
         return {};
-    const SlabSurvey survey(part_of(counts_of_parts(plan.layers.size()), mine));
-    SlabMemory slab{
+    const RangeSurvey survey(part_of(counts_of_parts(plan.layers.size()), mine));
+    RangeMemory needed{
         .threads = threads,
         .placed = std::any_of(plate_.shapes.begin(), plate_.shapes.end(),
                               [](const PlateShape& shape) { return shape.mesh.soup()->has_placement(); }),
         .points_in_flight = memory_.points_in_flight(threads)};
     if (plate_.parts.size() > 1 || neighbours_) // then all layers of a share are held
-        slab.points_in_flight = ~std::uint64_t{0};
+        needed.points_in_flight = ~std::uint64_t{0};
     std::uint64_t overhead =
         JobMemory::overhead(threads, plan.layers.size(), plate_.shapes.size(), measure_volume_) +
         memory_.of_messages(processes_.size()) +
@@ -486,7 +486,7 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
     std::uint64_t largest = 0;
     std::uint32_t where = 0;
     for (std::uint32_t p = 0; p < survey.planes(); ++p)
-        if (const std::uint64_t bytes = slab.bytes(survey.needs({p, p + 1})); bytes > largest) {
+        if (const std::uint64_t bytes = needed.bytes(survey.needs({p, p + 1})); bytes > largest) {
             largest = bytes;
             where = p;
         }
@@ -505,15 +505,15 @@ std::vector<PlaneRange> Feed::shares_of(const Plan& plan, PlaneRange mine, unsig
                                 name_of(plate_), plan.layers[mine.begin + where].z, survey.points(where),
                                 counted(threads, "thread"), byte_amount(overhead + largest),
                                 byte_amount(memory_.limit)));
-    std::vector<PlaneRange> shares =
-        divide_to_fit(survey, part_of(plan, mine), slab, memory_.limit - overhead);
-    for (PlaneRange& share : shares)
-        share = {mine.begin + share.begin, mine.begin + share.end};
-    return shares;
+    std::vector<PlaneRange> ranges =
+        divide_to_fit(survey, part_of(plan, mine), needed, memory_.limit - overhead);
+    for (PlaneRange& range : ranges)
+        range = {mine.begin + range.begin, mine.begin + range.end};
+    return ranges;
 }
 
 /// The third pass, where this process reads all of the files, as far as these planes cut them.
-void Feed::bring_own(PlaneRange planes, ShareStore& store, const Execution& execution) {
+void Feed::bring_own(PlaneRange planes, RangeStore& store, const Execution& execution) {
     for (const File& file : files_) {
         std::atomic<bool> fits{true};
         std::vector<std::optional<RecordRange>> parts{std::nullopt};
@@ -541,7 +541,7 @@ void Feed::bring_own(PlaneRange planes, ShareStore& store, const Execution& exec
 /// memory.
 void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, const Execution& execution) {
     using Outgoing = std::vector<std::vector<Triangle3f>>; // by process
-    const SlabFinder finder(plan, division);
+    const RangeFinder finder(plan, division);
     const std::uint64_t at_once = memory_.triangles_in_a_round(among_->size());
     for (const File& file : files_) {
         std::uint64_t longest = 0;
@@ -560,7 +560,7 @@ void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, cons
                 static_cast<void>(stream(
                     file,
                     [&](const TriangleSoup& batch, std::uint64_t) {
-                        std::vector<SlabFinder::Touched> touched;
+                        std::vector<RangeFinder::Touched> touched;
                         for (const std::size_t shape : file.shapes) {
                             finder.find(batch.transformed(placement(shape)), touched);
                             Outgoing sorted(among_->size());
@@ -629,22 +629,22 @@ void Feed::store(std::size_t shape, const TriangleSoup& triangles, const Executi
     executor.check_cancelled();
 }
 
-Plate Feed::take(std::size_t share, const Execution& execution) {
+Plate Feed::take(std::size_t range, const Execution& execution) {
     Plate plate = plate_;
     if (files_.empty())
         return plate;
-    const auto take_from = [&](ShareStore& from, std::size_t number) {
+    const auto take_from = [&](RangeStore& from, std::size_t number) {
         for (std::size_t shape = 0; shape < plate.shapes.size(); ++shape)
             plate.shapes[shape].mesh = from.take(number, shape, execution).transformed(placement(shape));
     };
     if (store_) {
-        take_from(*store_, share);
+        take_from(*store_, range);
         return plate;
     }
-    ShareStore store(*plan_, std::span(&shares_[share], 1), counts_);
+    RangeStore store(*plan_, std::span(&ranges_[range], 1), counts_);
     Execution silent = execution; // that reading has come to its end was told
     silent.progress = nullptr;
-    bring_own(shares_[share], store, silent);
+    bring_own(ranges_[range], store, silent);
     take_from(store, 0);
     return plate;
 }

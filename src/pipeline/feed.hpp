@@ -11,9 +11,9 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "pipeline/job_memory.hpp"
-#include "pipeline/share_store.hpp"
+#include "pipeline/range_store.hpp"
 #include "slicing/near_faces.hpp"
-#include "slicing/slabs.hpp"
+#include "slicing/plane_ranges.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -51,7 +51,7 @@ class Feed {
     /// Its meshes, to be prepared; null where they stay in their files.
     [[nodiscard]] Plate* meshes() noexcept { return files_.empty() ? &plate_ : nullptr; }
     /// Whether the memory of the job was too small for the meshes.
-    [[nodiscard]] bool in_pieces() const noexcept { return in_pieces_; }
+    [[nodiscard]] bool in_ranges() const noexcept { return in_ranges_; }
 
     /// Usable triangles of a shape, all processes together.
     [[nodiscard]] std::uint64_t triangles(std::size_t shape) const;
@@ -86,7 +86,7 @@ class Feed {
                                                 const Execution& execution);
 
     /// A plate with the triangles of a share, by its position in what `bring` returned. Each once.
-    [[nodiscard]] Plate take(std::size_t share, const Execution& execution);
+    [[nodiscard]] Plate take(std::size_t range, const Execution& execution);
 
     [[nodiscard]] const JobMemory& memory() const noexcept { return memory_; }
 
@@ -117,10 +117,10 @@ class Feed {
     void count_streams(const Plan& plan, const Execution& execution);
     [[nodiscard]] PlaneCounts counts_of_parts(std::size_t planes) const;
 
-    [[nodiscard]] std::vector<PlaneRange> shares_of(const Plan& plan, PlaneRange mine,
+    [[nodiscard]] std::vector<PlaneRange> ranges_of(const Plan& plan, PlaneRange mine,
                                                     unsigned threads) const;
     [[nodiscard]] bool is_cheap_to_read_again() const;
-    void bring_own(PlaneRange planes, ShareStore& store, const Execution& execution);
+    void bring_own(PlaneRange planes, RangeStore& store, const Execution& execution);
     void exchange(const Plan& plan, std::span<const PlaneRange> division, const Execution& execution);
     [[nodiscard]] TriangleSoup exchanged(std::span<const std::vector<Triangle3f>> outgoing);
     void store(std::size_t shape, const TriangleSoup& triangles, const Execution& execution);
@@ -131,7 +131,7 @@ class Feed {
     MeshReadOptions reading_;
     bool measure_volume_;
     std::optional<std::uint32_t> neighbours_; ///< of each plane that is scanned; unset: none is
-    bool in_pieces_ = false;
+    bool in_ranges_ = false;
     Plate plate_;
     std::vector<File> files_; ///< where triangles stay in them
     std::uint64_t bytes_to_read_ = 0;
@@ -139,8 +139,8 @@ class Feed {
     std::vector<PlaneCounts> counts_; ///< by shape, of all processes
     std::deque<NearFaceFinder> near_; ///< by shape
     double volume_mm3_ = 0;
-    std::vector<PlaneRange> shares_;
-    std::optional<ShareStore> store_; ///< of all shares; or
+    std::vector<PlaneRange> ranges_;
+    std::optional<RangeStore> store_; ///< of all shares; or
     std::optional<Plan> plan_;        ///< by which each is read when it is taken
     ProcessFigures figures_;
 };

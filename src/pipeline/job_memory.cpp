@@ -1,6 +1,6 @@
 #include "pipeline/job_memory.hpp"
 
-#include "slicing/slabs.hpp"
+#include "slicing/plane_ranges.hpp"
 #include "system/memory_size.hpp"
 
 #include <algorithm>
@@ -18,8 +18,8 @@ constexpr std::uint64_t least_facet = 100;
 
 /// What one triangle of a mesh in memory takes at most, its record or text not counted.
 std::uint64_t triangle_bytes(bool placed, unsigned threads) {
-    const SlabNeeds one{.triangles = 1, .edges = 3, .points = 0, .most_points = 0};
-    return SlabMemory{.threads = threads, .placed = placed, .points_in_flight = 0}.bytes(one) -
+    const RangeNeeds one{.triangles = 1, .edges = 3, .points = 0, .most_points = 0};
+    return RangeMemory{.threads = threads, .placed = placed, .points_in_flight = 0}.bytes(one) -
            sizeof(Triangle3f);
 }
 

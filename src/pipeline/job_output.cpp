@@ -4,7 +4,7 @@
 
 #include "pipeline/agreement.hpp"
 #include "pipeline/packed.hpp"
-#include "system/file_piece.hpp"
+#include "system/file_chunk.hpp"
 #include "write/layer_writers.hpp"
 
 #include <fmt/format.h>
@@ -59,15 +59,16 @@ std::vector<Layer> unpacked(const std::string& message) {
 }
 
 /// Writes the bytes at offset `place` of an existing file; errors call it `name`.
-void write_at(const std::string& path, std::uint64_t place, const ByteStore& bytes, const std::string& name) {
-    FilePiece piece(path, place, name);
+void write_at(const std::string& path, std::uint64_t position, const ByteStore& bytes,
+              const std::string& name) {
+    FileChunk chunk(path, position, name);
     std::string block;
     for (std::uint64_t at = 0; at < bytes.size(); at += block.size()) {
         block.resize(std::min<std::uint64_t>(ByteStore::block_bytes, bytes.size() - at));
         bytes.read(at, block);
-        piece.append(block);
+        chunk.append(block);
     }
-    piece.finish();
+    chunk.finish();
 }
 
 } // namespace
@@ -78,24 +79,24 @@ JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Co
     if (!job.output.empty()) {
         format_ = &layer_format(job.format, job.output);
         LayerWriteOptions options = job.write;
-        shared_ = processes.size() > 1 && format_->pieces && can_be_shared(job.output);
+        shared_ = processes.size() > 1 && format_->chunks && can_be_shared(job.output);
         if (shared_) {
             in_agreement(processes, [&] {
                 if (processes.process() == 0)
                     file_.emplace(job.output);
             });
             working_path_ = processes.gather(file_ ? file_->share() : std::string()).front();
-            piece_ = {mine.begin, mine.size(), [this](std::string_view bytes) {
+            chunk_ = {mine.begin, mine.size(), [this](std::string_view bytes) {
                           waiting_.add(bytes);
                       }};
-            info.piece = &piece_;
+            info.chunk = &chunk_;
             options.most_bytes = 0; // the limit applies to the whole file
         }
         in_agreement(processes, [&] {
             if (shared_ || processes.process() == 0)
                 writer_ = open_layer_writer(job.output, *format_, info, options);
         });
-        info.piece = nullptr;
+        info.chunk = nullptr;
     }
     if (!job.report.path.empty())
         page_ = open_layer_page(job.report.path, info, job.report.page);
@@ -129,7 +130,7 @@ JobOutput::Written JobOutput::finish_file() {
             return send_layers();
         if (!shared_)
             write_layers_of_others();
-        if (!shared_ || piece_.layers > 0)
+        if (!shared_ || chunk_.layers > 0)
             writer_->finish();
         written.bytes = shared_ ? 0 : writer_->bytes();
         written.warnings = writer_->warnings();
@@ -150,7 +151,7 @@ JobOutput::Written JobOutput::finish_file() {
 }
 
 std::vector<std::string> JobOutput::finish_page(const PageNotes& notes) {
-    page_->tell(notes);
+    page_->add_notes(notes);
     page_->finish();
     return page_->warnings();
 }
@@ -190,14 +191,14 @@ std::uint64_t JobOutput::write_shared() {
     sizes[processes_.process()] = waiting_.size();
     processes_.sum(sizes);
     std::uint64_t total = 0;
-    std::uint64_t place = 0;
+    std::uint64_t position = 0;
     for (std::size_t p = 0; p < sizes.size(); ++p) {
         if (p == processes_.process())
-            place = total;
+            position = total;
         total += sizes[p];
     }
     check_bytes(path_, total, most_bytes_);
-    in_agreement(processes_, [&] { write_at(working_path_, place, waiting_, path_); });
+    in_agreement(processes_, [&] { write_at(working_path_, position, waiting_, path_); });
     in_agreement(processes_, [&] {
         if (file_)
             file_->commit();

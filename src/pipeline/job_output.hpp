@@ -65,7 +65,7 @@ class JobOutput {
     bool shared_ = false;            ///< all of them write the file
     std::optional<AtomicFile> file_; ///< created by process 0
     std::string working_path_;
-    LayerFilePiece piece_;
+    LayerFileChunk chunk_;
     ByteStore waiting_;                   ///< the range's bytes, or layers as messages to process 0
     std::vector<std::uint64_t> messages_; ///< their lengths
 };

@@ -47,13 +47,13 @@ std::string where(const Layer& layer) {
 
 void Finding::add(const Layer& layer, const Point2& at, std::uint64_t times) {
     if (total == 0)
-        place = fmt::format("{} at ({:.7g}, {:.7g})", where(layer), at.x, at.y);
+        position = fmt::format("{} at ({:.7g}, {:.7g})", where(layer), at.x, at.y);
     total += times;
 }
 
 void Finding::add(const Finding& other) {
     if (total == 0)
-        place = other.place;
+        position = other.position;
     total += other.total;
     or_more = or_more || other.or_more;
 }
@@ -66,11 +66,11 @@ void ContourFindings::add(const ContourFindings& other) {
     overlapping.add(other.overlapping);
 }
 
-void tell(const Finding& finding, const FindingWords& words, std::vector<std::string>& lines) {
+void append_finding(const Finding& finding, const FindingWords& words, std::vector<std::string>& lines) {
     if (finding.total > 0)
         lines.push_back(fmt::format(
             "{} {} {}the first in {}", finding.total, finding.total == 1 ? words.one : words.many,
-            finding.or_more ? "or more (rings of such a layer were not checked), " : "", finding.place));
+            finding.or_more ? "or more (rings of such a layer were not checked), " : "", finding.position));
 }
 
 } // namespace lamella

@@ -18,7 +18,7 @@ namespace lamella {
 struct Finding {
     std::uint64_t total = 0;
     bool or_more = false; ///< the search ended when there were this many
-    std::string place;    ///< of the first: "layer 12 (z 0.375 mm) at (1, 2)"
+    std::string position; ///< of the first: "layer 12 (z 0.375 mm) at (1, 2)"
 
     void add(const Layer& layer, const Point2& at, std::uint64_t times = 1);
     void add(const Finding& other);
@@ -65,6 +65,6 @@ inline constexpr FindingWords tangled_words{"ring bounds no material though its 
 
 /// Adds a line, such as "2 rings run the wrong way round, the first in layer 12 (z 0.375 mm) at (1, 2)", if
 /// there is any finding.
-void tell(const Finding& finding, const FindingWords& words, std::vector<std::string>& lines);
+void append_finding(const Finding& finding, const FindingWords& words, std::vector<std::string>& lines);
 
 } // namespace lamella

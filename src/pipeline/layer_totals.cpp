@@ -33,17 +33,17 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
                       std::span<const InvertedRings> inverted, std::span<const Layer> bodies) {
     const Layer& first = parts.front();
     assert(parts.size() == parts_.size());
-    const auto place = static_cast<std::size_t>(first.index - rows_.front().index);
-    assert(rows_.at(place).index == first.index);
+    const auto position = static_cast<std::size_t>(first.index - rows_.front().index);
+    assert(rows_.at(position).index == first.index);
     if (!closed_.empty())
         for (const GapJoin& join : joins) {
-            FileResult::Gaps& closed = closed_[place];
+            FileResult::Gaps& closed = closed_[position];
             ++closed.closed;
             closed.longest_mm = std::max(closed.longest_mm, join.length_mm);
             closed.total_mm += join.length_mm;
         }
     if (!changes_.empty())
-        changes_[place] = changes;
+        changes_[position] = changes;
     if (bodies.empty())
         bodies = parts;
     std::vector<OpenGaps> gaps; // of each body, where there are any
@@ -62,7 +62,7 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
             together.add(measure(layer));
     }
     if (!statistics_.empty()) {
-        LayerStatistics& statistics = statistics_[place];
+        LayerStatistics& statistics = statistics_[position];
         statistics = {.index = first.index,
                       .z = first.z,
                       .thickness = first.thickness(),
@@ -77,17 +77,17 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
         for (const OpenGaps& of_part : gaps)
             statistics.open_gaps += of_part;
     }
-    add_doubts(place, gaps, inverted);
+    add_doubts(position, gaps, inverted);
 }
 
 void LayerTotals::add(std::uint64_t index, const PlaneVectors& vectors) {
     assert(vectors.figures.size() == exposures_.size());
-    const auto place = static_cast<std::size_t>(index - rows_.front().index);
-    assert(rows_.at(place).index == index);
-    rows_[place].scan_hash = vectors.hash;
+    const auto position = static_cast<std::size_t>(index - rows_.front().index);
+    assert(rows_.at(position).index == index);
+    rows_[position].scan_hash = vectors.hash;
     std::copy(vectors.figures.begin(), vectors.figures.end(),
-              vectors_.begin() + static_cast<std::ptrdiff_t>(place * exposures_.size()));
-    add_doubts(place, {}, vectors.inverted, vectors.unreached_mm2);
+              vectors_.begin() + static_cast<std::ptrdiff_t>(position * exposures_.size()));
+    add_doubts(position, {}, vectors.inverted, vectors.unreached_mm2);
 }
 
 /// Of the bodies on a plane, the parts first; where there are none of a kind, no body has any.
@@ -192,7 +192,7 @@ void LayerTotals::gather(Communicator& processes) {
 }
 
 /// In the order of the planes, so that sums have the same bits whoever came first.
-void LayerTotals::tell_doubts(FileResult& result) const {
+void LayerTotals::store_doubts(FileResult& result) const {
     result.doubts.assign(*std::max_element(files_.begin(), files_.end()) + std::size_t{1},
                          MeshDoubts{.layers = rows_.size()});
     result.unreached_by_file.resize(result.doubts.size());
@@ -227,8 +227,8 @@ void LayerTotals::tell_doubts(FileResult& result) const {
     }
 }
 
-void LayerTotals::tell(FileResult& result) const {
-    tell_doubts(result);
+void LayerTotals::store_in(FileResult& result) const {
+    store_doubts(result);
     for (std::size_t i = 0; i < closed_.size(); ++i) {
         if (closed_[i].closed > 0)
             result.gaps.add(rows_[i].z);

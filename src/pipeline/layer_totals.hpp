@@ -43,7 +43,7 @@ class LayerTotals {
     void gather(Communicator& processes);
 
     /// Counts, sums and rows.
-    void tell(FileResult& result) const;
+    void store_in(FileResult& result) const;
 
   private:
     struct Row {
@@ -70,7 +70,7 @@ class LayerTotals {
 
     void add_doubts(std::size_t plane, std::span<const OpenGaps> gaps,
                     std::span<const InvertedRings> inverted, std::span<const double> unreached_mm2 = {});
-    void tell_doubts(FileResult& result) const;
+    void store_doubts(FileResult& result) const;
 
     // Of each plane. There may be millions, and memory is touched for what the job asks of them only.
     std::vector<Row> rows_;

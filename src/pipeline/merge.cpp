@@ -233,12 +233,13 @@ CommonLayerFile take_apart(const ShardFile& shard, const LayerReadOptions& readi
     const std::size_t end = text.find("\n$$LAYERS/");
     if (end == std::string_view::npos || !text.substr(end).starts_with(counted))
         refuse_layout(path);
-    const std::string_view head = text.substr(0, end);
-    if (!head.starts_with("$$HEADERSTART\n") || head.find("\n//") != std::string_view::npos ||
-        head.find("$$USERDATA") != std::string_view::npos || head.find("$$ALIGN") != std::string_view::npos)
+    const std::string_view header = text.substr(0, end);
+    if (!header.starts_with("$$HEADERSTART\n") || header.find("\n//") != std::string_view::npos ||
+        header.find("$$USERDATA") != std::string_view::npos ||
+        header.find("$$ALIGN") != std::string_view::npos)
         refuse_layout(path);
     std::size_t first = end + counted.size();
-    if (head.find("\n$$BINARY\n") != std::string_view::npos) {
+    if (header.find("\n$$BINARY\n") != std::string_view::npos) {
         first = end_of_first_layer(text, first, path);
     } else {
         constexpr std::string_view start = "\n$$GEOMETRYSTART\n$$LAYER/";
@@ -259,26 +260,27 @@ CommonLayerFile take_apart(const ShardFile& shard, const LayerReadOptions& readi
 }
 
 /// Compares the lines of the headers, which must agree except for the number of layers.
-void check_heads(const std::string& one, std::string_view head, const std::string& other,
-                 std::string_view other_head) {
-    if (head == other_head)
+void check_heads(const std::string& one, std::string_view header, const std::string& other,
+                 std::string_view other_header) {
+    if (header == other_header)
         return;
-    const auto differ = std::mismatch(head.begin(), head.end(), other_head.begin(), other_head.end());
+    const auto differ = std::mismatch(header.begin(), header.end(), other_header.begin(), other_header.end());
     const auto line = [](std::string_view text, std::size_t at) {
         const std::size_t begin = text.rfind('\n', at == 0 ? 0 : at - 1) + 1;
         return text.substr(begin, text.find('\n', begin) - begin);
     };
-    throw Error(ErrorKind::input,
-                fmt::format("{} and {}: their heads differ: found {} and {}; they are not of one job", one,
-                            other, line(head, static_cast<std::size_t>(differ.first - head.begin())),
-                            line(other_head, static_cast<std::size_t>(differ.second - other_head.begin()))));
+    throw Error(
+        ErrorKind::input,
+        fmt::format("{} and {}: their headers differ: found {} and {}; they are not of one job", one, other,
+                    line(header, static_cast<std::size_t>(differ.first - header.begin())),
+                    line(other_header, static_cast<std::size_t>(differ.second - other_header.begin()))));
 }
 
 std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint64_t layers,
                                  const std::string& output, const LayerWriteOptions& options,
                                  const LayerReadOptions& reading, const Execution& execution) {
     AtomicFile out(output);
-    std::string head;
+    std::string header;
     for (std::size_t i = 0; i < shards.size(); ++i) {
         // Bytes are copied unchanged, including any defects.
         if (!shards[i].warnings.empty())
@@ -286,12 +288,12 @@ std::uint64_t join_common_layers(const std::vector<ShardFile>& shards, std::uint
                         fmt::format("{}: is not sound: {}", shards[i].path, shards[i].warnings.front()));
         const CommonLayerFile file = take_apart(shards[i], reading, execution);
         if (i == 0) {
-            head = file.before_count;
-            out.append(head);
+            header = file.before_count;
+            out.append(header);
             out.append(fmt::format("{}", layers + 1));
             out.append(file.after_count);
         }
-        check_heads(shards.front().path, head, shards[i].path, file.before_count);
+        check_heads(shards.front().path, header, shards[i].path, file.before_count);
         constexpr std::size_t at_once = std::size_t{1} << 22;
         for (std::size_t at = 0; at < file.layers.size(); at += at_once) {
             if (execution.cancelled())
@@ -355,8 +357,8 @@ std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
         std::map<std::string_view, std::size_t> met;
         std::optional<std::size_t> before;
         for (const PartInfo& part : shard.parts) {
-            const auto [place, added] = numbers.try_emplace({part.label, met[part.label]++}, all.size());
-            const std::size_t number = place->second;
+            const auto [position, added] = numbers.try_emplace({part.label, met[part.label]++}, all.size());
+            const std::size_t number = position->second;
             if (added) {
                 all.push_back({part, &shard.path});
             } else {

@@ -55,10 +55,10 @@ inline LayerSteps steps_to_repeat(LayerSteps steps) {
 /// Returns the mitre limit and, if the format rounds, one below and one above it: at corners of exactly the
 /// limiting angle, 60 degrees by default, rounding decides whether mitres are truncated.
 inline std::vector<double> limits_of_mitres(double limit, const Rounding& rounding) {
-    constexpr double share = 0.01;
+    constexpr double spread = 0.01;
     return rounding == Rounding{}
                ? std::vector{limit}
-               : std::vector{limit, std::max(1.0, (1 - share) * limit), (1 + share) * limit};
+               : std::vector{limit, std::max(1.0, (1 - spread) * limit), (1 + spread) * limit};
 }
 
 /// Returns the layers of the mesh, after these steps.

@@ -41,7 +41,7 @@ std::vector<Exposure> plane_exposures(const std::vector<bool>& supports, const S
 
 PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
                         std::span<const std::string> names, const ScanStrategy& strategy,
-                        std::vector<ScanMemory>& memories, const LayerLimits& limits) {
+                        std::vector<InsetCache>& memories, const LayerLimits& limits) {
     assert(supports.size() == plane.parts.size() && memories.size() == plane.parts.size());
     assert(names.size() == plane.parts.size());
     const std::vector<Exposure> each = plane_exposures(supports, strategy);
@@ -55,7 +55,7 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
     std::optional<Point2> beam;
     std::vector<std::uint64_t> hashes;
     for (std::size_t part = 0; part < plane.parts.size(); ++part) {
-        ScanMemory* const memory = &memories[part];
+        InsetCache* const memory = &memories[part];
         std::vector<double> unreached;
         std::vector<Layer> scanned = naming(names[part], [&] {
             return supports[part] ? scan_support(plane.parts[part], strategy, memory, &unreached, left)

@@ -41,6 +41,6 @@ struct PlaneVectors {
 /// parts, for errors, or empty texts. `limits`: for all of them.
 [[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
                                       std::span<const std::string> names, const ScanStrategy& strategy,
-                                      std::vector<ScanMemory>& memories, const LayerLimits& limits);
+                                      std::vector<InsetCache>& memories, const LayerLimits& limits);
 
 } // namespace lamella

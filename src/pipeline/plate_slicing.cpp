@@ -5,8 +5,8 @@
 #include "core/executor.hpp"
 #include "core/stopwatch.hpp"
 #include "slicing/ordered_delivery.hpp"
+#include "slicing/plane_ranges.hpp"
 #include "slicing/shrunken_contours.hpp"
-#include "slicing/slabs.hpp"
 
 #include <algorithm>
 #include <array>
@@ -121,7 +121,7 @@ std::vector<PlaneRange> windows(const Plate& plate, const Plan& plan, std::uint6
     PlaneCounts counts(planes);
     for (const PlateShape& shape : plate.shapes)
         counts.add(count_planes(shape.mesh, plan, execution));
-    return divide_by_points(SlabSurvey(counts), most_points);
+    return divide_by_points(RangeSurvey(counts), most_points);
 }
 
 /// Returns an execution that does not report the progress of slicing.
@@ -205,15 +205,16 @@ TriangleVisitor visitor_of(std::size_t shape, const ShapeVisitor& visitor) {
 
 SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan,
                         const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
-                        SinkYield yield, const ShapeVisitor& visitor) {
+                        SinkCost cost, const ShapeVisitor& visitor) {
     SliceReport report;
     // Each range visits all triangles, so ranges are few and large. Engines that weld would weld again for
     // each range.
-    constexpr std::uint64_t share = 2;
+    constexpr std::uint64_t windows_per_limit = 2;
     const auto all = static_cast<std::uint32_t>(plan.layers.size());
-    const std::vector<PlaneRange> runs = engine.welds || points_in_flight == 0
-                                             ? std::vector<PlaneRange>{{0, all}}
-                                             : windows(plate, plan, share * points_in_flight, execution);
+    const std::vector<PlaneRange> runs =
+        engine.welds || points_in_flight == 0
+            ? std::vector<PlaneRange>{{0, all}}
+            : windows(plate, plan, windows_per_limit * points_in_flight, execution);
     const std::vector<PlaneRange> planes = planes_of_shapes(plate, plan);
     JointProgress progress;
     for (const PlaneRange& run : runs)
@@ -221,7 +222,7 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
             if (const PlaneRange its = common(planes[shape], run); its.size() > 0)
                 progress.expect(plate.shapes[shape].mesh.size(), its.size());
     // If the sink expands layers, its work takes most of the time, and its progress is reported instead.
-    const bool sink_counts = yield == SinkYield::much_more;
+    const bool sink_counts = cost == SinkCost::expanding;
     const Execution slicing = sink_counts ? without_slicing(execution) : execution;
     const Execution quiet;
     std::optional<ProgressMeter> emitted;
@@ -294,9 +295,9 @@ LayerStack slice(const Plate& plate, const Plan& plan, const Execution& executio
 
 SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
                            const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
-                           SinkYield yield, const ShapeVisitor& visitor) {
-    if (plate.parts.size() + plate.negatives.size() > 1 || yield == SinkYield::much_more)
-        return slice_parts(sink, plate, plan, execution, engine, points_in_flight, yield, visitor);
+                           SinkCost cost, const ShapeVisitor& visitor) {
+    if (plate.parts.size() + plate.negatives.size() > 1 || cost == SinkCost::expanding)
+        return slice_parts(sink, plate, plan, execution, engine, points_in_flight, cost, visitor);
     const LayerSink single = [&](Layer&& layer) {
         return sink(std::span<const Layer>(&layer, 1));
     };

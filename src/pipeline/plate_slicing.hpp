@@ -27,7 +27,7 @@ using ShapeVisitor =
 
 /// Size of the data that a sink makes of layers: about that of the layers, or so much more that only a few
 /// planes may be in flight, whatever `points_in_flight` is.
-enum class SinkYield { like_layers, much_more };
+enum class SinkCost { proportional, expanding };
 
 /// Returns the layers of the parts on one plane, with the negative volumes subtracted; takes the arguments of
 /// a PlateSink. Layers that no negative volume touches are unchanged, bit for bit.
@@ -42,7 +42,7 @@ enum class SinkYield { like_layers, much_more };
 [[nodiscard]] SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
                                          const Execution& execution, const Engine& engine,
                                          std::uint64_t points_in_flight,
-                                         SinkYield yield = SinkYield::like_layers,
+                                         SinkCost cost = SinkCost::proportional,
                                          const ShapeVisitor& visitor = {});
 
 } // namespace lamella

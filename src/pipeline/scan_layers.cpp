@@ -83,7 +83,7 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
     result.layers.resize(planes);
     std::vector<double> unreached(planes);
     result.hashes.resize(planes);
-    std::vector<ScanMemory> memories(supports.size());
+    std::vector<InsetCache> memories(supports.size());
     std::atomic<std::uint64_t> nanoseconds{0};
     const std::unique_ptr<LayerWriter> writer =
         open_layer_writer(path, format, with_exposures(info, strategy), options);

@@ -336,7 +336,7 @@ std::vector<PlaneRange> divide(const FileJob& job, const Planes& planes, Feed& f
                                                   job.shard->number, job.shard->count));
     if (!job.shard && processes.size() == 1 && feed.meshes() != nullptr)
         return {written};
-    const SlabSurvey survey(part_of(feed.count(planes.plan, execution), written));
+    const RangeSurvey survey(part_of(feed.count(planes.plan, execution), written));
     std::vector<PlaneRange> division;
     if (job.shard)
         division = {divide_evenly(survey, job.shard->count)[job.shard->number - 1]};
@@ -351,13 +351,13 @@ std::vector<PlaneRange> divide(const FileJob& job, const Planes& planes, Feed& f
 }
 
 /// What is made of the layers of one plane on their way from the engine to the output.
-class LayerWay {
+class LayerProcessor {
   public:
     /// `sliced`: the planes of the plan that come, of which those of `mine` are written. `supports`: for each
     /// part whether it is one.
-    LayerWay(const FileJob& job, const Plate& plate, const Plan& plan, PlaneRange sliced, PlaneRange mine,
-             const std::vector<bool>& supports, LayerTotals& totals, JobOutput& output,
-             const LayerLimits& limits)
+    LayerProcessor(const FileJob& job, const Plate& plate, const Plan& plan, PlaneRange sliced,
+                   PlaneRange mine, const std::vector<bool>& supports, LayerTotals& totals, JobOutput& output,
+                   const LayerLimits& limits)
         : job_(job), plate_(plate), limits_(limits), supports_(supports), memories_(supports.size()),
           first_index_(plan.layers.front().index), mine_(mine), totals_(totals), output_(output),
           window_(
@@ -460,7 +460,7 @@ class LayerWay {
     LayerLimits limits_;
     const std::vector<bool>& supports_;
     std::vector<std::string> names_;   ///< of the parts, for errors
-    std::vector<ScanMemory> memories_; ///< of each part
+    std::vector<InsetCache> memories_; ///< of each part
     std::uint64_t first_index_;
     PlaneRange mine_;
     LayerTotals& totals_;
@@ -472,13 +472,13 @@ class LayerWay {
 };
 
 /// Progress in planes of the whole; only that: stages do not come back.
-Execution in_share(PlaneRange share, PlaneRange mine, const Execution& execution) {
+Execution in_range(PlaneRange range, PlaneRange mine, const Execution& execution) {
     Execution run = execution;
     if (execution.progress)
-        run.progress = [&execution, share, mine](const Progress& progress) {
+        run.progress = [&execution, range, mine](const Progress& progress) {
             if (progress.stage == Stage::slice && progress.total != 0)
                 execution.progress({Stage::slice,
-                                    share.begin - mine.begin + progress.done * share.size() / progress.total,
+                                    range.begin - mine.begin + progress.done * range.size() / progress.total,
                                     mine.size()});
         };
     return run;
@@ -579,7 +579,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), supports, files);
     const LayerLimits limits =
         layer_limits(execution, feed.memory().limit, feed.memory().asked ? result.threads : 1);
-    LayerWay way(job, plate, plan, sliced_here, mine, supports, totals, output, limits);
+    LayerProcessor way(job, plate, plan, sliced_here, mine, supports, totals, output, limits);
     ShapeVisitor visitor;
     if (feed.meshes() != nullptr) {
         feed.begin_near_faces(plan);
@@ -589,21 +589,21 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
             };
     }
     double slice_seconds = 0; // without waiting for others
-    std::uint64_t shares_of_all = 0;
+    std::uint64_t ranges_of_all = 0;
     {
-        const std::vector<PlaneRange> shares = feed.bring(plan, sliced, execution);
-        shares_of_all = shares.size();
+        const std::vector<PlaneRange> ranges = feed.bring(plan, sliced, execution);
+        ranges_of_all = ranges.size();
         in_agreement(processes, [&] {
             const Stopwatch slicing;
-            for (std::size_t s = 0; s < shares.size(); ++s)
+            for (std::size_t s = 0; s < ranges.size(); ++s)
                 result.report +=
-                    slice_plate_to(std::ref(way), feed.take(s, execution), part_of(plan, shares[s]),
-                                   shares.size() > 1 || feed.meshes() == nullptr
-                                       ? in_share(shares[s], sliced_here, execution)
+                    slice_plate_to(std::ref(way), feed.take(s, execution), part_of(plan, ranges[s]),
+                                   ranges.size() > 1 || feed.meshes() == nullptr
+                                       ? in_range(ranges[s], sliced_here, execution)
                                        : execution,
                                    engine, feed.memory().points_in_flight(result.threads),
-                                   job.scan ? SinkYield::much_more : SinkYield::like_layers, visitor);
-            if (visitor && shares.empty()) // this process has no planes, but the result is that of all
+                                   job.scan ? SinkCost::expanding : SinkCost::proportional, visitor);
+            if (visitor && ranges.empty()) // this process has no planes, but the result is that of all
                 for (std::size_t shape = 0; shape < plate.shapes.size(); ++shape)
                     visitor(shape, plate.shapes[shape].mesh, 0, plate.shapes[shape].mesh.size());
             slice_seconds = slicing.seconds();
@@ -627,8 +627,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     result.shard = {all.begin - planes.written.begin, all.end - planes.written.begin};
     result.bottom = plan.layers[all.begin].bottom;
     result.top = plan.layers[all.end - 1].top;
-    processes.sum(std::span(&shares_of_all, 1));
-    result.slabs = feed.in_pieces() ? shares_of_all : 0;
+    processes.sum(std::span(&ranges_of_all, 1));
+    result.ranges = feed.in_ranges() ? ranges_of_all : 0;
     if (feed.meshes() == nullptr)
         result.seconds.read = feed.figures().read_seconds;
     result.seconds.weld = prepared.seconds;
@@ -642,7 +642,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     figures.slice_seconds = slice_seconds;
     gather(processes, result.seconds, result.report);
     totals.gather(processes);
-    totals.tell(result);
+    totals.store_in(result);
     result.unreached_by_file.resize(result.files.size());
     result.near_faces.resize(result.files.size());
     for (const Feed::NearPlane& near : feed.near_faces())

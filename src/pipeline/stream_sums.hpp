@@ -55,18 +55,18 @@ class VolumeSum {
         for (std::size_t i = 0; i < batch.size(); ++i)
             sum += six_volumes(batch.placed(i), origin_);
         const std::lock_guard lock(mutex_);
-        if (pieces_.size() <= number)
-            pieces_.resize(number + 1, 0);
-        pieces_[number] = sum;
+        if (chunks_.size() <= number)
+            chunks_.resize(number + 1, 0);
+        chunks_[number] = sum;
     }
 
     /// Returns the sums of the chunks, in their order.
-    [[nodiscard]] const std::vector<double>& pieces() const noexcept { return pieces_; }
+    [[nodiscard]] const std::vector<double>& chunks() const noexcept { return chunks_; }
 
   private:
     Point3 origin_;
     std::mutex mutex_;
-    std::vector<double> pieces_;
+    std::vector<double> chunks_;
 };
 
 } // namespace lamella

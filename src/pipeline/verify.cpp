@@ -242,21 +242,21 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     result.crossings = found.crossings.total;
     result.misoriented = found.misoriented.total + found.tangled.total;
     result.overlapping = found.overlapping.total;
-    tell(found.open_chains, open_chains_words, result.findings);
+    append_finding(found.open_chains, open_chains_words, result.findings);
     if (!result.open_layers.empty())
         result.findings.push_back(gaps_text(result.open_layers));
-    tell(found.crossings, crossings_words, result.findings);
-    tell(found.misoriented, misoriented_words, result.findings);
-    tell(found.tangled, tangled_words, result.findings);
-    tell(found.overlapping,
-         {"ring lies within material: bodies that overlap, or holes that run the wrong way round;",
-          "rings lie within material: bodies that overlap, or holes that run the wrong way round;"},
-         result.findings);
+    append_finding(found.crossings, crossings_words, result.findings);
+    append_finding(found.misoriented, misoriented_words, result.findings);
+    append_finding(found.tangled, tangled_words, result.findings);
+    append_finding(found.overlapping,
+                   {"ring lies within material: bodies that overlap, or holes that run the wrong way round;",
+                    "rings lie within material: bodies that overlap, or holes that run the wrong way round;"},
+                   result.findings);
     result.height_overlaps = overlapping_heights(layers, options.granted(), result.findings);
     if (result.hatches > 0)
         result.findings.push_back(
-            counted(result.hatches, "hatch line was not checked: nothing tells what it is to fill",
-                    "hatch lines were not checked: nothing tells what they are to fill"));
+            counted(result.hatches, "hatch line was not checked: no contour bounds the area that it fills",
+                    "hatch lines were not checked: no contour bounds the area that they fill"));
     if (options.mesh) {
         compare_areas(layers, checks, options, execution, result);
         if (const NearFaceLayers near = near_faces(*options.mesh, plan_of(layers, options), execution);

@@ -303,7 +303,7 @@ class VectorCheck {
         if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0)
             return;
         const ContourRule& rule = contours_of(*options_.strategy, group.exposures.front()->exposure->region);
-        const Layer& head = group.exposures.front()->layers[plane];
+        const Layer& header = group.exposures.front()->layers[plane];
         for (std::uint32_t number = 1; number <= rule.count; ++number) {
             LayerMeasure row;
             Point2 at;
@@ -336,7 +336,7 @@ class VectorCheck {
             if (agrees())
                 continue;
             ContourRow& wrong = found.rows[number];
-            (row.contours == 0 ? wrong.missing : wrong.elsewhere).add(head, at);
+            (row.contours == 0 ? wrong.missing : wrong.elsewhere).add(header, at);
         }
     }
 
@@ -536,8 +536,8 @@ class VectorCheck {
         double least = std::numeric_limits<double>::infinity();
         Point2 at;
         for (const Layer& section : bounds.sections) {
-            const Layer places = narrow_places(moved_inwards(section, 0), bounds.depth, contours, hatch);
-            if (places.rings > 0 && strokes.empty())
+            const Layer positions = narrow_points(moved_inwards(section, 0), bounds.depth, contours, hatch);
+            if (positions.rings > 0 && strokes.empty())
                 for (const LayerPart* const part : group.exposures)
                     add_strokes(part->layers[plane],
                                 2 * tolerance_ +
@@ -545,9 +545,9 @@ class VectorCheck {
                                          ? hatch_of(strategy, part->exposure->region).distance
                                          : contour_reach(contours_of(strategy, part->exposure->region))),
                                 strokes);
-            if (const double left = unreached_area(places, strokes); left < least) {
+            if (const double left = unreached_area(positions, strokes); left < least) {
                 least = left;
-                at = places.points.empty() ? Point2{} : places.points[0];
+                at = positions.points.empty() ? Point2{} : positions.points[0];
             }
         }
         if (least > strategy.accepted_mm2)
@@ -585,8 +585,8 @@ std::array<KindOfFinding, 9> kinds_of_findings(bool strategy) {
            "hatch lines are shorter than the strategy says;"}},
          {&PlaneCheck::misplaced,
           &VectorVerification::misplaced,
-          {"hatch line lies beside those of the strategy, is turned otherwise or of another exposure;",
-           "hatch lines lie beside those of the strategy, are turned otherwise or of another exposure;"}},
+          {"hatch line lies beside those of the strategy, has another angle or another exposure;",
+           "hatch lines lie beside those of the strategy, have another angle or another exposure;"}},
          {&PlaneCheck::miscovered,
           &VectorVerification::miscovered,
           {"layer has lines that cover more or less than they should fill;",
@@ -601,14 +601,14 @@ std::array<KindOfFinding, 9> kinds_of_findings(bool strategy) {
            "rings of the mesh bound no material and have no vectors, as triangles face inwards;"}}}};
 }
 
-void tell_row(std::uint32_t number, const ContourRow& row, std::vector<std::string>& findings) {
-    const auto tell_of = [&](const Finding& finding, const char* what) {
+void append_row(std::uint32_t number, const ContourRow& row, std::vector<std::string>& findings) {
+    const auto append_finding_of = [&](const Finding& finding, const char* what) {
         if (finding.total > 0)
             findings.push_back(fmt::format("contour {} {} on {}, the first is {}", number, what,
-                                           counted(finding.total, "layer"), finding.place));
+                                           counted(finding.total, "layer"), finding.position));
     };
-    tell_of(row.missing, "is missing");
-    tell_of(row.elsewhere, "encloses another area than the material has at its depth");
+    append_finding_of(row.missing, "is missing");
+    append_finding_of(row.elsewhere, "encloses another area than the material has at its depth");
 }
 
 } // namespace
@@ -687,7 +687,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         for (const PlaneCheck& check : checks)
             all.add(check.*kind.found);
         result.*kind.total = all.total;
-        tell(all, kind.words, result.findings);
+        append_finding(all, kind.words, result.findings);
     }
     std::map<std::uint32_t, ContourRow> rows;
     double covered_mm2 = 0;
@@ -708,7 +708,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         result.cover = covered_mm2 / filled_mm2;
     for (const auto& row : rows) {
         result.wrong_contours += row.second.missing.total + row.second.elsewhere.total;
-        tell_row(row.first, row.second, result.findings);
+        append_row(row.first, row.second, result.findings);
     }
     result.height_overlaps = overlapping_heights(planes, options.granted(), result.findings);
     if (options.mesh)
@@ -716,7 +716,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
             covered_heights(planes, *options.mesh, options.granted(), execution, result.findings);
     if (result.unbounded > 0)
         result.findings.push_back(
-            fmt::format("of {} nothing tells where the material is: no closed contour is around them",
+            fmt::format("{} have no closed contour around them that would bound the material",
                         counted(result.unbounded, "vector")));
     return result;
 }

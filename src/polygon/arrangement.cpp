@@ -55,15 +55,15 @@ constexpr double reach_of_bundles = 12;
 class Uncut {
   public:
     /// `reach`: from how close on sides are cut.
-    Uncut(std::span<const WoundRing> rings, const ClippingGrid& grid, double reach) {
-        std::vector<Point2> places;
-        for (const WoundRing& ring : rings) {
+    Uncut(std::span<const RingWithWinding> rings, const ClippingGrid& grid, double reach) {
+        std::vector<Point2> positions;
+        for (const RingWithWinding& ring : rings) {
             for (const Point2& p : ring.points)
-                places.push_back(grid.place(p));
-            layer_.offsets.push_back(places.size());
+                positions.push_back(grid.position(p));
+            layer_.offsets.push_back(positions.size());
         }
         layer_.rings = rings.size();
-        layer_.points = PointArray(std::move(places));
+        layer_.points = PointArray(std::move(positions));
         close_ = close_sides(layer_, reach);
         OpenRuns runs;
         for (std::size_t i = 0; i < rings.size(); ++i)
@@ -76,9 +76,9 @@ class Uncut {
     std::vector<Side> alone; ///< the rest
 
   private:
-    void add(const WoundRing& ring, std::size_t number, OpenRuns& runs) {
-        const std::span<const Point2> places = layer_.contour(number);
-        const std::size_t n = places.size();
+    void add(const RingWithWinding& ring, std::size_t number, OpenRuns& runs) {
+        const std::span<const Point2> positions = layer_.contour(number);
+        const std::size_t n = positions.size();
         const SideCount step{ring.turn, ring.left};
         const auto after = [n](std::size_t i) {
             return i + 1 < n ? i + 1 : 0;
@@ -87,16 +87,16 @@ class Uncut {
             return close_[layer_.offsets[number] + i];
         };
         const auto rightwards = [&](std::size_t i) {
-            return places[i] < places[after(i)];
+            return positions[i] < positions[after(i)];
         };
         for (std::size_t i = 0; i < n;) {
-            arrangement.end_corners.push_back({places[i], ring.points[i]});
+            arrangement.end_corners.push_back({positions[i], ring.points[i]});
             if (close(i)) {
                 if (i == 0 || !close(i - 1))
                     runs.begin(ring.points[i]);
                 runs.go_on_to(ring.points[after(i)]);
-                if (places[i] != places[after(i)])
-                    arrangement.sides.push_back({.line = segment_between(places[i], places[after(i)]),
+                if (positions[i] != positions[after(i)])
+                    arrangement.sides.push_back({.line = segment_between(positions[i], positions[after(i)]),
                                                  .step = (rightwards(i) ? 1 : -1) * step});
                 ++i;
                 continue;
@@ -107,9 +107,9 @@ class Uncut {
             const auto first = static_cast<std::uint32_t>(arrangement.corners.size());
             for (std::size_t k = i + 1; k <= last; ++k) {
                 const std::size_t corner = rightwards(i) ? k : last + 1 + i - k;
-                arrangement.corners.push_back({places[corner], ring.points[corner]});
+                arrangement.corners.push_back({positions[corner], ring.points[corner]});
             }
-            alone.push_back({.line = segment_between(places[i], places[after(last)]),
+            alone.push_back({.line = segment_between(positions[i], positions[after(last)]),
                              .step = (rightwards(i) ? 1 : -1) * step,
                              .alone = true,
                              .first = first,
@@ -150,7 +150,7 @@ Wide cross(const GridVector& a, const GridVector& b) noexcept {
 }
 
 /// The place in whose square two sides cross properly.
-Point2 crossing_place(const Segment& a, const Segment& b) noexcept {
+Point2 crossing_point(const Segment& a, const Segment& b) noexcept {
     const GridVector u = from_to(a.lo, a.hi);
     const GridVector v = from_to(b.lo, b.hi);
     Wide of = cross(u, v);
@@ -169,28 +169,28 @@ Point2 crossing_place(const Segment& a, const Segment& b) noexcept {
 }
 
 /// Whether a side comes into the square of a place that is not one of its ends.
-bool comes_into(const Segment& s, const Point2& place) noexcept {
+bool comes_into(const Segment& s, const Point2& position) noexcept {
     const auto [low, high] = std::minmax(s.lo.y, s.hi.y);
-    if (place.x < s.lo.x || place.x > s.hi.x || place.y < low || place.y > high)
+    if (position.x < s.lo.x || position.x > s.hi.x || position.y < low || position.y > high)
         return false;
     const GridVector way = from_to(s.lo, s.hi);
-    const Wide twice = 2 * cross(way, from_to(s.lo, place));
+    const Wide twice = 2 * cross(way, from_to(s.lo, position));
     const Wide reach = Wide{way.x} + (way.y < 0 ? -way.y : way.y);
     // The corners at either end of the borders that belong to the square do not, but for the one between
     // them.
     return -reach < twice && (twice < reach || (twice == reach && way.y < 0));
 }
 
-/// Places, no two of them the same, sorted into cells; those of a cell that has many into cells of its own:
-/// where sides run through one point, crossings of all pairs lie close together.
-class Places {
+/// Positions, no two of them the same, sorted into cells; those of a cell that has many into cells of its
+/// own: where sides run through one point, crossings of all pairs lie close together.
+class Positions {
   public:
-    explicit Places(std::vector<Point2> places)
-        : places_(std::move(places)), size_(cell_size(places_)), cells_(box_of(places_), size_) {
-        const NumbersBelow numbers{static_cast<std::uint32_t>(places_.size())};
+    explicit Positions(std::vector<Point2> positions)
+        : positions_(std::move(positions)), size_(cell_size(positions_)), cells_(box_of(positions_), size_) {
+        const NumbersBelow numbers{static_cast<std::uint32_t>(positions_.size())};
         [[maybe_unused]] const bool sorted =
-            cells_.sort(numbers, places_.size(),
-                        [this](std::uint32_t i, const auto& visit) { visit(cells_.cell(places_[i])); });
+            cells_.sort(numbers, positions_.size(),
+                        [this](std::uint32_t i, const auto& visit) { visit(cells_.cell(positions_[i])); });
         assert(sorted); // each place is in one cell
         if (size_ <= least_size)
             return;
@@ -198,30 +198,30 @@ class Places {
             const std::span<const std::uint32_t> within = cells_.in_cell(cell);
             if (within.size() < crowd)
                 continue;
-            std::vector<Point2> crowded;
+            std::vector<Point2> full;
             for (const std::uint32_t i : within)
-                crowded.push_back(places_[i]);
-            crowded_cells_.push_back(cell);
-            crowds_.emplace_back(std::move(crowded));
+                full.push_back(positions_[i]);
+            full_cells_.push_back(cell);
+            crowds_.emplace_back(std::move(full));
         }
     }
 
     /// Calls visit(place) for those, but for the ends of the segment, for which `on(segment, place)`; they
     /// lie within two units of it.
     template <class On, class Visit>
-    void for_places_on(const Segment& s, const On& on, const Visit& visit) const {
+    void for_points_on(const Segment& s, const On& on, const Visit& visit) const {
         cells_.for_cells_along(s, [&](std::size_t cell) {
             const std::span<const std::uint32_t> within = cells_.in_cell(cell);
             if (within.size() >= crowd && size_ > least_size) {
-                const auto found = std::lower_bound(crowded_cells_.begin(), crowded_cells_.end(), cell);
-                assert(found != crowded_cells_.end() && *found == cell);
-                crowds_[static_cast<std::size_t>(found - crowded_cells_.begin())].for_places_on(s, on, visit);
+                const auto found = std::lower_bound(full_cells_.begin(), full_cells_.end(), cell);
+                assert(found != full_cells_.end() && *found == cell);
+                crowds_[static_cast<std::size_t>(found - full_cells_.begin())].for_points_on(s, on, visit);
                 return;
             }
             for (const std::uint32_t i : within) {
-                const Point2& place = places_[i];
-                if (place != s.lo && place != s.hi && on(s, place))
-                    visit(place);
+                const Point2& position = positions_[i];
+                if (position != s.lo && position != s.hi && on(s, position))
+                    visit(position);
             }
         });
     }
@@ -232,26 +232,27 @@ class Places {
     /// beside them.
     static constexpr double least_size = 2 / Grid::margin;
 
-    static double cell_size(std::span<const Point2> places) {
-        return std::max(least_size, Grid::cell_size(box_of(places), static_cast<double>(places.size()), 0));
+    static double cell_size(std::span<const Point2> positions) {
+        return std::max(least_size,
+                        Grid::cell_size(box_of(positions), static_cast<double>(positions.size()), 0));
     }
 
-    std::vector<Point2> places_;
+    std::vector<Point2> positions_;
     double size_;
     Grid cells_;
-    std::vector<std::size_t> crowded_cells_; ///< ascending
-    std::vector<Places> crowds_;             ///< of each of them
+    std::vector<std::size_t> full_cells_; ///< ascending
+    std::vector<Positions> crowds_;       ///< of each of them
 };
 
-Places distinct(std::vector<Point2> places) {
-    std::sort(places.begin(), places.end());
-    places.erase(std::unique(places.begin(), places.end()), places.end());
-    return Places(std::move(places));
+Positions distinct(std::vector<Point2> positions) {
+    std::sort(positions.begin(), positions.end());
+    positions.erase(std::unique(positions.begin(), positions.end()), positions.end());
+    return Positions(std::move(positions));
 }
 
-void add_ends(std::span<const Side> sides, std::vector<Point2>& places) {
+void add_ends(std::span<const Side> sides, std::vector<Point2>& positions) {
     for (const Side& side : sides)
-        places.insert(places.end(), {side.line.lo, side.line.hi});
+        positions.insert(positions.end(), {side.line.lo, side.line.hi});
 }
 
 static_assert(bytes_of_crossing == 4 * sizeof(Side) + 8 * sizeof(Point2));
@@ -289,7 +290,7 @@ struct Bundle {
         std::int64_t forth = 0; ///< of steps to the left, those above 0, and below
         std::int64_t back = 0;
     };
-    std::vector<Point2> places;
+    std::vector<Point2> positions;
     std::vector<Step> steps;
 
     void add(std::size_t first, std::size_t last, SideCount step) {
@@ -305,9 +306,9 @@ struct Bundle {
 
 constexpr double reach_of_bundle = 1.5;
 
-bool is_beside(const Segment& s, const Point2& place) noexcept {
+bool is_beside(const Segment& s, const Point2& position) noexcept {
     const GridVector way = from_to(s.lo, s.hi);
-    const GridVector to = from_to(s.lo, place);
+    const GridVector to = from_to(s.lo, position);
     const Wide along = Wide{way.x} * to.x + Wide{way.y} * to.y;
     const Wide squared = Wide{way.x} * way.x + Wide{way.y} * way.y;
     return along > 0 && along < squared &&
@@ -336,10 +337,10 @@ void join_bundles(Arrangement& arrangement, const LayerBudget& budget) {
     add_ends(sides, ends);
     std::sort(ends.begin(), ends.end());
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-    const Places places = distinct(ends);
+    const Positions positions = distinct(ends);
     struct Seat {
         std::uint32_t bundle;
-        std::uint32_t place;
+        std::uint32_t position;
     };
     std::vector<std::vector<Seat>> seats(ends.size()); // of each end, by ascending bundles
     const auto seats_of = [&](const Point2& end) -> std::vector<Seat>& {
@@ -364,8 +365,8 @@ void join_bundles(Arrangement& arrangement, const LayerBudget& budget) {
             if (other == others.end() || other->bundle != seat.bundle)
                 continue;
             const bool seat_is_low = &fewer == &low;
-            bundles[seat.bundle].add(seat_is_low ? seat.place : other->place,
-                                     seat_is_low ? other->place : seat.place, side.step);
+            bundles[seat.bundle].add(seat_is_low ? seat.position : other->position,
+                                     seat_is_low ? other->position : seat.position, side.step);
             joined = true;
             break;
         }
@@ -374,36 +375,36 @@ void join_bundles(Arrangement& arrangement, const LayerBudget& budget) {
         const auto number = static_cast<std::uint32_t>(bundles.size());
         Bundle& bundle = bundles.emplace_back();
         if (cuts <= most)
-            places.for_places_on(side.line, is_beside,
-                                 [&](const Point2& place) { bundle.places.push_back(place); });
-        cuts += bundle.places.size();
+            positions.for_points_on(side.line, is_beside,
+                                    [&](const Point2& position) { bundle.positions.push_back(position); });
+        cuts += bundle.positions.size();
         const GridVector way = from_to(lo, hi);
-        const auto along = [&](const Point2& place) {
-            const GridVector to = from_to(lo, place);
+        const auto along = [&](const Point2& position) {
+            const GridVector to = from_to(lo, position);
             return Wide{way.x} * to.x + Wide{way.y} * to.y;
         };
-        std::sort(bundle.places.begin(), bundle.places.end(), [&](const Point2& a, const Point2& b) {
+        std::sort(bundle.positions.begin(), bundle.positions.end(), [&](const Point2& a, const Point2& b) {
             const Wide along_a = along(a);
             const Wide along_b = along(b);
             return along_a != along_b ? along_a < along_b : a < b;
         });
-        bundle.places.insert(bundle.places.begin(), lo);
-        bundle.places.push_back(hi);
-        bundle.steps.resize(bundle.places.size());
-        bundle.add(0, bundle.places.size() - 1, side.step);
-        for (std::uint32_t i = 0; i < bundle.places.size(); ++i)
-            seats_of(bundle.places[i]).push_back({number, i});
+        bundle.positions.insert(bundle.positions.begin(), lo);
+        bundle.positions.push_back(hi);
+        bundle.steps.resize(bundle.positions.size());
+        bundle.add(0, bundle.positions.size() - 1, side.step);
+        for (std::uint32_t i = 0; i < bundle.positions.size(); ++i)
+            seats_of(bundle.positions[i]).push_back({number, i});
     }
     sides.clear();
     for (const Bundle& bundle : bundles) {
         Bundle::Step here;
-        for (std::size_t i = 0; i + 1 < bundle.places.size(); ++i) {
+        for (std::size_t i = 0; i + 1 < bundle.positions.size(); ++i) {
             here.step += bundle.steps[i].step;
             here.forth += bundle.steps[i].forth;
             here.back += bundle.steps[i].back;
             arrangement.walls = arrangement.walls || (here.forth > 0 && here.back < 0);
-            const Point2& a = bundle.places[i];
-            const Point2& b = bundle.places[i + 1];
+            const Point2& a = bundle.positions[i];
+            const Point2& b = bundle.positions[i + 1];
             if (here.step != SideCount{})
                 sides.push_back({.line = segment_between(a, b), .step = (a < b ? 1 : -1) * here.step});
         }
@@ -502,8 +503,8 @@ class Pieces {
 /// Cuts the sides at those of the places for which `on(segment, place)`. False where that takes more than
 /// `most` cuts; then nothing is cut.
 template <class On>
-bool try_to_cut(Arrangement& arrangement, const Places& places, const On& on, std::uint64_t most, bool& any,
-                const LayerBudget& budget) {
+bool try_to_cut(Arrangement& arrangement, const Positions& positions, const On& on, std::uint64_t most,
+                bool& any, const LayerBudget& budget) {
     std::vector<Side>& sides = arrangement.sides;
     Pieces pieces(sides.size());
     std::vector<std::uint32_t> cut;
@@ -513,7 +514,7 @@ bool try_to_cut(Arrangement& arrangement, const Places& places, const On& on, st
         const Side& side = sides[i];
         budget.check();
         cuts.clear();
-        places.for_places_on(side.line, on, [&](const Point2& place) { cuts.push_back(place); });
+        positions.for_points_on(side.line, on, [&](const Point2& position) { cuts.push_back(position); });
         if (cuts.empty())
             continue;
         made += cuts.size() + 1;
@@ -525,9 +526,9 @@ bool try_to_cut(Arrangement& arrangement, const Places& places, const On& on, st
             return a.x != b.x ? a.x < b.x : falls ? a.y > b.y : a.y < b.y;
         });
         Point2 from = side.line.lo;
-        for (const Point2& place : cuts) {
-            pieces.add(from, place, side.step);
-            from = place;
+        for (const Point2& position : cuts) {
+            pieces.add(from, position, side.step);
+            from = position;
         }
         pieces.add(from, side.line.hi, side.step);
         cut.push_back(i);
@@ -549,12 +550,12 @@ constexpr std::uint64_t most_pieces = std::uint64_t{1} << 27;
 
 /// Whether there was anything to cut.
 template <class On>
-bool cut(Arrangement& arrangement, const Places& places, const On& on, const LayerBudget& budget) {
+bool cut(Arrangement& arrangement, const Positions& positions, const On& on, const LayerBudget& budget) {
     bool any = false;
-    if (try_to_cut(arrangement, places, on, many(arrangement.sides), any, budget))
+    if (try_to_cut(arrangement, positions, on, many(arrangement.sides), any, budget))
         return any;
     join_collinear(arrangement); // which cuts what would be cut anyway
-    if (!try_to_cut(arrangement, places, on, most_pieces, any, budget))
+    if (!try_to_cut(arrangement, positions, on, most_pieces, any, budget))
         throw Error(
             ErrorKind::limit,
             fmt::format("{}: many contours run along one another, closer than coordinates are "
@@ -577,10 +578,10 @@ void wind(Arrangement& arrangement, const LayerBudget& budget) {
         const Side& side = arrangement.sides[i];
         const std::span<const Corner> corners = arrangement.corners_of(side);
         std::uint32_t& next = next_corner[i];
-        while (next < corners.size() && corners[next].place <= at)
+        while (next < corners.size() && corners[next].position <= at)
             ++next;
-        return {next == 0 ? side.line.lo : corners[next - 1].place,
-                next == corners.size() ? side.line.hi : corners[next].place};
+        return {next == 0 ? side.line.lo : corners[next - 1].position,
+                next == corners.size() ? side.line.hi : corners[next].position};
     };
     SweepStatus status(lines, along);
     const std::vector<SweepEvent> events = sweep_events(lines, SweepOrder::ends_first);
@@ -632,7 +633,7 @@ bool bounds(const Arrangement& arrangement, const Material& material, const Wind
             from = to;
         };
         for (const Corner& corner : arrangement.corners_of(side))
-            go_on_to(corner.place);
+            go_on_to(corner.position);
         go_on_to(side.line.hi);
     }
     return std::abs(excess) <= 2 * length;
@@ -640,7 +641,7 @@ bool bounds(const Arrangement& arrangement, const Material& material, const Wind
 
 } // namespace
 
-Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, const ClippingGrid& grid,
+Arrangement arranged(std::span<const RingWithWinding> rings, const Windings& around, const ClippingGrid& grid,
                      const LayerBudget& budget) {
     std::optional<Uncut> uncut(std::in_place, rings, grid, reach_of_cuts);
     CrossingPairs pairs = crossings_of(uncut->arrangement.sides, many(uncut->arrangement.sides), budget);
@@ -655,15 +656,15 @@ Arrangement arranged(std::span<const WoundRing> rings, const Windings& around, c
         std::vector<Point2> hot;
         add_ends(arrangement.sides, hot);
         for (const auto& [a, b] : pairs)
-            hot.push_back(crossing_place(arrangement.sides[a].line, arrangement.sides[b].line));
+            hot.push_back(crossing_point(arrangement.sides[a].line, arrangement.sides[b].line));
         if (cut(arrangement, distinct(std::move(hot)), comes_into, budget) && !arrangement.sides.empty()) {
             // What was bent may run through ends that it did not come near to.
             std::vector<Point2> ends;
             add_ends(arrangement.sides, ends);
             cut(
                 arrangement, distinct(std::move(ends)),
-                [](const Segment& s, const Point2& place) {
-                    return s.lo < place && place < s.hi && side(s, place) == 0;
+                [](const Segment& s, const Point2& position) {
+                    return s.lo < position && position < s.hi && side(s, position) == 0;
                 },
                 budget);
         }

@@ -19,7 +19,7 @@ namespace lamella {
 /// A ring, and what it adds where it runs counter-clockwise: to the windings of its inside, and to how often
 /// what is left of it winds around that: 1 for a ring that is to stay, -1 for one that is to be turned round,
 /// 0 for one that is to go.
-struct WoundRing {
+struct RingWithWinding {
     std::span<const Point2> points;
     Windings turn{1, 0};
     std::int64_t left = 0;
@@ -44,7 +44,7 @@ struct SideCount {
 
 /// A corner of a ring, and where that is on the grid.
 struct Corner {
-    Point2 place;
+    Point2 position;
     Point2 point;
 };
 
@@ -86,7 +86,7 @@ struct Arrangement {
 /// windings outside of all of them. O(n + (m + k) log m) for n points, m sides that come close to others or
 /// turn, and k crossings, as far as these are found in that.
 /// Throws Error{limit} for more crossings or pieces than the budget has room for, and Error{cancelled}.
-[[nodiscard]] Arrangement arranged(std::span<const WoundRing> rings, const Windings& around,
+[[nodiscard]] Arrangement arranged(std::span<const RingWithWinding> rings, const Windings& around,
                                    const ClippingGrid& grid, const LayerBudget& budget = {});
 
 } // namespace lamella

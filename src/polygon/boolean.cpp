@@ -64,7 +64,7 @@ void drop_far(Shares& rings) {
 }
 
 /// Of a layer without hatches.
-Layer with_head_and_chains_of(const Layer& first, const Rings& rings) {
+Layer with_header_and_chains_of(const Layer& first, const Rings& rings) {
     Layer layer{.index = first.index, .z = first.z, .bottom = first.bottom, .top = first.top};
     std::vector<Point2> points;
     const auto add = [&](std::span<const Point2> contour) {
@@ -101,7 +101,7 @@ Layer combined(const Layer& first, const Layer& second, BooleanOperation operati
     turns.resize(rings.size(), {1, 0});
     rings.insert(rings.end(), shares.second.begin(), shares.second.end());
     turns.resize(rings.size(), {0, 1});
-    const Layer layer = with_head_and_chains_of(a, rings);
+    const Layer layer = with_header_and_chains_of(a, rings);
     return normal_form(
         Overlay(layer, std::move(turns), limits).filled(Material(operation, least)).filled.layer);
 }

@@ -26,8 +26,8 @@ struct Directed {
 Directed directed(const Arrangement& arrangement, const Side& side, bool rightwards) {
     const std::span<const Corner> corners = arrangement.corners_of(side);
     const auto& [lo, hi] = side.line;
-    const Point2& next_to_lo = corners.empty() ? hi : corners.front().place;
-    const Point2& next_to_hi = corners.empty() ? lo : corners.back().place;
+    const Point2& next_to_lo = corners.empty() ? hi : corners.front().position;
+    const Point2& next_to_hi = corners.empty() ? lo : corners.back().position;
     return rightwards ? Directed{lo, hi, next_to_lo, next_to_hi, &side}
                       : Directed{hi, lo, next_to_hi, next_to_lo, &side};
 }
@@ -56,7 +56,7 @@ class SidesAhead {
         std::iota(left_.begin(), left_.end(), std::size_t{0});
         for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
             end = end_of(begin);
-            std::sort(place(begin), place(end), [&](std::size_t a, std::size_t b) {
+            std::sort(position(begin), position(end), [&](std::size_t a, std::size_t b) {
                 return clockwise_before(sides[begin].from, sides[begin].second, sides[a].second,
                                         sides[b].second);
             });
@@ -77,7 +77,7 @@ class SidesAhead {
         const std::size_t end = end_of(begin);
         assert(begin < end); // as many sides begin in a point as end there
         const Point2& first = sides_[begin].second;
-        const auto next = std::partition_point(place(begin), place(end), [&](std::size_t i) {
+        const auto next = std::partition_point(position(begin), position(end), [&](std::size_t i) {
             return !clockwise_before(v, first, side.last, sides_[i].second);
         });
         std::size_t found = next_left(static_cast<std::size_t>(next - clockwise_.begin()));
@@ -88,7 +88,7 @@ class SidesAhead {
     }
 
   private:
-    [[nodiscard]] std::vector<std::size_t>::iterator place(std::size_t i) {
+    [[nodiscard]] std::vector<std::size_t>::iterator position(std::size_t i) {
         return clockwise_.begin() + static_cast<std::ptrdiff_t>(i);
     }
     /// Of those that begin in the same point as a side.
@@ -156,13 +156,14 @@ std::vector<Ring> boundary(const Arrangement& arrangement, const Material& mater
     }
     std::vector<Corner> ends = arrangement.end_corners;
     std::sort(ends.begin(), ends.end(), [](const Corner& a, const Corner& b) {
-        return std::tie(a.place, a.point) < std::tie(b.place, b.point);
+        return std::tie(a.position, a.point) < std::tie(b.position, b.point);
     });
     // Of several corners in a place the smallest, and where there is none the place itself.
-    const auto end_at = [&](const Point2& place) {
-        const auto corner =
-            std::partition_point(ends.begin(), ends.end(), [&](const Corner& c) { return c.place < place; });
-        return corner != ends.end() && corner->place == place ? *corner : Corner{place, grid.point(place)};
+    const auto end_at = [&](const Point2& position) {
+        const auto corner = std::partition_point(ends.begin(), ends.end(),
+                                                 [&](const Corner& c) { return c.position < position; });
+        return corner != ends.end() && corner->position == position ? *corner
+                                                                    : Corner{position, grid.point(position)};
     };
     std::vector<std::vector<Corner>> found;
     OpenRuns runs;
@@ -188,14 +189,14 @@ std::vector<Ring> boundary(const Arrangement& arrangement, const Material& mater
     for (const std::vector<Corner>& corners_of_ring : found) {
         Ring& ring = result.emplace_back();
         for (const Corner& corner : corners_of_ring)
-            ring.push_back(crossed ? grid.point(corner.place) : corner.point);
+            ring.push_back(crossed ? grid.point(corner.position) : corner.point);
     }
     return result;
 }
 
 std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRule rule,
                          const ClippingGrid& grid, const LayerBudget& budget) {
-    std::vector<WoundRing> wound;
+    std::vector<RingWithWinding> wound;
     wound.reserve(rings.size());
     for (const std::span<const Point2> ring : rings)
         wound.push_back({ring});

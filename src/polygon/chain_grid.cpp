@@ -85,7 +85,7 @@ bool ChainGrid::sort() {
     });
 }
 
-bool ChainGrid::crowded() const noexcept {
+bool ChainGrid::full() const noexcept {
     std::uint64_t pairs = 0; // of pieces in a cell, over all cells
     for (std::size_t cell = 0; cell < cells_->cells(); ++cell) {
         const std::uint64_t here = cells_->in_cell(cell).size();

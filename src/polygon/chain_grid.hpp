@@ -35,7 +35,7 @@ class ChainGrid {
 
     /// Whether many pieces lie in few cells, such as small rings within one another: then to look at the
     /// cells of each piece takes too long.
-    [[nodiscard]] bool crowded() const noexcept;
+    [[nodiscard]] bool full() const noexcept;
 
     /// Whether p, a point of the ring, may lie in another one: it is in the box of another one, or there are
     /// too many large rings to look. Takes a look at one cell.

@@ -25,7 +25,7 @@ ClippingGrid::ClippingGrid(std::span<const Point2> points, double margin) {
                std::nearbyint((box.y0 + box.height() / 2) / unit_)};
 }
 
-Point2 ClippingGrid::place(const Point2& p) const noexcept {
+Point2 ClippingGrid::position(const Point2& p) const noexcept {
     return {std::nearbyint(p.x / unit_ - origin_.x) + 0.0, std::nearbyint(p.y / unit_ - origin_.y) + 0.0};
 }
 

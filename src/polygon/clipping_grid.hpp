@@ -21,9 +21,9 @@ class ClippingGrid {
 
     [[nodiscard]] double unit() const noexcept { return unit_; }
     /// The nearest place: whole numbers, at most some 2^37.
-    [[nodiscard]] Point2 place(const Point2& p) const noexcept;
-    [[nodiscard]] Point2 point(const Point2& place) const noexcept {
-        return {(origin_.x + place.x) * unit_ + 0.0, (origin_.y + place.y) * unit_ + 0.0};
+    [[nodiscard]] Point2 position(const Point2& p) const noexcept;
+    [[nodiscard]] Point2 point(const Point2& position) const noexcept {
+        return {(origin_.x + position.x) * unit_ + 0.0, (origin_.y + position.y) * unit_ + 0.0};
     }
 
   private:

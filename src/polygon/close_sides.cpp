@@ -60,7 +60,7 @@ class CloseSides {
 
     /// False when it would take too long.
     bool search(const ChainGrid& grid) {
-        patience_ = 64 * (grid.pieces().size() + layer_.points.size()) + 4096;
+        work_budget_ = 64 * (grid.pieces().size() + layer_.points.size()) + 4096;
         for (const Chain& piece : grid.pieces())
             if (ChainGrid::whole_ring(piece)) {
                 const std::span<const Chain> chains = grid.chains(piece);
@@ -84,12 +84,12 @@ class CloseSides {
                                 compare(chain, other);
                 }
         }
-        return patience_ > 0;
+        return work_budget_ > 0;
     }
 
     bool take(std::uint64_t steps) noexcept {
-        patience_ -= std::min(patience_, steps);
-        return patience_ > 0;
+        work_budget_ -= std::min(work_budget_, steps);
+        return work_budget_ > 0;
     }
 
     void compare(const Chain& a, const Chain& b) { compare(a, 0, a.segments, b, 0, b.segments); }
@@ -127,7 +127,7 @@ class CloseSides {
     double reach_;
     MonotoneChains chains_;
     std::vector<bool> close_;
-    std::uint64_t patience_ = 0;
+    std::uint64_t work_budget_ = 0;
 };
 
 } // namespace

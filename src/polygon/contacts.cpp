@@ -33,9 +33,9 @@ class Groups {
         return i == j ? !marked_[find(i)] : find(i) != find(j);
     }
     /// Counts what was connected.
-    [[nodiscard]] std::uint64_t news() const noexcept { return news_; }
+    [[nodiscard]] std::uint64_t merges() const noexcept { return merges_; }
     void connect(std::uint32_t i, std::uint32_t j) noexcept {
-        ++news_;
+        ++merges_;
         i = find(i);
         j = find(j);
         parent_[std::max(i, j)] = std::min(i, j);
@@ -56,7 +56,7 @@ class Groups {
   private:
     std::vector<std::uint32_t> parent_; // the smallest number of a set is its root
     std::vector<bool> marked_;
-    std::uint64_t news_ = 0;
+    std::uint64_t merges_ = 0;
 };
 
 /// Puts all rings in groups, connected by boxes that meet.
@@ -111,24 +111,24 @@ class ContactSearch {
     /// False when it would take too long.
     bool search(const ChainGrid& grid) {
         // Long chains side by side, as those of a ring and the same ring moved, are gone along once.
-        patience_ = 64 * (grid.pieces().size() + all_.all().size()) + 8 * layer_.points.size() + 4096;
+        work_budget_ = 64 * (grid.pieces().size() + all_.all().size()) + 8 * layer_.points.size() + 4096;
         for (const Chain& piece : grid.pieces())
             if (ChainGrid::whole_ring(piece))
                 look_into(piece.ring);
         const Grid& cells = grid.cells();
         for (std::size_t i = 0; i < cells.cells(); ++i) {
             const std::span<const std::uint32_t> here = cells.in_cell(i);
-            if (no_news_among(grid, here))
+            if (no_merges_among(grid, here))
                 continue;
             const std::uint64_t pairs = here.size() * here.size() / 16;
-            if (patience_ < pairs)
+            if (work_budget_ < pairs)
                 return false;
-            patience_ -= pairs;
-            std::uint64_t news = groups_.news();
+            work_budget_ -= pairs;
+            std::uint64_t merges = groups_.merges();
             for (std::size_t a = 0; a < here.size(); ++a) {
-                if (groups_.news() != news && no_news_among(grid, here))
+                if (groups_.merges() != merges && no_merges_among(grid, here))
                     break;
-                news = groups_.news();
+                merges = groups_.merges();
                 for (std::size_t b = a + 1; b < here.size(); ++b) {
                     const Box2& s = grid.box(here[a]);
                     const Box2& t = grid.box(here[b]);
@@ -138,11 +138,11 @@ class ContactSearch {
                 }
             }
         }
-        return patience_ > 0;
+        return work_budget_ > 0;
     }
 
     /// Whether the pieces are all of one group already, such as the spikes of one star.
-    [[nodiscard]] bool no_news_among(const ChainGrid& grid, std::span<const std::uint32_t> pieces) {
+    [[nodiscard]] bool no_merges_among(const ChainGrid& grid, std::span<const std::uint32_t> pieces) {
         return std::none_of(pieces.begin(), pieces.end(), [&](std::uint32_t i) {
             return groups_.open(grid.pieces()[i].ring, grid.pieces()[pieces.front()].ring) ||
                    groups_.open(grid.pieces()[i].ring, grid.pieces()[i].ring);
@@ -161,9 +161,9 @@ class ContactSearch {
     void look_into(const ChainGrid& grid, std::uint32_t a, std::uint32_t b) {
         const std::span<const Chain> chains = grid.chains(grid.pieces()[a]);
         const std::span<const Chain> others = grid.chains(grid.pieces()[b]);
-        patience_ -= std::min<std::uint64_t>(patience_, chains.size() * others.size() / 16);
+        work_budget_ -= std::min<std::uint64_t>(work_budget_, chains.size() * others.size() / 16);
         for (const Chain& s : chains) {
-            if (patience_ == 0)
+            if (work_budget_ == 0)
                 return;
             if (s.box().meets(grid.box(b)))
                 for (const Chain& t : others)
@@ -173,7 +173,7 @@ class ContactSearch {
 
     /// a comes before b in the layer.
     void look_into(const Chain& a, const Chain& b) {
-        if (patience_ == 0 || !groups_.open(a.ring, b.ring) || !a.box().meets(b.box()))
+        if (work_budget_ == 0 || !groups_.open(a.ring, b.ring) || !a.box().meets(b.box()))
             return;
         if (continues(b, a) && !continues(a, b) ? in_contact(b, a) : in_contact(a, b)) {
             groups_.connect(a.ring, b.ring);
@@ -219,7 +219,7 @@ class ContactSearch {
     /// Whether the segments [a0, a1) of chain a are in contact with the segments [b0, b1) of b.
     bool in_contact(const Chain& a, std::uint32_t a0, std::uint32_t a1, const Chain& b, std::uint32_t b0,
                     std::uint32_t b1) {
-        patience_ -= patience_ > 0 ? 1 : 0;
+        work_budget_ -= work_budget_ > 0 ? 1 : 0;
         if (!Box2::of(all_.point(a, a0), all_.point(a, a1))
                  .meets(Box2::of(all_.point(b, b0), all_.point(b, b1))))
             return false;
@@ -320,7 +320,7 @@ class ContactSearch {
     const MonotoneChains& all_;
     const LayerBudget& budget_;
     Groups groups_;
-    std::uint64_t patience_ = 0; // steps until the grid is given up
+    std::uint64_t work_budget_ = 0; // steps until the grid is given up
     bool found_ = false;
 };
 

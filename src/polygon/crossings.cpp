@@ -53,7 +53,7 @@ struct Frame {
 
 /// About where two segments cross: within some rounding errors of both. It is computed along the shorter one,
 /// where an error of the parameter moves it least.
-Point2 place_of_crossing(Segment s, Segment t) noexcept {
+Point2 point_of_crossing(Segment s, Segment t) noexcept {
     const auto squared_length = [](const Segment& of) {
         return (of.hi.x - of.lo.x) * (of.hi.x - of.lo.x) + (of.hi.y - of.lo.y) * (of.hi.y - of.lo.y);
     };
@@ -147,7 +147,7 @@ class CrossingSearch {
     [[nodiscard]] std::vector<Pair>& pairs() noexcept { return first_; }
     /// About where a pair crosses.
     [[nodiscard]] Point2 crossing_at(const Pair& pair) const noexcept {
-        const Point2 at = place(pair);
+        const Point2 at = position(pair);
         return {(at.x + frame_.origin.x) / frame_.unit, (at.y + frame_.origin.y) / frame_.unit};
     }
 
@@ -201,8 +201,8 @@ class CrossingSearch {
     }
 
     /// In local coordinates.
-    [[nodiscard]] Point2 place(const Pair& pair) const noexcept {
-        return place_of_crossing(local(segments_[pair.first]), local(segments_[pair.second]));
+    [[nodiscard]] Point2 position(const Pair& pair) const noexcept {
+        return point_of_crossing(local(segments_[pair.first]), local(segments_[pair.second]));
     }
 
     void search_all_pairs(const Box2& cell, std::span<const SegmentId> ids) {
@@ -217,7 +217,7 @@ class CrossingSearch {
         if (!cross(segments_[a], segments_[b]))
             return;
         const Pair pair(std::min(a, b), std::max(a, b));
-        const Point2 at = place(pair);
+        const Point2 at = position(pair);
         if (cell.x0 <= at.x && at.x < cell.x1 && cell.y0 <= at.y && at.y < cell.y1)
             found(pair);
     }

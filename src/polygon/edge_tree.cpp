@@ -57,12 +57,12 @@ void EdgeTree::build(std::size_t begin, std::size_t end) {
     if (end - begin <= edges_of_leaf)
         return;
     const std::size_t middle = begin + (end - begin) / 2;
-    const auto place = [&](std::size_t i) {
+    const auto position = [&](std::size_t i) {
         return edges_.begin() + static_cast<std::ptrdiff_t>(i);
     };
     // The middles of long walls side by side lie on a line across them, along which they are far apart.
     const bool along_x = middles.width() >= middles.height();
-    std::nth_element(place(begin), place(middle), place(end), [&](const Edge& s, const Edge& t) {
+    std::nth_element(position(begin), position(middle), position(end), [&](const Edge& s, const Edge& t) {
         return along_x ? s.middle().x < t.middle().x : s.middle().y < t.middle().y;
     });
     build(begin, middle);

@@ -267,7 +267,7 @@ class HoleCheck {
             y1 = std::max(y1, left_end(holes_[hole]).y);
         }
         const Rows rows(y0, y1, holes.size());
-        struct Place {
+        struct Position {
             Point2 at;
             std::uint32_t hole;
             std::int32_t around;
@@ -278,10 +278,10 @@ class HoleCheck {
         std::uint32_t sum = 0;
         for (std::uint32_t& begin : begins)
             begin = sum += begin;
-        std::vector<Place> places(holes.size());
+        std::vector<Position> positions(holes.size());
         for (const std::uint32_t hole : holes) {
             const Point2& p = left_end(holes_[hole]);
-            places[--begins[rows.row(p.y)]] = {p, hole, 0};
+            positions[--begins[rows.row(p.y)]] = {p, hole, 0};
         }
         const std::span<const Point2> ring = layer_.contour(number);
         const std::size_t blocks = number_of_blocks(ring);
@@ -301,23 +301,24 @@ class HoleCheck {
             if (!spend(end - k))
                 return false;
             for (; k < end; ++k) {
-                Place& place = places[k];
-                if (place.at.y < box.y0 || place.at.y > box.y1 || place.at.x < box.x0)
+                Position& position = positions[k];
+                if (position.at.y < box.y0 || position.at.y > box.y1 || position.at.x < box.x0)
                     continue;
                 const std::size_t last = std::min((i + 1) * block, ring.size());
-                if (place.at.x > box.x1) // all edges from end to end are to the left of it
-                    place.around += crossing(ring[i * block], ring[last == ring.size() ? 0 : last], place.at);
-                else if (!spend(block) || !wind(ring, i * block, last, place.at, place.around))
+                if (position.at.x > box.x1) // all edges from end to end are to the left of it
+                    position.around +=
+                        crossing(ring[i * block], ring[last == ring.size() ? 0 : last], position.at);
+                else if (!spend(block) || !wind(ring, i * block, last, position.at, position.around))
                     return false;
             }
         }
-        for (const Place& place : places) {
-            Hole& hole = holes_[place.hole];
-            hole.around += place.around;
+        for (const Position& position : positions) {
+            Hole& hole = holes_[position.hole];
+            hole.around += position.around;
             const Box2& inner = hole.box;
             const Box2& outer = boxes_[number];
             hole.contained |=
-                place.around > 0 && inner.x1 <= outer.x1 && outer.y0 <= inner.y0 && inner.y1 <= outer.y1;
+                position.around > 0 && inner.x1 <= outer.x1 && outer.y0 <= inner.y0 && inner.y1 <= outer.y1;
         }
         return true;
     }

@@ -35,9 +35,9 @@ InvertedRings inverted_rings(const Layer& layer, const Rounding& rounding, Inver
     assert(search == InversionSearch::full || in_normal_form(layer));
     if (search == InversionSearch::quick && holes_lie_in_material(layer, at_least))
         return inverted;
-    const Layer places = fill(with_rings_reversed(layer), FillRule::positive, limits).layer;
-    for (std::size_t i = 0; i < places.rings; ++i)
-        if (const std::span<const Point2> ring = places.contour(i); !orientation_is_lost(ring, at_least))
+    const Layer positions = fill(with_rings_reversed(layer), FillRule::positive, limits).layer;
+    for (std::size_t i = 0; i < positions.rings; ++i)
+        if (const std::span<const Point2> ring = positions.contour(i); !orientation_is_lost(ring, at_least))
             inverted += {.rings = 1, .area_mm2 = ring_area(ring), .at = ring.front()};
     return inverted;
 }

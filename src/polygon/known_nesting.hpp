@@ -16,7 +16,7 @@ namespace lamella {
 
 /// The nesting by both operands together, and for each ring the windings of either just outside of its left
 /// end, just inside, and below it, whatever other rings share its lowest edge there.
-struct WoundNesting {
+struct NestingWithWindings {
     Nesting nesting;
     std::vector<Windings> outside;
     std::vector<Windings> inside;
@@ -29,8 +29,8 @@ struct WoundNesting {
 /// grid.
 ///
 /// `turns`: what each ring adds to the windings; for a layer of one operand, 1 to the first.
-[[nodiscard]] WoundNesting nesting(const Layer& layer, const MonotoneChains& chains,
-                                   const std::optional<ChainGrid>& grid, const Contacts& contacts,
-                                   std::span<const Windings> turns, const LayerBudget& budget = {});
+[[nodiscard]] NestingWithWindings nesting(const Layer& layer, const MonotoneChains& chains,
+                                          const std::optional<ChainGrid>& grid, const Contacts& contacts,
+                                          std::span<const Windings> turns, const LayerBudget& budget = {});
 
 } // namespace lamella

@@ -60,13 +60,13 @@ struct Turn {
 
 /// Where a moved side ends.
 enum class SideEnd : std::uint8_t {
-    at_corner, ///< by the rule of the corner
-    meeting,   ///< where it meets the next side that is left
-    gone,      ///< the side itself is not left
+    at_corner,    ///< by the rule of the corner
+    intersection, ///< where it meets the next side that is left
+    gone,         ///< the side itself is not left
 };
 
 /// Where two moved sides meet, and how far that is from where they begin, as they were.
-struct SideMeeting {
+struct SideIntersection {
     Point2 at;
     double before;
     double after;
@@ -75,9 +75,9 @@ struct SideMeeting {
 /// A side of a row that is left so far.
 struct RowSide {
     std::size_t side;
-    double start;          ///< how much is cut off at its beginning
-    Point2 meeting = {};   ///< with the one before it in the row
-    double end_before = 0; ///< where that one ends, from its beginning
+    double start;             ///< how much is cut off at its beginning
+    Point2 intersection = {}; ///< with the one before it in the row
+    double end_before = 0;    ///< where that one ends, from its beginning
 };
 
 Point2 operator+(const Point2& a, const Point2& b) noexcept {
@@ -254,7 +254,7 @@ class RingMover {
             return;
         }
         ends_.assign(sides_.size(), SideEnd::at_corner);
-        meetings_.resize(sides_.size());
+        intersections_.resize(sides_.size());
         if (shape_ != OffsetCorner::bevel)
             find_rows();
         put_ends(out);
@@ -328,7 +328,7 @@ class RingMover {
         for (std::size_t k = 1; k < count; ++k) {
             side = after(side);
             while (true) {
-                const std::optional<SideMeeting> met = meet(row_.back().side, side);
+                const std::optional<SideIntersection> met = meet(row_.back().side, side);
                 if (!met)
                     return;
                 if (met->before >= row_.back().start) {
@@ -346,13 +346,13 @@ class RingMover {
         for (std::size_t k = 0; k + 1 < row_.size(); ++k) {
             for (std::size_t i = after(row_[k].side); i != row_[k + 1].side; i = after(i))
                 ends_[i] = SideEnd::gone;
-            ends_[row_[k].side] = SideEnd::meeting;
-            meetings_[row_[k].side] = row_[k + 1].meeting;
+            ends_[row_[k].side] = SideEnd::intersection;
+            intersections_[row_[k].side] = row_[k + 1].intersection;
         }
     }
 
     /// Where two moved sides of a row meet.
-    [[nodiscard]] std::optional<SideMeeting> meet(std::size_t i, std::size_t j) const noexcept {
+    [[nodiscard]] std::optional<SideIntersection> meet(std::size_t i, std::size_t j) const noexcept {
         const MovedSide& a = sides_[i];
         const MovedSide& b = sides_[j];
         const Point2 n = distance_ * right_of(a.direction);
@@ -361,7 +361,7 @@ class RingMover {
             const Turn& turn = sides_.turn(i);
             if (turn.folds())
                 return std::nullopt;
-            return SideMeeting{b.from + turn.mitre * (n + m), a.length - cuts_[i], cuts_[i]};
+            return SideIntersection{b.from + turn.mitre * (n + m), a.length - cuts_[i], cuts_[i]};
         }
         const double sine = a.direction.x * b.direction.y - a.direction.y * b.direction.x;
         if (!((distance_ > 0 ? sine : -sine) < -1e-6))
@@ -372,14 +372,14 @@ class RingMover {
         const double along_b = (way.x * a.direction.y - way.y * a.direction.x) / sine;
         if (!(along_a <= 0 && along_b >= 0))
             return std::nullopt;
-        return SideMeeting{b.from + m + along_b * b.direction, a.length + along_a, along_b};
+        return SideIntersection{b.from + m + along_b * b.direction, a.length + along_a, along_b};
     }
 
     /// Whether the sides of the row that are not left lie below where those around them meet.
     [[nodiscard]] bool swallowed_lie_below() const noexcept {
         for (std::size_t k = 0; k + 1 < row_.size(); ++k)
             for (std::size_t i = after(row_[k].side); i != row_[k + 1].side; i = after(i)) {
-                const Point2 way = row_[k + 1].meeting + -1 * sides_[i].from;
+                const Point2 way = row_[k + 1].intersection + -1 * sides_[i].from;
                 const Point2 n = right_of(sides_[i].direction);
                 const double height = way.x * n.x + way.y * n.y;
                 if ((distance_ > 0 ? height : -height) < reach_ - rounding_)
@@ -406,8 +406,8 @@ class RingMover {
         std::size_t i = longest;
         for (std::size_t k = 0; k < sides_.size(); ++k, i = after(i)) {
             ends_points_.clear();
-            if (ends_[i] == SideEnd::meeting)
-                ends_points_.push_back(meetings_[i]);
+            if (ends_[i] == SideEnd::intersection)
+                ends_points_.push_back(intersections_[i]);
             else if (ends_[i] == SideEnd::at_corner)
                 turn_from(i, ends_points_);
             for (const Point2& p : ends_points_)
@@ -431,12 +431,13 @@ class RingMover {
             const Point2 way = p + -1 * side.from;
             return way.x * side.direction.x + way.y * side.direction.y - side.length / 2;
         };
-        if (ends_[i] == SideEnd::gone || (ends_[i] == SideEnd::meeting && !(beyond(meetings_[i]) > 0)))
+        if (ends_[i] == SideEnd::gone ||
+            (ends_[i] == SideEnd::intersection && !(beyond(intersections_[i]) > 0)))
             return false;
         std::size_t before = sides_.before(i);
         while (before != i && ends_[before] == SideEnd::gone)
             before = sides_.before(before);
-        return ends_[before] != SideEnd::meeting || beyond(meetings_[before]) < 0;
+        return ends_[before] != SideEnd::intersection || beyond(intersections_[before]) < 0;
     }
 
     /// Puts what follows the moved side i, up to the beginning of the next one.
@@ -484,7 +485,7 @@ class RingMover {
     double rounding_;
     std::vector<double> cuts_; ///< how much of both sides is cut off behind a side, where strips overlap
     std::vector<SideEnd> ends_;
-    std::vector<Point2> meetings_; ///< for sides that end in one
+    std::vector<Point2> intersections_; ///< for sides that end in one
     std::vector<RowSide> row_;
     std::vector<MovedPoint> ring_;
     std::vector<Point2> corner_points_;
@@ -520,9 +521,9 @@ std::vector<Layer> moved_rings(const Layer& layer, std::span<const double> dista
                                const LayerBudget& budget) {
     assert(gone.size() == distances.size());
     const std::span<const Point2> all = layer.points.span().first(layer.offsets[layer.rings]);
-    const Layer head{.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
+    const Layer header{.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
     budget.need(distances.size() * all.size(), 2 * sizeof(Point2), "points of offsets");
-    std::vector<Layer> moved(distances.size(), head);
+    std::vector<Layer> moved(distances.size(), header);
     std::vector<std::vector<Point2>> points(distances.size());
     RingSides sides;
     std::vector<RingMover> movers;

@@ -35,10 +35,10 @@ class NestingSearch {
                 order_.push_back(i);
     }
 
-    WoundNesting run(const std::optional<ChainGrid>& grid, const LayerBudget& budget) && {
+    NestingWithWindings run(const std::optional<ChainGrid>& grid, const LayerBudget& budget) && {
         order_by_area();
         order_from_left_to_right();
-        const bool by_grid = grid && !grid->crowded();
+        const bool by_grid = grid && !grid->full();
         std::vector<EdgeBelow> edges;
         std::vector<std::uint32_t> open; // an edge is not enough to know
         edges.reserve(order_.size());
@@ -66,7 +66,7 @@ class NestingSearch {
             else
                 place_amid(surroundings->find(order_[i]), order_[i]);
         }
-        WoundNesting result = std::move(placement_).result();
+        NestingWithWindings result = std::move(placement_).result();
         result.below = std::move(below_);
         return result;
     }
@@ -98,12 +98,12 @@ class NestingSearch {
             // Not that inside of its parent, which is another one elsewhere where that crosses itself.
             winding = inside ? placement_.winding_inside(edge.ring) : placement_.winding(edge.ring);
         }
-        placement_.place(ring, parent, winding);
+        placement_.position(ring, parent, winding);
         below_[ring] = winding;
     }
 
     void place_amid(const Surroundings& around, std::uint32_t ring) {
-        placement_.place(ring, parent_of(around), around.winding);
+        placement_.position(ring, parent_of(around), around.winding);
         for (std::uint32_t copy = ring; copy != Nesting::none; copy = copies_.next(copy))
             below_[copy] = around.below_all;
     }
@@ -183,23 +183,24 @@ Nesting nesting(const Layer& layer) {
     return nesting(layer, chains, grid, find_contacts(layer, chains, grid), turns).nesting;
 }
 
-WoundNesting nesting(const Layer& layer, const MonotoneChains& chains, const std::optional<ChainGrid>& grid,
-                     const Contacts& contacts, std::span<const Windings> turns, const LayerBudget& budget) {
+NestingWithWindings nesting(const Layer& layer, const MonotoneChains& chains,
+                            const std::optional<ChainGrid>& grid, const Contacts& contacts,
+                            std::span<const Windings> turns, const LayerBudget& budget) {
     check_size(layer);
     return NestingSearch(layer, chains, turns, contacts).run(grid, budget);
 }
 
 std::vector<Polygon> polygons(const Nesting& nesting) {
     std::vector<Polygon> result;
-    std::vector<std::size_t> place(nesting.rings());
+    std::vector<std::size_t> position(nesting.rings());
     for (std::uint32_t i = 0; i < nesting.rings(); ++i)
         if (nesting.body[i] == i) {
-            place[i] = result.size();
+            position[i] = result.size();
             result.push_back({i, {}});
         }
     for (std::uint32_t i = 0; i < nesting.rings(); ++i)
         if (nesting.body[i] != i && nesting.body[i] != Nesting::none)
-            result[place[nesting.body[i]]].holes.push_back(i);
+            result[position[nesting.body[i]]].holes.push_back(i);
     return result;
 }
 

@@ -8,9 +8,9 @@
 #include "polygon/boundary.hpp"
 #include "polygon/box2.hpp"
 #include "polygon/clipping_grid.hpp"
+#include "polygon/collinear_points.hpp"
 #include "polygon/moved_rings.hpp"
 #include "polygon/overlay.hpp"
-#include "polygon/straight_points.hpp"
 
 #include <algorithm>
 #include <array>
@@ -70,7 +70,7 @@ class Boundaries {
         const Layer material =
             overlay.clean() ? layer
                             : overlay.filled(Material(FillRule::positive), Walls::dissolved).filled.layer;
-        layer_ = without_straight_points(material, ClippingGrid(material.points.span()).unit());
+        layer_ = remove_collinear_points(material, ClippingGrid(material.points.span()).unit());
         polygons_ = polygons(overlay.clean() ? overlay.nest() : nesting(material));
     }
 

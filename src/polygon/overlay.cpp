@@ -33,7 +33,7 @@ std::int64_t left_of(Fate fate) noexcept {
 class Filler {
   public:
     Filler(const Layer& layer, std::span<const Windings> turns, const Material& material, Walls walls,
-           const Contacts& contacts, const WoundNesting& nest, const LayerBudget& budget)
+           const Contacts& contacts, const NestingWithWindings& nest, const LayerBudget& budget)
         : layer_(layer), turns_(turns), material_(material), walls_(walls), nest_(nest), budget_(budget),
           groups_(contacts.groups), fates_(layer.rings) {
         assert(contacts.group.size() == layer.rings && nest.nesting.order.size() == layer.rings);
@@ -101,8 +101,8 @@ class Filler {
         unite(group, arrangement);
     }
 
-    [[nodiscard]] std::vector<WoundRing> wound(std::span<const std::uint32_t> group) const {
-        std::vector<WoundRing> rings;
+    [[nodiscard]] std::vector<RingWithWinding> wound(std::span<const std::uint32_t> group) const {
+        std::vector<RingWithWinding> rings;
         for (const std::uint32_t ring : group)
             rings.push_back({layer_.contour(ring), turns_[ring], left_of(fates_[ring])});
         return rings;
@@ -167,7 +167,7 @@ class Filler {
     std::span<const Windings> turns_;
     const Material& material_;
     Walls walls_;
-    const WoundNesting& nest_;
+    const NestingWithWindings& nest_;
     const LayerBudget& budget_;
     std::vector<std::vector<std::uint32_t>> groups_;
     std::vector<Fate> fates_;

@@ -61,7 +61,7 @@ class Overlay {
     MonotoneChains chains_;
     std::optional<ChainGrid> grid_;
     Contacts contacts_;
-    WoundNesting nest_;
+    NestingWithWindings nest_;
 };
 
 /// The material of a layer (FillRule::positive), walls dissolved. A layer that is that already is passed

@@ -37,7 +37,7 @@ RingPlacement::RingPlacement(std::span<const LeftEnd> ends, const RingCopies& co
     result_.inside.resize(ends.size());
 }
 
-void RingPlacement::place(std::uint32_t ring, std::uint32_t parent, Windings winding) {
+void RingPlacement::position(std::uint32_t ring, std::uint32_t parent, Windings winding) {
     assert(copies_.representative(ring) == ring);
     outside_[ring] = innermost_[ring] = parent;
     if (ends_[ring].flat) {
@@ -115,7 +115,7 @@ void RingPlacement::find_body(std::uint32_t ring, Inside& inside) {
     assert(inside.body == Nesting::none || result_.nesting.body[inside.body] == inside.body);
 }
 
-WoundNesting RingPlacement::result() && {
+NestingWithWindings RingPlacement::result() && {
     assert(result_.nesting.order.size() == ends_.size());
     assert(parents_come_first(result_.nesting));
     return std::move(result_);

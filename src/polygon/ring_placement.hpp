@@ -23,7 +23,7 @@ class RingPlacement {
     void place_empty(std::uint32_t ring) { result_.nesting.order.push_back(ring); }
     /// A ring and its copies, one within the other. `ring` represents them, `parent` was placed before or is
     /// Nesting::none, `winding` is that just outside of their left end.
-    void place(std::uint32_t ring, std::uint32_t parent, Windings winding);
+    void position(std::uint32_t ring, std::uint32_t parent, Windings winding);
 
     /// Of those that were placed: the ring around all copies of a ring, and the innermost one of its copies.
     [[nodiscard]] std::uint32_t outside(std::uint32_t ring) const noexcept { return outside_[ring]; }
@@ -34,7 +34,7 @@ class RingPlacement {
     }
 
     /// After all rings were placed.
-    [[nodiscard]] WoundNesting result() &&;
+    [[nodiscard]] NestingWithWindings result() &&;
 
   private:
     /// What the bodies are of which a place within a ring has material.
@@ -50,7 +50,7 @@ class RingPlacement {
     std::span<const LeftEnd> ends_;
     const RingCopies& copies_;
     std::span<const Windings> turns_;
-    WoundNesting result_;
+    NestingWithWindings result_;
     std::vector<Inside> inside_;
     std::vector<std::uint32_t> around_;    ///< of a body: the body in which it lies
     std::vector<std::uint32_t> outside_;   ///< of a representative: the parent of the first of its copies

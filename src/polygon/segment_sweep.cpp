@@ -38,32 +38,32 @@ bool SweepStatus::Lower::operator()(std::uint32_t i, std::uint32_t j) const {
 }
 
 SweepStatus::SweepStatus(std::span<const Segment> segments, Piece piece)
-    : order_(Lower{segments, std::move(piece)}), places_(segments.size(), order_.end()) {}
+    : order_(Lower{segments, std::move(piece)}), positions_(segments.size(), order_.end()) {}
 
 void SweepStatus::insert(std::uint32_t segment) {
-    assert(places_[segment] == order_.end());
-    [[maybe_unused]] const auto [place, inserted] = order_.insert(segment);
+    assert(positions_[segment] == order_.end());
+    [[maybe_unused]] const auto [position, inserted] = order_.insert(segment);
     assert(inserted);
-    assert(place == order_.begin() || order_.key_comp()(*std::prev(place), segment));
-    assert(std::next(place) == order_.end() || order_.key_comp()(segment, *std::next(place)));
-    places_[segment] = place;
+    assert(position == order_.begin() || order_.key_comp()(*std::prev(position), segment));
+    assert(std::next(position) == order_.end() || order_.key_comp()(segment, *std::next(position)));
+    positions_[segment] = position;
 }
 
 void SweepStatus::erase(std::uint32_t segment) {
-    assert(places_[segment] != order_.end() && *places_[segment] == segment);
-    order_.erase(places_[segment]);
-    places_[segment] = order_.end();
+    assert(positions_[segment] != order_.end() && *positions_[segment] == segment);
+    order_.erase(positions_[segment]);
+    positions_[segment] = order_.end();
 }
 
 std::uint32_t SweepStatus::below(std::uint32_t segment) const noexcept {
-    const auto place = places_[segment];
-    assert(place != order_.end());
-    return place == order_.begin() ? none : *std::prev(place);
+    const auto position = positions_[segment];
+    assert(position != order_.end());
+    return position == order_.begin() ? none : *std::prev(position);
 }
 
 std::uint32_t SweepStatus::above(std::uint32_t segment) const noexcept {
-    assert(places_[segment] != order_.end());
-    const auto next = std::next(places_[segment]);
+    assert(positions_[segment] != order_.end());
+    const auto next = std::next(positions_[segment]);
     return next == order_.end() ? none : *next;
 }
 

@@ -61,7 +61,7 @@ class SweepStatus {
     using Order = std::set<std::uint32_t, Lower>;
 
     Order order_;
-    std::vector<Order::const_iterator> places_; ///< of each segment; the end for those not on the line
+    std::vector<Order::const_iterator> positions_; ///< of each segment; the end for those not on the line
 };
 
 } // namespace lamella

@@ -124,13 +124,13 @@ class Thinned {
     /// Where the farthest points split off little time and again, as along spikes and spirals, the middle
     /// ones are kept instead: no point is looked at more than O(log n) times.
     void thin(std::size_t contour, std::uint64_t first, std::uint64_t last) {
-        struct Stretch {
+        struct Span {
             std::uint64_t begin;
             std::uint64_t end;
             int depth;
         };
         const auto deep = static_cast<int>(4 * std::bit_width(last - first));
-        std::vector<Stretch> pending{{first, last, 0}};
+        std::vector<Span> pending{{first, last, 0}};
         while (!pending.empty()) {
             const auto [begin, end, depth] = pending.back();
             pending.pop_back();

@@ -67,8 +67,8 @@ void SurroundingsSearch::add_edges(const Chain& chain, const Windings& net, std:
 }
 
 std::int64_t SurroundingsSearch::place_in_order(std::uint32_t ring, bool inside_above) const noexcept {
-    const auto place = static_cast<std::int64_t>(by_area_[ring]);
-    return inside_above ? place : -place - 1;
+    const auto position = static_cast<std::int64_t>(by_area_[ring]);
+    return inside_above ? position : -position - 1;
 }
 
 /// How often the copies of a ring wind around its inside.

@@ -2,7 +2,7 @@
 
 // What lies around the left ends of rings, in any layer: also where rings touch, coincide and cross.
 
-#include "polygon/edges_by_abscissa.hpp"
+#include "polygon/edges_by_x.hpp"
 #include "polygon/left_end.hpp"
 #include "polygon/monotone_chains.hpp"
 #include "polygon/ring_copies.hpp"
@@ -49,7 +49,7 @@ class SurroundingsSearch {
     const RingCopies& copies_;
     std::span<const Windings> turns_;
     std::span<const std::uint32_t> by_area_;
-    EdgesByAbscissa edges_;
+    EdgesByX edges_;
 };
 
 } // namespace lamella

@@ -17,23 +17,23 @@ Bands::Bands(std::span<const Layer> parts, const PixelGrid& grid)
     : grid_(grid), rows_(std::clamp(std::bit_floor(pixels_of_band / grid.width), fewest_rows, most_rows)),
       count_(static_cast<std::int32_t>((grid.height + rows_ - 1) / rows_)), starts_(std::size_t(count_) + 1) {
     std::vector<std::int32_t> band_of;
-    std::vector<Stretch> found;
+    std::vector<PixelSpan> found;
     for (const Layer& layer : parts)
         for (std::size_t i = 0; i < layer.rings; ++i)
             cut(layer.contour(i), band_of, found);
 
-    for (const Stretch& stretch : found)
-        ++starts_[stretch.band + 1];
+    for (const PixelSpan& span : found)
+        ++starts_[span.band + 1];
     for (std::size_t i = 1; i < starts_.size(); ++i)
         starts_[i] += starts_[i - 1];
-    stretches_.resize(found.size());
+    spans_.resize(found.size());
     std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
-    for (const Stretch& stretch : found)
-        stretches_[next[stretch.band]++] = stretch;
+    for (const PixelSpan& span : found)
+        spans_[next[span.band]++] = span;
 }
 
 void Bands::cut(std::span<const Point2> ring, std::vector<std::int32_t>& band_of,
-                std::vector<Stretch>& found) {
+                std::vector<PixelSpan>& found) {
     const std::size_t n = ring.size();
     if (n == 0)
         return;

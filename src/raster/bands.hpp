@@ -30,15 +30,15 @@ class Bands {
     /// into the next.
     template <class Line>
     void for_each_line(std::uint32_t band, const Line& line) const {
-        std::array<Point2, 256> places;
+        std::array<Point2, 256> positions;
         for (std::size_t i = starts_[band]; i < starts_[band + 1]; ++i) {
-            const Stretch& stretch = stretches_[i];
-            place_in_picture({stretch.before, 1}, grid_, places.data());
-            for (std::size_t done = 0; done < stretch.edges;) {
-                const std::size_t n = std::min(places.size() - 1, stretch.edges - done);
-                place_in_picture({stretch.first + done, n}, grid_, places.data() + 1);
-                line(std::span<const Point2>(places.data(), n + 1));
-                places.front() = places[n];
+            const PixelSpan& span = spans_[i];
+            position_in_image({span.before, 1}, grid_, positions.data());
+            for (std::size_t done = 0; done < span.edges;) {
+                const std::size_t n = std::min(positions.size() - 1, span.edges - done);
+                position_in_image({span.first + done, n}, grid_, positions.data() + 1);
+                line(std::span<const Point2>(positions.data(), n + 1));
+                positions.front() = positions[n];
                 done += n;
             }
         }
@@ -46,19 +46,19 @@ class Bands {
 
   private:
     /// Consecutive edges of a ring.
-    struct Stretch {
+    struct PixelSpan {
         const Point2* before; ///< start of the first edge
         const Point2* first;  ///< end of the first edge; the others end at the points after it
         std::size_t edges;
         std::size_t band;
     };
 
-    void cut(std::span<const Point2> ring, std::vector<std::int32_t>& band_of, std::vector<Stretch>& found);
+    void cut(std::span<const Point2> ring, std::vector<std::int32_t>& band_of, std::vector<PixelSpan>& found);
 
     PixelGrid grid_;
     std::uint32_t rows_;
     std::int32_t count_;
-    std::vector<Stretch> stretches_;  ///< ordered by band
+    std::vector<PixelSpan> spans_;    ///< ordered by band
     std::vector<std::size_t> starts_; ///< of each band, and the end
 };
 

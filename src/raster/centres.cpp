@@ -29,7 +29,7 @@ DrawnRow CentreRows::draw(std::uint32_t row) {
         std::uint32_t from = 0;
         bool upright = true;
         for (const auto& crossing : crossings_.entries()) {
-            const PictureEdge& edge = crossings_.edge(crossing);
+            const ImageEdge& edge = crossings_.edge(crossing);
             const int left = std::exchange(winding, winding + edge.winding);
             // The first column whose centre is not to the left of the crossing.
             if (left == 0)

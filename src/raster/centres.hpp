@@ -2,7 +2,7 @@
 
 // Pixels of which the centre decides whether they are covered.
 
-#include "lamella/raster/picture.hpp"
+#include "lamella/raster/image.hpp"
 
 #include "raster/drawn_row.hpp"
 #include "raster/edges.hpp"
@@ -19,8 +19,8 @@ struct CentreCrossing {
     static constexpr double line = 0.5;
     static constexpr bool only_on_lines = true;
     [[nodiscard]] static std::uint32_t first(double /*y*/, std::uint32_t below) noexcept { return below; }
-    CentreCrossing(const PictureEdge& edge, std::uint32_t row) noexcept { move_to(edge, row); }
-    void move_to(const PictureEdge& edge, std::uint32_t row) noexcept { column = edge.column(row + 0.5); }
+    CentreCrossing(const ImageEdge& edge, std::uint32_t row) noexcept { move_to(edge, row); }
+    void move_to(const ImageEdge& edge, std::uint32_t row) noexcept { column = edge.column(row + 0.5); }
     bool operator<(const CentreCrossing& other) const noexcept { return column < other.column; }
 
     double column = 0;

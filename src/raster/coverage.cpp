@@ -19,18 +19,18 @@ constexpr double most_rounding = 1e-6;
 
 } // namespace
 
-RowPiece::RowPiece(const PictureEdge& edge, std::uint32_t row) noexcept {
+RowPiece::RowPiece(const ImageEdge& edge, std::uint32_t row) noexcept {
     const bool begins = edge.upper.y >= row;
     top = begins ? edge.upper.y : row;
     reach(edge, row, begins ? edge.upper.x : edge.column(row));
 }
 
-void RowPiece::move_to(const PictureEdge& edge, std::uint32_t row) noexcept {
+void RowPiece::move_to(const ImageEdge& edge, std::uint32_t row) noexcept {
     top = row;
     reach(edge, row, bottom == row ? bottom_column : edge.column(row));
 }
 
-void RowPiece::reach(const PictureEdge& edge, std::uint32_t row, double top_column) noexcept {
+void RowPiece::reach(const ImageEdge& edge, std::uint32_t row, double top_column) noexcept {
     const double border = row + 1.0;
     const bool ends = edge.lower.y <= border;
     bottom = ends ? edge.lower.y : border;
@@ -39,7 +39,7 @@ void RowPiece::reach(const PictureEdge& edge, std::uint32_t row, double top_colu
     high = std::max(top_column, bottom_column);
     through = top == row && bottom == border;
     if (low <= 0) {
-        low = left_of_picture;
+        low = left_of_image;
         high = std::max(high, low);
     }
 }
@@ -99,7 +99,7 @@ bool CoverageRows::draw_line(Pieces knot, int left, std::uint32_t row) {
     line_.clear();
     int winding = 0;
     for (const auto& piece : knot) {
-        const PictureEdge& edge = pieces_.edge(piece);
+        const ImageEdge& edge = pieces_.edge(piece);
         if (edge.level())
             continue; // a horizontal step of the line
         if (winding != 0 && winding != edge.winding)
@@ -153,8 +153,8 @@ bool CoverageRows::find_strips(Pieces knot, std::uint32_t row) {
     return heights_.size() <= most;
 }
 
-void CoverageRows::add_crossing(const RowPiece& a, const PictureEdge& edge_a, const RowPiece& b,
-                                const PictureEdge& edge_b) {
+void CoverageRows::add_crossing(const RowPiece& a, const ImageEdge& edge_a, const RowPiece& b,
+                                const ImageEdge& edge_b) {
     const double from = std::max(a.top, b.top);
     const double to = std::min(a.bottom, b.bottom);
     if (from >= to)
@@ -165,7 +165,7 @@ void CoverageRows::add_crossing(const RowPiece& a, const PictureEdge& edge_a, co
         heights_.push_back(from + (to - from) * (above / (above - below)));
 }
 
-void CoverageRows::draw_border(const PictureEdge& edge, double middle_column, double height, double weight) {
+void CoverageRows::draw_border(const ImageEdge& edge, double middle_column, double height, double weight) {
     const auto [low, high] = std::minmax(edge.upper.x, edge.lower.x);
     const double half =
         std::min({0.5 * std::abs(height * edge.slope), middle_column - low, high - middle_column});
@@ -177,7 +177,7 @@ void CoverageRows::draw_strip(Pieces knot, int left, double from, double to) {
     borders_.clear();
     for (const auto& piece : knot) {
         if (piece.top <= middle && middle < piece.bottom) {
-            const PictureEdge& edge = pieces_.edge(piece);
+            const ImageEdge& edge = pieces_.edge(piece);
             borders_.push_back({edge.column(middle), &edge});
         }
     }

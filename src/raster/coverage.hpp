@@ -21,11 +21,11 @@ struct RowPiece {
     [[nodiscard]] static std::uint32_t first(double y, std::uint32_t below) noexcept {
         return below > 0 && y < below ? below - 1 : below;
     }
-    RowPiece(const PictureEdge& edge, std::uint32_t row) noexcept;
-    void move_to(const PictureEdge& edge, std::uint32_t row) noexcept;
+    RowPiece(const ImageEdge& edge, std::uint32_t row) noexcept;
+    void move_to(const ImageEdge& edge, std::uint32_t row) noexcept;
     bool operator<(const RowPiece& other) const noexcept { return low < other.low; }
 
-    /// Range of its columns; it is extended to left_of_picture if it reaches beyond the left border.
+    /// Range of its columns; it is extended to left_of_image if it reaches beyond the left border.
     double low = 0;
     double high = 0;
     double top = 0;
@@ -34,7 +34,7 @@ struct RowPiece {
     bool through = false; ///< it runs from the row's upper to its lower border
 
   private:
-    void reach(const PictureEdge& edge, std::uint32_t row, double top_column) noexcept;
+    void reach(const ImageEdge& edge, std::uint32_t row, double top_column) noexcept;
 };
 
 /// Draws the rows of an image from the top down.
@@ -52,14 +52,14 @@ class CoverageRows {
     /// An edge in a strip of a row.
     struct Border {
         double column; ///< at half the height of the strip
-        const PictureEdge* edge;
+        const ImageEdge* edge;
     };
 
     /// A part of a line with bends.
     struct LinePiece {
         double top;
         double bottom;
-        const PictureEdge* edge;
+        const ImageEdge* edge;
     };
 
     /// Adds the coverage of a row; returns the number of rows from there on that are equal.
@@ -69,10 +69,9 @@ class CoverageRows {
     bool draw_line(Pieces knot, int left, std::uint32_t row);
     /// Finds the heights at which a knot has corners and crossings; returns false if there are too many.
     bool find_strips(Pieces knot, std::uint32_t row);
-    void add_crossing(const RowPiece& a, const PictureEdge& edge_a, const RowPiece& b,
-                      const PictureEdge& edge_b);
+    void add_crossing(const RowPiece& a, const ImageEdge& edge_a, const RowPiece& b, const ImageEdge& edge_b);
     void draw_strip(Pieces knot, int left, double from, double to);
-    void draw_border(const PictureEdge& edge, double middle_column, double height, double weight);
+    void draw_border(const ImageEdge& edge, double middle_column, double height, double weight);
 
     RowSweep<RowPiece> pieces_;
     std::uint32_t width_;

@@ -74,7 +74,7 @@ void CoverageBand::begin_in_all(double u, double weight) {
     slope(common_.row(0), width_, u, u, weight);
 }
 
-void CoverageBand::begin_along(const PictureEdge& edge, std::uint32_t top, std::uint32_t end, double weight) {
+void CoverageBand::begin_along(const ImageEdge& edge, std::uint32_t top, std::uint32_t end, double weight) {
     const double last_y = std::min<double>(edge.lower.y, end);
     double y = std::max<double>(edge.upper.y, top);
     if (!(y < last_y))

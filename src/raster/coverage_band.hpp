@@ -2,7 +2,7 @@
 
 // Rows of pixels under construction, with their coverage.
 
-#include "lamella/raster/picture.hpp"
+#include "lamella/raster/image.hpp"
 
 #include "raster/edges.hpp"
 #include "raster/row_changes.hpp"
@@ -23,7 +23,7 @@ class CoverageBand {
     /// weight at `to` and lasts until the end of the row. A negative weight ends material.
     void begin_along(std::uint32_t row, double from, double to, double weight);
     /// Does the same along an edge, in the rows from `top`, the first of the band, to `end`.
-    void begin_along(const PictureEdge& edge, std::uint32_t top, std::uint32_t end, double weight);
+    void begin_along(const ImageEdge& edge, std::uint32_t top, std::uint32_t end, double weight);
     /// Adds material that begins within a pixel: its weight, and weight times x within the pixel, 0 to 1.
     void begin_within(std::uint32_t row, std::size_t column, double weight, double moment) {
         own_.row(row).add_from(column, weight - moment, moment);

@@ -2,7 +2,7 @@
 
 // The result of drawing a row of an image.
 
-#include "lamella/raster/picture.hpp"
+#include "lamella/raster/image.hpp"
 
 #include <cstdint>
 #include <span>

@@ -6,10 +6,10 @@
 
 namespace lamella {
 
-LAMELLA_VECTOR_CLONES void place_in_picture(std::span<const Point2> points, const PixelGrid& grid,
-                                            Point2* to) {
+LAMELLA_VECTOR_CLONES void position_in_image(std::span<const Point2> points, const PixelGrid& grid,
+                                             Point2* to) {
     for (std::size_t i = 0; i < points.size(); ++i)
-        to[i] = place_in_picture(points[i], grid);
+        to[i] = position_in_image(points[i], grid);
 }
 
 LAMELLA_VECTOR_CLONES void find_rows_below(std::span<const Point2> points, const PixelGrid& grid, double line,

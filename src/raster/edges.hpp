@@ -3,7 +3,7 @@
 // The edges of contours in image coordinates.
 
 #include "lamella/core/point.hpp"
-#include "lamella/raster/picture.hpp"
+#include "lamella/raster/image.hpp"
 
 #include <algorithm>
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace lamella {
 
 /// Column of edges to the left of the image: the distance does not matter.
-inline constexpr double left_of_picture = -1;
+inline constexpr double left_of_image = -1;
 
 /// Returns the least integer that is not below v, between 0 and `most`. (std::ceil is a function call in code
 /// compiled for all processors.)
@@ -27,20 +27,20 @@ inline constexpr double left_of_picture = -1;
 
 /// An edge in columns and rows, from its upper to its lower end in either direction of the ring: a border
 /// that two bodies share is one line.
-struct PictureEdge {
+struct ImageEdge {
     Point2 upper;
     Point2 lower;
     double slope = 0;         ///< columns per row; 0 for a horizontal edge
     std::int32_t winding = 0; ///< 1 if the ring runs downwards here, else -1
 
     /// Makes the edge of a ring that runs from one point to the other.
-    PictureEdge(const Point2& from, const Point2& to) noexcept {
+    ImageEdge(const Point2& from, const Point2& to) noexcept {
         const bool down = from.y < to.y;
         upper = down ? from : to;
         lower = down ? to : from;
         winding = down ? 1 : -1;
         if (std::max(from.x, to.x) <= 0)
-            upper.x = lower.x = left_of_picture;
+            upper.x = lower.x = left_of_image;
         if (!level())
             slope = (lower.x - upper.x) / (lower.y - upper.y);
     }
@@ -54,8 +54,8 @@ struct PictureEdge {
 
 /// Returns the image coordinates of a point. A coordinate beyond 2^40 pixels is replaced by 2^40: far
 /// outside, but still suitable for arithmetic.
-[[nodiscard]] __attribute__((always_inline)) inline Point2 place_in_picture(const Point2& p,
-                                                                            const PixelGrid& grid) noexcept {
+[[nodiscard]] __attribute__((always_inline)) inline Point2 position_in_image(const Point2& p,
+                                                                             const PixelGrid& grid) noexcept {
     constexpr double far = 0x1p40;
     const auto near = [](double c) __attribute__((always_inline)) { // returns a number even after overflow
         return c < far ? (c > -far ? c : -far) : far;
@@ -64,7 +64,7 @@ struct PictureEdge {
 }
 
 /// Does the same for many points; `to` must have space for them.
-void place_in_picture(std::span<const Point2> points, const PixelGrid& grid, Point2* to);
+void position_in_image(std::span<const Point2> points, const PixelGrid& grid, Point2* to);
 
 /// Writes to `to`, for each point, the first of the rows 0 to height - 1 whose line is not above the point;
 /// `height` if there is none. `line` is the distance of a row's line from its upper border.

@@ -62,29 +62,29 @@ struct PixelBox {
     std::size_t bottom = 0;
 };
 
-PixelBox visible(const ColourPicture& picture) {
-    PixelBox box{picture.width, picture.height};
-    for (std::size_t row = 0; row < picture.height; ++row)
-        for (std::size_t column = 0; column < picture.width; ++column)
-            if (picture.values[4 * (row * picture.width + column) + 3] != 0)
+PixelBox visible(const ColourImage& image) {
+    PixelBox box{image.width, image.height};
+    for (std::size_t row = 0; row < image.height; ++row)
+        for (std::size_t column = 0; column < image.width; ++column)
+            if (image.values[4 * (row * image.width + column) + 3] != 0)
                 box = {std::min(box.left, column), std::min(box.top, row), std::max(box.right, column + 1),
                        std::max(box.bottom, row + 1)};
     return box;
 }
 
 /// Returns the mean visible colour of the pixels between these columns and rows.
-std::array<std::uint8_t, 4> mean(const ColourPicture& picture, double left, double top, double right,
+std::array<std::uint8_t, 4> mean(const ColourImage& image, double left, double top, double right,
                                  double bottom) {
     std::array<double, 4> sum{};
-    const std::size_t last_row = least_whole(bottom, picture.height);
-    const std::size_t last_column = least_whole(right, picture.width);
+    const std::size_t last_row = least_whole(bottom, image.height);
+    const std::size_t last_column = least_whole(right, image.width);
     for (auto row = static_cast<std::size_t>(top); row < last_row; ++row) {
         const auto r = static_cast<double>(row);
         const double tall = std::min(r + 1, bottom) - std::max(r, top);
         for (auto column = static_cast<std::size_t>(left); column < last_column; ++column) {
             const auto c = static_cast<double>(column);
             const double weight = tall * (std::min(c + 1, right) - std::max(c, left));
-            const std::uint8_t* const pixel = &picture.values[4 * (row * picture.width + column)];
+            const std::uint8_t* const pixel = &image.values[4 * (row * image.width + column)];
             if (pixel[3] == 0)
                 continue;
             for (std::size_t k = 0; k < 3; ++k)
@@ -114,9 +114,9 @@ void add_near(const float* heights, const float* heights_there, const float* lig
 
 } // namespace
 
-ColourPicture fitted(const ColourPicture& picture, std::uint32_t width, std::uint32_t height) {
-    ColourPicture result{width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height)};
-    const PixelBox box = visible(picture);
+ColourImage fitted(const ColourImage& image, std::uint32_t width, std::uint32_t height) {
+    ColourImage result{width, height, std::vector<std::uint8_t>(std::size_t{4} * width * height)};
+    const PixelBox box = visible(image);
     if (box.right == 0)
         return result;
     const auto wide = static_cast<double>(box.right - box.left);
@@ -127,13 +127,13 @@ ColourPicture fitted(const ColourPicture& picture, std::uint32_t width, std::uin
     const double top = static_cast<double>(box.top) + 0.5 * (tall - step * height);
     for (std::uint32_t row = 0; row < height; ++row) {
         const double from_row = std::max(top + row * step, 0.0);
-        const double to_row = std::min(top + (row + 1) * step, static_cast<double>(picture.height));
+        const double to_row = std::min(top + (row + 1) * step, static_cast<double>(image.height));
         for (std::uint32_t column = 0; column < width && from_row < to_row; ++column) {
             const double from = std::max(left + column * step, 0.0);
-            const double to = std::min(left + (column + 1) * step, static_cast<double>(picture.width));
+            const double to = std::min(left + (column + 1) * step, static_cast<double>(image.width));
             if (from >= to)
                 continue;
-            const auto pixel = mean(picture, from, from_row, to, to_row);
+            const auto pixel = mean(image, from, from_row, to, to_row);
             std::copy(pixel.begin(), pixel.end(),
                       result.values.begin() + std::ptrdiff_t{4} * (std::ptrdiff_t{row} * width + column));
         }
@@ -212,14 +212,14 @@ void Relief::add(std::span<const ReliefSpan> spans) {
                     span.z);
 }
 
-Relief::Vector Relief::place(std::size_t row, std::size_t column) const noexcept {
+Relief::Vector Relief::position(std::size_t row, std::size_t column) const noexcept {
     const double z = heights_[row * width_ + column];
     return {static_cast<double>(column), (static_cast<double>(row) - ground_.v0 + z * row_per_z_) / view_sin,
             z * scale_};
 }
 
 Relief::Vector Relief::tangent(std::size_t row, std::size_t column, bool down) const noexcept {
-    const Vector here = place(row, column);
+    const Vector here = position(row, column);
     Vector sum{};
     bool found = false;
     // Beyond the first row or column the index wraps around, and nothing is covered there.
@@ -228,7 +228,7 @@ Relief::Vector Relief::tangent(std::size_t row, std::size_t column, bool down) c
         const std::size_t c = down ? column : ahead ? column + reach : column - reach;
         if (!covered(r, c))
             continue;
-        const Vector there = place(r, c);
+        const Vector there = position(r, c);
         const double sign = ahead ? 1 : -1;
         const Vector step{sign * (there[0] - here[0]), sign * (there[1] - here[1]),
                           sign * (there[2] - here[2])};
@@ -278,21 +278,21 @@ std::vector<float> Relief::smooth_light() const {
     return smooth;
 }
 
-ColourPicture Relief::picture() const {
+ColourImage Relief::image() const {
     const std::vector<float> lights = smooth_light();
-    ColourPicture picture{width_, height_, std::vector<std::uint8_t>(std::size_t{4} * width_ * height_)};
+    ColourImage image{width_, height_, std::vector<std::uint8_t>(std::size_t{4} * width_ * height_)};
     for (std::size_t row = 0; row < height_; ++row) {
         for (std::size_t column = 0; column < width_; ++column) {
             if (!covered(row, column))
                 continue;
             const double brightness = ambient + (1 - ambient) * double{lights[row * width_ + column]};
-            std::uint8_t* const pixel = &picture.values[4 * (row * width_ + column)];
+            std::uint8_t* const pixel = &image.values[4 * (row * width_ + column)];
             for (std::size_t k = 0; k < 3; ++k)
                 pixel[k] = static_cast<std::uint8_t>(std::min(255.0, 1.2 * brightness * colour[k] + 0.5));
             pixel[3] = 255;
         }
     }
-    return picture;
+    return image;
 }
 
 } // namespace lamella

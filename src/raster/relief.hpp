@@ -4,7 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
-#include "lamella/raster/picture.hpp"
+#include "lamella/raster/image.hpp"
 
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace lamella {
 
 /// Red, green, blue and alpha, one byte each, row after row.
-struct ColourPicture {
+struct ColourImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::vector<std::uint8_t> values;
@@ -24,7 +24,7 @@ struct ColourPicture {
 
 /// Returns the visible part of an image, centred in an image of another size and not enlarged. A pixel is the
 /// mean of those that it covers.
-[[nodiscard]] ColourPicture fitted(const ColourPicture& picture, std::uint32_t width, std::uint32_t height);
+[[nodiscard]] ColourImage fitted(const ColourImage& image, std::uint32_t width, std::uint32_t height);
 
 /// A contribution of a layer to a relief: the columns from `first` to `end` of a row, at the height z.
 struct ReliefSpan {
@@ -48,7 +48,7 @@ class Relief {
     /// Adds a layer above the lower ones.
     void add(std::span<const ReliefSpan> spans);
 
-    [[nodiscard]] ColourPicture picture() const;
+    [[nodiscard]] ColourImage image() const;
 
   private:
     /// Along the columns, along the ground towards the viewer, and upwards; all in pixels.
@@ -59,7 +59,7 @@ class Relief {
     [[nodiscard]] bool covered(std::size_t row, std::size_t column) const noexcept {
         return row < height_ && column < width_ && !std::isnan(heights_[row * width_ + column]);
     }
-    [[nodiscard]] Vector place(std::size_t row, std::size_t column) const noexcept;
+    [[nodiscard]] Vector position(std::size_t row, std::size_t column) const noexcept;
     /// Returns the direction of the surface down the rows, or along the columns.
     [[nodiscard]] Vector tangent(std::size_t row, std::size_t column, bool down) const noexcept;
     /// Returns the light from 0 (dark) to 1 (perpendicular).

@@ -27,15 +27,15 @@ struct RowRange {
 ///     static constexpr bool only_on_lines; an edge intersects a row only if it crosses its line
 ///     static std::uint32_t first(double y, std::uint32_t below);   the first row that an edge with its upper
 ///                                          end at y intersects, if `below` is the first line not above y
-///     Item(const PictureEdge&, std::uint32_t row);                       in the first of them
-///     void move_to(const PictureEdge&, std::uint32_t row);               to the next or a later one
+///     Item(const ImageEdge&, std::uint32_t row);                       in the first of them
+///     void move_to(const ImageEdge&, std::uint32_t row);               to the next or a later one
 ///     bool operator<(const Item&) const;                          a strict weak order along the row
 /// The result depends on the order of the edges only if items are neither less nor greater.
 template <class Item>
 class RowSweep {
   public:
     struct Entry : Item {
-        Entry(const PictureEdge& e, std::uint32_t index, std::uint32_t row) : Item(e, row), edge(index) {}
+        Entry(const ImageEdge& e, std::uint32_t index, std::uint32_t row) : Item(e, row), edge(index) {}
 
         std::uint32_t edge;
     };
@@ -45,7 +45,7 @@ class RowSweep {
     }
 
     [[nodiscard]] std::span<const Entry> entries() const noexcept { return entries_; }
-    [[nodiscard]] const PictureEdge& edge(const Entry& entry) const noexcept { return edges_[entry.edge]; }
+    [[nodiscard]] const ImageEdge& edge(const Entry& entry) const noexcept { return edges_[entry.edge]; }
     /// Returns the row in which the next edge begins, or the height of the image.
     [[nodiscard]] std::uint32_t next_begin() const noexcept {
         return begun_ < edges_.size() ? rows_[begun_].first : height_;
@@ -108,12 +108,12 @@ class RowSweep {
 
         for (std::size_t i = 1; i < next.size(); ++i)
             next[i] += next[i - 1];
-        edges_ = PageArray<PictureEdge>(used);
+        edges_ = PageArray<ImageEdge>(used);
         rows_ = PageArray<RowRange>(used);
         for (const RingEdge& edge : met.span().first(used)) {
-            const std::size_t place = next[edge.rows.first]++;
-            edges_[place] = PictureEdge(edge.from, edge.to);
-            rows_[place] = edge.rows;
+            const std::size_t position = next[edge.rows.first]++;
+            edges_[position] = ImageEdge(edge.from, edge.to);
+            rows_[position] = edge.rows;
         }
     }
 
@@ -137,8 +137,8 @@ class RowSweep {
                 placed = false;
                 continue;
             }
-            const Point2 from = placed ? to : place_in_picture(ring[before], grid);
-            to = place_in_picture(ring[k], grid);
+            const Point2 from = placed ? to : position_in_image(ring[before], grid);
+            to = position_in_image(ring[k], grid);
             placed = true;
             const auto first = static_cast<std::uint32_t>(std::min(row, row_before));
             const auto end = static_cast<std::uint32_t>(std::max(row, row_before));
@@ -186,7 +186,7 @@ class RowSweep {
     }
 
     std::uint32_t height_;
-    PageArray<PictureEdge> edges_; ///< in the order of their first rows
+    PageArray<ImageEdge> edges_; ///< in the order of their first rows
     PageArray<RowRange> rows_;
     std::size_t begun_ = 0;
     std::vector<Entry> entries_;

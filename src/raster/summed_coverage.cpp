@@ -62,7 +62,7 @@ void SummedRows::add_line(std::span<const Point2> points) {
         } else {
             leave();
             if (p.y != q.y && std::min(p.x, q.x) < width_) {
-                const PictureEdge edge(p, q);
+                const ImageEdge edge(p, q);
                 coverage_.begin_along(edge, top_, end_, downwards_ * edge.winding);
             }
             enter(q);

@@ -1,6 +1,6 @@
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/zip_reader.hpp"
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
@@ -11,7 +11,7 @@
 #include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <fmt/format.h>
 
@@ -55,8 +55,8 @@ class AmfReader {
 
     ByteSource unpacked(const ByteSource& archive, const MeshReadOptions& options) {
         const ZipReader zip(archive, options.max_memory);
-        for (const std::string& oddity : zip.oddities())
-            remarks_.add(oddity);
+        for (const std::string& warning : zip.counted_warnings())
+            remarks_.add(warning);
         const ZipEntry* found = nullptr;
         std::size_t count = 0;
         for (const ZipEntry& entry : zip.entries())
@@ -128,11 +128,11 @@ class AmfReader {
         const double unit = document_.unit_mm.value_or(1);
         std::vector<std::size_t> lines; // of nodes
         const auto add = [&](const auto& item, std::string_view what, NodesById& known) {
-            const std::string place =
+            const std::string location =
                 fmt::format("line {}: {} '{}'", item.line, what, printable(item.id, longest_quote));
             if (!known.emplace(item.id, nodes_.size()).second)
-                fail(fmt::format("{}: the id is there for the second time", place));
-            nodes_.push_back({item.name, {}, scaling(unit, unit, unit), {}, place, false});
+                fail(fmt::format("{}: the id is there for the second time", location));
+            nodes_.push_back({item.name, {}, scaling(unit, unit, unit), {}, location, false});
             lines.push_back(item.line);
         };
         NodesById objects;
@@ -144,7 +144,7 @@ class AmfReader {
             if (objects.contains(constellation.id))
                 remarks_.add(
                     fmt::format("{}: an object has the same id; instances of this id are of the object",
-                                nodes_.back().place));
+                                nodes_.back().location));
         }
         // Slic3r and its descendants number objects and constellations each by themselves: the object counts.
         const auto node_of = [&](const AmfInstance& instance) {
@@ -256,7 +256,7 @@ class AmfReader {
 } // namespace
 
 bool is_amf(std::string_view text) {
-    const std::string_view begin = after_blanks(text.substr(0, amf_mark_within));
+    const std::string_view begin = after_blanks(text.substr(0, amf_root_within));
     return begin.starts_with('<') && begin.find("<amf") != std::string_view::npos;
 }
 

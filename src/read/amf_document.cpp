@@ -1,6 +1,6 @@
 #include "read/amf_document.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/xml.hpp"
 #include "core/lower_case.hpp"
 #include "read/decimal_text.hpp"
@@ -85,7 +85,7 @@ constexpr std::array<std::string_view, 14> instance_numbers = {
     "scalex", "scaley", "scalez", "mirrorx", "mirrory", "mirrorz", "printable"};
 
 /// Element that contains the current one.
-enum class AmfPlace {
+enum class AmfTag {
     outside,
     amf,
     object,
@@ -112,16 +112,16 @@ struct AmfElement {
     }
 };
 
-class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
+class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
   public:
     AmfDocumentReader(const std::string& name, bool skim, ReadLimits& limits)
         : MeshDocumentReader(name, "", skim, limits), skim_(skim) {}
 
     AmfDocument read(std::string_view text, const std::function<void(std::size_t)>& progress) {
         XmlHandlers handlers;
-        handlers.text = [this](std::string_view piece) {
+        handlers.text = [this](std::string_view chunk) {
             if ((in() == Where::number || in() == Where::metadata) && text_.size() < longest_text)
-                text_ += piece;
+                text_ += chunk;
         };
         handlers.progress = progress;
         parse(text, text_form, std::move(handlers));
@@ -129,7 +129,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
     }
 
   private:
-    using Where = AmfPlace;
+    using Where = AmfTag;
     using Step = Where (AmfDocumentReader::*)(const AmfElement&);
 
     static const auto& rules() {
@@ -172,7 +172,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfPlace> {
         return step != nullptr ? (this->*step)(element) : Where::elsewhere;
     }
 
-    template <AmfPlace what>
+    template <AmfTag what>
     Where is(const AmfElement&) {
         return what;
     }

@@ -36,7 +36,7 @@ class Placer {
         : file_name_(file_name), nodes_(nodes), objects_(objects), limits_(limits), executor_(executor),
           totals_(nodes.size()) {}
 
-    std::vector<MeshInstance> place(std::span<const AssemblyUse> roots) {
+    std::vector<MeshInstance> location(std::span<const AssemblyUse> roots) {
         for (std::size_t node = 0; node < nodes_.size(); ++node)
             total(node, 0); // a loop is an error also where no root leads to it
         Total all;
@@ -81,9 +81,9 @@ class Placer {
         if (known.state == State::known)
             return known;
         if (known.state == State::open)
-            fail(node.place, "contains itself");
+            fail(node.location, "contains itself");
         if (depth > deepest)
-            fail(node.place, fmt::format("is nested deeper than {}", deepest));
+            fail(node.location, fmt::format("is nested deeper than {}", deepest));
         known.state = State::open;
         Total result;
         for (const AssemblyMesh& mesh : node.meshes)
@@ -109,7 +109,7 @@ class Placer {
              std::uint64_t body, int depth = 0) {
         const AssemblyNode& node = nodes_[use.node];
         if (depth > deepest)
-            fail(node.place, fmt::format("is nested deeper than {}", deepest));
+            fail(node.location, fmt::format("is nested deeper than {}", deepest));
         const Transform placement = compose(outer, use.placement);
         const std::string& nearest = node.name.empty() ? name : node.name;
         const MeshRole role = use.role != MeshRole::part ? use.role : outer_role;
@@ -156,8 +156,8 @@ class Placer {
             fail(position.text(), "flattens a mesh");
     }
 
-    [[noreturn]] void fail(const std::string& place, const std::string& what) const {
-        throw Error(ErrorKind::input, fmt::format("{}, {}: {}", file_name_, place, what));
+    [[noreturn]] void fail(const std::string& location, const std::string& what) const {
+        throw Error(ErrorKind::input, fmt::format("{}, {}: {}", file_name_, location, what));
     }
 
     const std::string& file_name_;
@@ -193,7 +193,7 @@ std::vector<MeshInstance> place_meshes(const std::string& file_name, std::span<c
                                        std::span<const AssemblyUse> roots,
                                        std::span<const MeshObject> objects, ReadLimits& limits,
                                        Executor& executor) {
-    return Placer(file_name, nodes, objects, limits, executor).place(roots);
+    return Placer(file_name, nodes, objects, limits, executor).location(roots);
 }
 
 } // namespace lamella

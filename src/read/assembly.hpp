@@ -51,7 +51,7 @@ struct AssemblyNode {
     std::vector<AssemblyMesh> meshes;
     Transform unit; ///< from the meshes to millimetres
     std::vector<AssemblyUse> uses;
-    std::string place; ///< in the file, for errors
+    std::string location; ///< in the file, for errors
     /// Its negative volumes are subtracted from its own parts only, not from all of what a root places.
     bool is_body = false;
 };

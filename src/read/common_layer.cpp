@@ -103,7 +103,7 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
         file.warnings.push_back(
             fmt::format("the header announces {} layers; the file has {}", *header.layers, found));
     file.rounding = geometry.rounding(header.binary);
-    geometry.say(file.warnings);
+    geometry.append_to(file.warnings);
     const std::vector<CommonLayerPart> parts = geometry.number_parts(header, file);
     content.layers = std::move(geometry.layers());
     const std::vector<VectorKind> held = kinds_held(content.layers, parts.size());

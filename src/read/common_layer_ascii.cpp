@@ -1,4 +1,4 @@
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "read/common_layer_geometry.hpp"
 #include "read/common_layer_text.hpp"
@@ -98,11 +98,11 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
             if (count < 0 || count > static_cast<std::int64_t>(text.rest().size()) / (4 * points_each) + 1)
                 text.fail(fmt::format("a count of {}", count),
                           fmt::format("{} bytes are left in the file", text.rest().size()));
-            const auto place = [&] {
+            const auto location = [&] {
                 return fmt::format("line {}", line_at(bytes, command_at));
             };
             const auto number_of_points = static_cast<std::uint64_t>(points_each * count);
-            std::vector<Point2>& points = geometry.expect_points(hatches, number_of_points, place);
+            std::vector<Point2>& points = geometry.expect_points(hatches, number_of_points, location);
             for (std::uint64_t i = 0; i < number_of_points; ++i) {
                 std::array<double, 2> p{};
                 for (double& value : p) {
@@ -116,15 +116,15 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
                 text.fail(fmt::format("'{}'", printable(text.rest().substr(0, 12), 24)),
                           fmt::format("the count of {} says that the coordinates end here", count));
             if (hatches)
-                geometry.end_hatches(part, place);
+                geometry.end_hatches(part, location);
             else
-                geometry.end_polyline(part, direction, place);
+                geometry.end_polyline(part, direction, location);
         } else {
             // Extensions such as $$POWER/100.0 occur between polylines.
-            const auto place = [&] {
+            const auto location = [&] {
                 return fmt::format("line {}", line_at(bytes, command_at));
             };
-            geometry.take_setting(command, take_only_number(text), place);
+            geometry.take_setting(command, take_only_number(text), location);
             text.skip_to_command();
         }
     }

@@ -110,17 +110,17 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             reported = at;
         }
         const auto command = static_cast<CommonLayerCommand>(in.take<std::uint16_t>("a command"));
-        const auto place = at_byte(at);
+        const auto offset = at_byte(at);
         switch (command) {
         case CommonLayerCommand::layer_long: {
             const auto height = in.take<float>("a layer");
             if (!std::isfinite(height))
                 in.fail(at, "a height that is not finite", "it must be a number");
-            geometry.start_layer(static_cast<double>(height), place());
+            geometry.start_layer(static_cast<double>(height), offset());
             break;
         }
         case CommonLayerCommand::layer_short:
-            geometry.start_layer(number(in.take<std::uint16_t>("a layer"), signed_heights), place());
+            geometry.start_layer(number(in.take<std::uint16_t>("a layer"), signed_heights), offset());
             break;
         case CommonLayerCommand::polyline_short:
         case CommonLayerCommand::polyline_long:
@@ -147,7 +147,7 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             const std::size_t size = is_long ? 8 : 4;
             const char* from = in.take_records(count, points_each * size, hatches ? "hatches" : "points");
             const auto number_of_points = static_cast<std::uint64_t>(points_each * count);
-            std::vector<Point2>& points = geometry.expect_points(hatches, number_of_points, place);
+            std::vector<Point2>& points = geometry.expect_points(hatches, number_of_points, offset);
             for (std::uint64_t i = 0; i < number_of_points; ++i, from += size) {
                 if (!is_long) {
                     geometry.add_point(points, short_number(from), short_number(from + 2));
@@ -160,9 +160,9 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
                 geometry.add_point(points, static_cast<double>(p[0]), static_cast<double>(p[1]));
             }
             if (hatches)
-                geometry.end_hatches(part, place);
+                geometry.end_hatches(part, offset);
             else
-                geometry.end_polyline(part, *direction, place);
+                geometry.end_polyline(part, *direction, offset);
             break;
         }
         default:

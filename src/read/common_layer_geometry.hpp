@@ -49,11 +49,11 @@ inline constexpr const char* common_layer_directions =
 class Decimals {
   public:
     void note(double number) noexcept {
-        while (places_ < steps.size() - 1 && !is_whole(number / steps[places_]))
-            ++places_;
+        while (locations_ < steps.size() - 1 && !is_whole(number / steps[locations_]))
+            ++locations_;
     }
     /// Returns 1, 0.1 and so on; 0 if there are more decimals than supported.
-    [[nodiscard]] double step() const noexcept { return steps[places_]; }
+    [[nodiscard]] double step() const noexcept { return steps[locations_]; }
 
   private:
     static constexpr std::array steps{1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5, 0.0};
@@ -64,7 +64,7 @@ class Decimals {
         return std::abs(number - ((number + no_fractions) - no_fractions)) <= 1e-5;
     }
 
-    std::size_t places_ = 0;
+    std::size_t locations_ = 0;
 };
 
 /// Exposure settings of the commands beyond the standard that CLI+ has. They apply to the vectors that
@@ -102,15 +102,15 @@ class CommonLayerGeometry {
 
     /// Takes a command beyond the standard, with its number if it has one. Commands that set the exposure
     /// apply to the vectors that follow; others are skipped and counted.
-    template <class Place>
-    void take_setting(std::string_view command, std::optional<double> number, const Place& place) {
+    template <class Location>
+    void take_setting(std::string_view command, std::optional<double> number, const Location& location) {
         const bool usable = number && !is_too_far(*number) && (*number >= 0 || command == "FOCUS");
         std::optional<double>* const setting = command == "POWER"   ? &beam_.power_w
                                                : command == "SPEED" ? &beam_.speed_mm_s
                                                : command == "FOCUS" ? &beam_.focus_mm
                                                                     : nullptr;
         if (setting == nullptr || !usable) {
-            unknown_.note([&] { return fmt::format("{}, $${}", place(), excerpt(command)); });
+            unknown_.note([&] { return fmt::format("{}, $${}", location(), excerpt(command)); });
             if (setting != nullptr)
                 setting->reset();
             return;
@@ -118,58 +118,58 @@ class CommonLayerGeometry {
         *setting = *number + 0.0;
     }
 
-    void start_layer(double units, std::string place) {
-        const double z = in_mm(units, place);
-        limits_.make_room(layers_, 1, [&] { return std::string_view(place); });
+    void start_layer(double units, std::string location) {
+        const double z = in_mm(units, location);
+        limits_.make_room(layers_, 1, [&] { return std::string_view(location); });
         layers_.emplace_back();
         layers_.back().z = z;
-        layers_.back().place = std::move(place);
+        layers_.back().location = std::move(location);
     }
     [[nodiscard]] bool in_layer() const { return !layers_.empty(); }
     /// Reserves memory for ends of hatches, or for points of a polyline, and returns the list to add them to.
-    template <class Place>
-    std::vector<Point2>& expect_points(bool hatches, std::uint64_t count, const Place& place) {
+    template <class Location>
+    std::vector<Point2>& expect_points(bool hatches, std::uint64_t count, const Location& location) {
         RawLayer& layer = layers_.back();
         std::vector<Point2>& points = hatches ? layer.hatches : layer.points;
-        limits_.make_room(points, count, place);
+        limits_.make_room(points, count, location);
         layer.drawn = layer.drawn || count != 0;
         return points;
     }
     void add_point(std::vector<Point2>& to, double x, double y) {
-        const std::string& place = layers_.back().place;
+        const std::string& location = layers_.back().location;
         decimals_.note(x);
         decimals_.note(y);
-        to.push_back({in_mm(x, place) + 0.0, in_mm(y, place) + 0.0});
+        to.push_back({in_mm(x, location) + 0.0, in_mm(y, location) + 0.0});
     }
-    template <class Place>
-    void end_hatches(std::int64_t part, const Place& place) {
-        layers_.back().end_hatches(number_of(part, VectorKind::hatch, place), limits_, place);
+    template <class Location>
+    void end_hatches(std::int64_t part, const Location& location) {
+        layers_.back().end_hatches(number_of(part, VectorKind::hatch, location), limits_, location);
     }
 
     /// Ends a polyline with the given direction.
-    template <class Place>
-    void end_polyline(std::int64_t part, CommonLayerDirection direction, const Place& place) {
+    template <class Location>
+    void end_polyline(std::int64_t part, CommonLayerDirection direction, const Location& location) {
         RawLayer& layer = layers_.back();
         const std::size_t begin = layer.contour_begin();
         const bool returns = layer.returns();
         const bool returning_chain = direction == CommonLayerDirection::open && layer.is_returning_chain();
         const bool closed = direction != CommonLayerDirection::open || returning_chain;
-        if (!layer.end_contour(closed, number_of(part, VectorKind::contour, place), limits_, place,
+        if (!layer.end_contour(closed, number_of(part, VectorKind::contour, location), limits_, location,
                                dropped_) ||
             !closed)
             return;
         if (returning_chain) {
-            returning_.note(place);
+            returning_.note(location);
             return;
         }
         if (!returns)
-            unclosed_.note(place);
+            unclosed_.note(location);
         // If the points run in the opposite direction, the stated direction prevails.
         const std::span<Point2> ring = std::span(layer.points).subspan(begin);
         const double area = ring_area(ring);
         if (direction == CommonLayerDirection::counter_clockwise ? area < 0 : area > 0) {
             std::reverse(ring.begin(), ring.end());
-            turned_.note(place);
+            turned_.note(location);
         }
     }
 
@@ -192,7 +192,7 @@ class CommonLayerGeometry {
             const auto label = header.labels.find(part.number);
             return LayerPart{label == header.labels.end() ? std::string() : labels.of(label->second), {}};
         });
-        labels.say(file.warnings);
+        labels.append_to(file.warnings);
         return parts;
     }
 
@@ -205,26 +205,26 @@ class CommonLayerGeometry {
         return {known ? units_ * decimals_.step() : 0, single_precision};
     }
 
-    void say(std::vector<std::string>& warnings) const {
-        unclosed_.say(warnings);
-        returning_.say(warnings);
-        turned_.say(warnings);
-        dropped_.say(warnings);
-        unknown_.say(warnings);
+    void append_to(std::vector<std::string>& warnings) const {
+        unclosed_.append_to(warnings);
+        returning_.append_to(warnings);
+        turned_.append_to(warnings);
+        dropped_.append_to(warnings);
+        unknown_.append_to(warnings);
     }
 
   private:
-    template <class Place>
-    std::uint32_t number_of(std::int64_t part, VectorKind kind, const Place& place) {
-        return parts_.number_of({part, beam_, beam_.any() ? kind : VectorKind::contour}, place);
+    template <class Location>
+    std::uint32_t number_of(std::int64_t part, VectorKind kind, const Location& location) {
+        return parts_.number_of({part, beam_, beam_.any() ? kind : VectorKind::contour}, location);
     }
-    [[nodiscard]] double in_mm(double units, const std::string& place) const {
+    [[nodiscard]] double in_mm(double units, const std::string& location) const {
         const double mm = units * units_;
         if (is_too_far(mm))
             throw Error(ErrorKind::input,
                         fmt::format("{}, layer at {}: found {} units of {} mm; heights and coordinates must "
                                     "lie within {} mm",
-                                    name_, place, units, units_, farthest_mm));
+                                    name_, location, units, units_, farthest_mm));
         return mm;
     }
 
@@ -237,11 +237,12 @@ class CommonLayerGeometry {
     PartNumbers<CommonLayerPart> parts_;
     UnclosedContours unclosed_;
     ReturningChains returning_;
-    Oddity turned_{"contour ran against its stated direction; it was turned round",
-                   "contours ran against their stated direction; they were turned round"};
+    CountedWarning turned_{"contour ran against its stated direction; it was reversed",
+                           "contours ran against their stated direction; they were reversed"};
     DroppedContours dropped_;
-    Oddity unknown_{"command is unknown here, or has no number that it can have; it was left out",
-                    "commands are unknown here, or have no numbers that they can have; they were left out"};
+    CountedWarning unknown_{
+        "command is unknown here, or has no number that it can have; it was left out",
+        "commands are unknown here, or have no numbers that they can have; they were left out"};
 };
 
 /// Reads the geometry after the header of an ASCII file. Throws Error{input} with the line, Error{limit},

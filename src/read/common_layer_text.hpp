@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "read/coordinate_text.hpp"
 #include "read/decimal_text.hpp"
 

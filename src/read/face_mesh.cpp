@@ -20,7 +20,7 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-constexpr std::uint64_t chunk = 50'000;
+constexpr std::uint64_t triangles_per_chunk = 50'000;
 
 bool finite(const Point3& p) {
     // Anything times zero is zero, except NaN and infinity; one comparison checks all three.
@@ -39,25 +39,27 @@ constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
 template <class IsBad>
 std::uint64_t first_triangle(const IndexedMesh& mesh, Executor& executor, IsBad is_bad) {
     std::atomic<std::uint64_t> first{none};
-    executor.for_chunks(mesh.triangles.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i)
-            if (is_bad(mesh.triangles[i])) {
-                keep_least(first, i);
-                return;
-            }
-    });
+    executor.for_chunks(mesh.triangles.size(), triangles_per_chunk,
+                        [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+                            for (std::uint64_t i = begin; i < end; ++i)
+                                if (is_bad(mesh.triangles[i])) {
+                                    keep_least(first, i);
+                                    return;
+                                }
+                        });
     return first;
 }
 
 bool all_near(const std::vector<Point3>& vertices, Executor& executor) {
     std::atomic<bool> all{true};
-    executor.for_chunks(vertices.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        bool near = true;
-        for (std::uint64_t i = begin; i < end; ++i)
-            near = near && !is_too_far(vertices[i]);
-        if (!near)
-            all = false;
-    });
+    executor.for_chunks(vertices.size(), triangles_per_chunk,
+                        [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+                            bool near = true;
+                            for (std::uint64_t i = begin; i < end; ++i)
+                                near = near && !is_too_far(vertices[i]);
+                            if (!near)
+                                all = false;
+                        });
     return all;
 }
 
@@ -71,19 +73,19 @@ void cut_polygons(FaceMesh& faces, Executor& executor) {
     executor.for_chunks(
         faces.polygons.size(), some, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
             std::vector<std::uint32_t>& corners = indices[worker];
-            std::vector<Point3>& places = points[worker];
+            std::vector<Point3>& locations = points[worker];
             for (std::uint64_t i = begin; i < end; ++i) {
                 Corners* const fan = faces.mesh.triangles.data() + faces.polygons[i].first_triangle;
                 const std::uint32_t count = faces.polygons[i].triangles;
                 corners.assign({fan[0][0], fan[0][1]});
                 for (std::uint32_t k = 0; k < count; ++k)
                     corners.push_back(fan[k][2]);
-                places.clear();
+                locations.clear();
                 for (const std::uint32_t corner : corners)
-                    places.push_back(vertices[corner]);
-                if (!std::all_of(places.begin(), places.end(), finite))
+                    locations.push_back(vertices[corner]);
+                if (!std::all_of(locations.begin(), locations.end(), finite))
                     continue;
-                const auto triangles = triangulators[worker].triangulate(places);
+                const auto triangles = triangulators[worker].triangulate(locations);
                 for (std::uint32_t k = 0; k < count; ++k)
                     for (std::size_t c = 0; c < 3; ++c)
                         fan[k][c] = corners[triangles[k][c]];
@@ -92,12 +94,12 @@ void cut_polygons(FaceMesh& faces, Executor& executor) {
     let_go(faces.polygons);
 }
 
-std::uint64_t bytes_of(const FacePiece& piece) {
-    return piece.vertices.size() * sizeof(Point3) + piece.triangles.size() * sizeof(Corners);
+std::uint64_t bytes_of(const FaceChunk& chunk) {
+    return chunk.vertices.size() * sizeof(Point3) + chunk.triangles.size() * sizeof(Corners);
 }
 
 /// Joins all chunks in order and empties them.
-FaceMesh join(std::vector<FacePiece>& pieces, const std::string& source_name, Executor& executor) {
+FaceMesh join(std::vector<FaceChunk>& chunks, const std::string& source_name, Executor& executor) {
     struct Begin {
         std::uint64_t vertex = 0;
         std::uint64_t triangle = 0;
@@ -105,11 +107,11 @@ FaceMesh join(std::vector<FacePiece>& pieces, const std::string& source_name, Ex
     };
     std::vector<Begin> begins;
     Begin sum;
-    for (const FacePiece& piece : pieces) {
+    for (const FaceChunk& chunk : chunks) {
         begins.push_back(sum);
-        sum.vertex += piece.vertices.size();
-        sum.triangle += piece.triangles.size();
-        sum.polygon += piece.polygons.size();
+        sum.vertex += chunk.vertices.size();
+        sum.triangle += chunk.triangles.size();
+        sum.polygon += chunk.polygons.size();
     }
     constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
     if (sum.vertex > most || sum.triangle > most)
@@ -121,24 +123,24 @@ FaceMesh join(std::vector<FacePiece>& pieces, const std::string& source_name, Ex
     resize_in_huge_pages(executor, faces.mesh.vertices, sum.vertex);
     resize_in_huge_pages(executor, faces.mesh.triangles, sum.triangle);
     faces.polygons.resize(sum.polygon);
-    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        FacePiece& piece = pieces[i];
+    executor.for_chunks(chunks.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        FaceChunk& chunk = chunks[i];
         const Begin& begin = begins[i];
-        for (const std::uint64_t corner : piece.relative) {
+        for (const std::uint64_t corner : chunk.relative) {
             // An index before this chunk has wrapped around; the addition wraps back.
-            piece.triangles[corner / 3][corner % 3] += static_cast<std::uint32_t>(begin.vertex);
+            chunk.triangles[corner / 3][corner % 3] += static_cast<std::uint32_t>(begin.vertex);
         }
-        std::copy(piece.vertices.begin(), piece.vertices.end(),
+        std::copy(chunk.vertices.begin(), chunk.vertices.end(),
                   faces.mesh.vertices.begin() + static_cast<std::ptrdiff_t>(begin.vertex));
-        std::copy(piece.triangles.begin(), piece.triangles.end(),
+        std::copy(chunk.triangles.begin(), chunk.triangles.end(),
                   faces.mesh.triangles.begin() + static_cast<std::ptrdiff_t>(begin.triangle));
-        for (std::size_t k = 0; k < piece.polygons.size(); ++k)
-            faces.polygons[begin.polygon + k] = {piece.polygons[k].first_triangle + begin.triangle,
-                                                 piece.polygons[k].triangles};
-        let_go(piece.vertices);
-        let_go(piece.triangles);
-        let_go(piece.polygons);
-        let_go(piece.relative);
+        for (std::size_t k = 0; k < chunk.polygons.size(); ++k)
+            faces.polygons[begin.polygon + k] = {chunk.polygons[k].first_triangle + begin.triangle,
+                                                 chunk.polygons[k].triangles};
+        let_go(chunk.vertices);
+        let_go(chunk.triangles);
+        let_go(chunk.polygons);
+        let_go(chunk.relative);
     });
     return faces;
 }
@@ -155,7 +157,7 @@ std::optional<Corners> TriangleStrip::add(std::uint32_t corner) noexcept {
     return whole && a != b && b != c && c != a ? std::optional(triangle) : std::nullopt;
 }
 
-void FacePiece::add_face(const std::vector<std::uint32_t>& corners, std::size_t offset) {
+void FaceChunk::add_face(const std::vector<std::uint32_t>& corners, std::size_t offset) {
     if (corners.size() < 3) {
         thin_faces.note(offset);
         return;
@@ -166,17 +168,17 @@ void FacePiece::add_face(const std::vector<std::uint32_t>& corners, std::size_t 
         triangles.push_back({corners[0], corners[k - 1], corners[k]});
 }
 
-void count_piece(const FacePiece& piece, ReadLimits& limits) {
-    limits.add_triangles(piece.triangles.size());
-    limits.add_bytes(bytes_of(piece));
+void count_chunk(const FaceChunk& chunk, ReadLimits& limits) {
+    limits.add_triangles(chunk.triangles.size());
+    limits.add_bytes(bytes_of(chunk));
 }
 
-void give_back_piece(const FacePiece& piece, ReadLimits& limits) {
-    limits.give_back(piece.triangles.size(), bytes_of(piece));
+void give_back_chunk(const FaceChunk& chunk, ReadLimits& limits) {
+    limits.give_back(chunk.triangles.size(), bytes_of(chunk));
 }
 
 MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned first_vertex,
-                        const TrianglePlace& place, Remarks& remarks, Executor& executor) {
+                        const TrianglePosition& location, Remarks& remarks, Executor& executor) {
     const auto fail = [&](const std::string& what) {
         throw Error(ErrorKind::input, fmt::format("{}: {}", source_name, what));
     };
@@ -189,7 +191,7 @@ MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned
         const std::string range = vertices == 0 ? "the file has no vertex"
                                                 : fmt::format("expected numbers from {} to {}", first_vertex,
                                                               vertices - 1 + first_vertex);
-        fail(fmt::format("{}: a face names a vertex that is not there; {}", place(beyond), range));
+        fail(fmt::format("{}: a face names a vertex that is not there; {}", location(beyond), range));
     }
     MeshFile file;
     file.stored_triangles = mesh.triangles.size();
@@ -208,16 +210,16 @@ MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned
         };
         if (const std::uint64_t far = first_triangle(mesh, executor, is_far); far != none)
             fail(fmt::format("{}: a corner lies further away than {}; coordinates must lie within that",
-                             place(far), farthest_mm));
+                             location(far), farthest_mm));
         const auto unusable = [&](const Corners& t) {
             return !finite(mesh.vertices[t[0]]) || !finite(mesh.vertices[t[1]]) ||
                    !finite(mesh.vertices[t[2]]);
         };
         const std::uint64_t first = first_triangle(mesh, executor, unusable);
         if (first != none) {
-            const std::string where = place(first);
+            const std::string where = location(first);
             file.nonfinite_triangles = std::erase_if(mesh.triangles, unusable);
-            tell_nonfinite(remarks, where, file.nonfinite_triangles, file.stored_triangles);
+            report_nonfinite(remarks, where, file.nonfinite_triangles, file.stored_triangles);
         }
     }
     // Unused vertices can be far away and must not enlarge the bounding box of the part.
@@ -227,32 +229,32 @@ MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned
     return file;
 }
 
-MeshFile make_mesh_file(const ByteSource& source, const PieceParser<FacePiece>& parser,
-                        std::vector<FacePiece>& pieces, unsigned first_vertex, Remarks& remarks,
+MeshFile make_mesh_file(const ByteSource& source, const ChunkParser<FaceChunk>& parser,
+                        std::vector<FaceChunk>& chunks, unsigned first_vertex, Remarks& remarks,
                         Executor& executor) {
     Occurrences thin_faces;
     Occurrences free_form;
     std::vector<std::uint64_t> ends; // of the chunks, in triangles
-    for (const FacePiece& piece : pieces) {
-        thin_faces.add(piece.thin_faces);
-        free_form.add(piece.free_form);
-        ends.push_back((ends.empty() ? 0 : ends.back()) + piece.triangles.size());
+    for (const FaceChunk& chunk : chunks) {
+        thin_faces.add(chunk.thin_faces);
+        free_form.add(chunk.free_form);
+        ends.push_back((ends.empty() ? 0 : ends.back()) + chunk.triangles.size());
     }
     const auto line = [&](std::size_t offset) {
         return fmt::format("line {}", line_of(source, offset));
     };
     if (thin_faces.count != 0)
-        tell_thin_faces(remarks, line(thin_faces.first), thin_faces.count);
+        report_thin_faces(remarks, line(thin_faces.first), thin_faces.count);
     if (free_form.count != 0)
         remarks.add(fmt::format("{}: left out free-form curves and surfaces; only faces are read",
                                 line(free_form.first)));
-    const auto place = [&](std::uint64_t triangle) {
+    const auto location = [&](std::uint64_t triangle) {
         const auto i =
             static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), triangle) - ends.begin());
         const std::uint64_t before = i == 0 ? 0 : ends[i - 1];
-        return fmt::format("line {}", parser.line_of_triangle(pieces[i], triangle - before));
+        return fmt::format("line {}", parser.line_of_triangle(chunks[i], triangle - before));
     };
-    return make_mesh_file(join(pieces, source.name, executor), source.name, first_vertex, place, remarks,
+    return make_mesh_file(join(chunks, source.name, executor), source.name, first_vertex, location, remarks,
                           executor);
 }
 

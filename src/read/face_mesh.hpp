@@ -8,7 +8,7 @@
 #include "core/executor.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ struct FaceFan {
 };
 
 /// The faces and vertices of a chunk of text.
-struct FacePiece : TextPiece {
+struct FaceChunk : TextChunk {
     /// Not the index of a vertex, because there are never this many.
     static constexpr std::uint32_t no_vertex = std::numeric_limits<std::uint32_t>::max();
 
@@ -69,27 +69,27 @@ struct FaceMesh {
 };
 
 /// Counts a chunk as soon as it is parsed, before the next ones.
-void count_piece(const FacePiece& piece, ReadLimits& limits);
+void count_chunk(const FaceChunk& chunk, ReadLimits& limits);
 /// Returns the number of chunks to parse ahead: several for each thread, in any case enough.
-[[nodiscard]] inline std::size_t face_pieces_ahead(const Executor& executor) noexcept {
+[[nodiscard]] inline std::size_t face_chunks_ahead(const Executor& executor) noexcept {
     return std::max<std::size_t>(32, std::size_t{8} * executor.workers());
 }
 
-/// Reverts count_piece.
-void give_back_piece(const FacePiece& piece, ReadLimits& limits);
+/// Reverts count_chunk.
+void give_back_chunk(const FaceChunk& chunk, ReadLimits& limits);
 
 /// Describes where triangle t is in the file, such as "line 7".
-using TrianglePlace = std::function<std::string(std::uint64_t triangle)>;
+using TrianglePosition = std::function<std::string(std::uint64_t triangle)>;
 
 /// Makes a mesh file: triangulates the polygons, drops triangles with a corner that is not finite (with a
 /// remark) and vertices that no triangle uses. `first_vertex` is the number of the file's first vertex: 0 or
 /// 1. Throws Error{input} if a face refers to a vertex that does not exist, or if no triangle is left.
 [[nodiscard]] MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned first_vertex,
-                                      const TrianglePlace& place, Remarks& remarks, Executor& executor);
+                                      const TrianglePosition& location, Remarks& remarks, Executor& executor);
 
 /// Joins chunks, which it empties, and makes them into a mesh file.
-[[nodiscard]] MeshFile make_mesh_file(const ByteSource& source, const PieceParser<FacePiece>& parser,
-                                      std::vector<FacePiece>& pieces, unsigned first_vertex, Remarks& remarks,
+[[nodiscard]] MeshFile make_mesh_file(const ByteSource& source, const ChunkParser<FaceChunk>& parser,
+                                      std::vector<FaceChunk>& chunks, unsigned first_vertex, Remarks& remarks,
                                       Executor& executor);
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #include "read/face_rows.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "read/coordinate_text.hpp"
@@ -132,7 +132,7 @@ std::int64_t RowWords::count(std::string_view expected) {
 }
 
 /// Takes a row such as "3 17 4 2": short numbers separated by single blanks, as in most rows of most files.
-bool RowWords::take_triangle(FacePiece& piece) {
+bool RowWords::take_triangle(FaceChunk& chunk) {
     const char* at = at_;
     if (end_ - at < 2 || at[0] != '3' || at[1] != ' ')
         return false;
@@ -151,14 +151,14 @@ bool RowWords::take_triangle(FacePiece& piece) {
     }
     if (at != end_ && !is_blank(*at))
         return false;
-    piece.triangles.push_back(corners);
+    chunk.triangles.push_back(corners);
     at_ = at;
     return true;
 }
 
-void RowWords::add_face(FacePiece& piece) {
+void RowWords::add_face(FaceChunk& chunk) {
     at_ = skip_spaces(at_, end_);
-    if (take_triangle(piece))
+    if (take_triangle(chunk))
         return;
     constexpr std::string_view expected = "how many corners the face has";
     to_word(expected);
@@ -166,13 +166,13 @@ void RowWords::add_face(FacePiece& piece) {
     corners_.clear();
     for (std::int64_t left = count(expected); left > 0; --left) {
         const std::int64_t v = integer();
-        corners_.push_back(v >= 0 && v < std::int64_t{FacePiece::no_vertex} ? static_cast<std::uint32_t>(v)
-                                                                            : FacePiece::no_vertex);
+        corners_.push_back(v >= 0 && v < std::int64_t{FaceChunk::no_vertex} ? static_cast<std::uint32_t>(v)
+                                                                            : FaceChunk::no_vertex);
     }
-    piece.add_face(corners_, begin);
+    chunk.add_face(corners_, begin);
 }
 
-void RowWords::add_strips(FacePiece& piece) {
+void RowWords::add_strips(FaceChunk& chunk) {
     TriangleStrip strip;
     for (std::int64_t left = count("how many numbers of vertices there are"); left > 0; --left) {
         const std::int64_t v = integer();
@@ -181,8 +181,8 @@ void RowWords::add_strips(FacePiece& piece) {
             continue;
         }
         if (const auto triangle =
-                strip.add(static_cast<std::uint32_t>(std::min<std::int64_t>(v, FacePiece::no_vertex))))
-            piece.triangles.push_back(*triangle);
+                strip.add(static_cast<std::uint32_t>(std::min<std::int64_t>(v, FaceChunk::no_vertex))))
+            chunk.triangles.push_back(*triangle);
     }
 }
 
@@ -222,10 +222,10 @@ class RowsReader {
         }
         if (fault_)
             refuse_text(source_, *fault_);
-        const std::size_t rest = pieces_.back().rest;
-        MeshFile file = make_mesh_file(source_, *parser_, pieces_, 0, remarks_, executor_);
+        const std::size_t rest = chunks_.back().rest;
+        MeshFile file = make_mesh_file(source_, *parser_, chunks_, 0, remarks_, executor_);
         if (rest != nowhere)
-            tell_rest(rest);
+            report_rest(rest);
         progress_.finish();
         return file;
     }
@@ -235,26 +235,26 @@ class RowsReader {
 
     /// Reads all chunks again, up to the first fault.
     void read(RowLayout layout) {
-        for (const FacePiece& piece : pieces_)
-            give_back_piece(piece, limits_);
-        pieces_.clear();
+        for (const FaceChunk& chunk : chunks_)
+            give_back_chunk(chunk, limits_);
+        chunks_.clear();
         const bool words = layout == RowLayout::words;
         const std::uint64_t rows = words ? all_rows() : rows_.rows;
-        PieceFormat<FacePiece> format;
-        format.parse = [this, layout, rows](FacePiece& piece, std::uint64_t most_triangles) {
-            parse(piece, layout, rows, most_triangles);
+        ChunkFormat<FaceChunk> format;
+        format.parse = [this, layout, rows](FaceChunk& chunk, std::uint64_t most_triangles) {
+            parse(chunk, layout, rows, most_triangles);
         };
         format.find_cut = [this](std::size_t from, std::size_t limit) {
             return find_line(text_, from, limit);
         };
-        format.guess = [this](std::vector<FacePiece>& pieces) {
-            guess_rows(pieces);
+        format.guess = [this](std::vector<FaceChunk>& chunks) {
+            guess_rows(chunks);
         };
         // The beginning of a row of words is known only when the row before it has been parsed.
         parser_.emplace(source_, rows_.begin, std::move(format), executor_, progress_,
-                        words ? 1 : face_pieces_ahead(executor_));
-        pieces_ = parser_->rest([&](const FacePiece& piece) { count_piece(piece, limits_); });
-        const FacePiece& last = pieces_.back();
+                        words ? 1 : face_chunks_ahead(executor_));
+        chunks_ = parser_->rest([&](const FaceChunk& chunk) { count_chunk(chunk, limits_); });
+        const FaceChunk& last = chunks_.back();
         fault_ = last.fault;
         if (last.after < rows && (!fault_ || (words && fault_->offset == text_.size())))
             fault_ = {text_.size(),
@@ -265,66 +265,66 @@ class RowsReader {
     }
 
     /// Reads the rows of a chunk. After the last row needed it skips to the end of the text.
-    void parse(FacePiece& piece, RowLayout layout, std::uint64_t rows, std::uint64_t most_triangles) const {
+    void parse(FaceChunk& chunk, RowLayout layout, std::uint64_t rows, std::uint64_t most_triangles) const {
         const char* const begin = text_.data();
         const char* const end = begin + text_.size();
-        const char* const limit = begin + piece.limit;
-        RowWords words(text_, piece.begin, layout);
-        const char* at = skip_blanks(begin + piece.begin, end);
-        piece.after = piece.before;
+        const char* const limit = begin + chunk.limit;
+        RowWords words(text_, chunk.begin, layout);
+        const char* at = skip_blanks(begin + chunk.begin, end);
+        chunk.after = chunk.before;
         try {
             for (; at < limit; at = skip_blanks(at, end)) {
                 if (rows_.comment != '\0' && *at == rows_.comment) {
                     at = skip_to_line_end(at, end);
                     continue;
                 }
-                if (piece.after >= rows) {
+                if (chunk.after >= rows) {
                     if (layout == RowLayout::words)
                         throw TextFault{static_cast<std::size_t>(at - begin),
                                         fmt::format("the end of the file after the {} rows of {}", rows,
                                                     rows_.counted_where)};
-                    piece.rest = static_cast<std::size_t>(at - begin);
+                    chunk.rest = static_cast<std::size_t>(at - begin);
                     at = end;
                     break;
                 }
                 words.move_to(at);
-                rows_.read_row(piece.after, words, piece);
-                if (piece.triangles.size() > most_triangles)
+                rows_.read_row(chunk.after, words, chunk);
+                if (chunk.triangles.size() > most_triangles)
                     break;
-                ++piece.after;
+                ++chunk.after;
                 at = words.end_row();
             }
         } catch (TextFault& fault) {
-            piece.fault = std::move(fault);
+            chunk.fault = std::move(fault);
         }
-        piece.end = static_cast<std::size_t>(at - begin);
+        chunk.end = static_cast<std::size_t>(at - begin);
     }
 
     /// Reports lines after the last row: the counts in the file are wrong, and these lines are lost. `begin`
     /// is the offset after the rows that are needed.
-    void tell_rest(std::size_t begin) {
+    void report_rest(std::size_t begin) {
         const char* const end = text_.data() + text_.size();
         const char* at = text_.data() + begin;
         for (std::uint64_t left = rows_.more_rows; at != end && left > 0; at = skip_blanks(at, end)) {
             left -= rows_.comment != '\0' && *at == rows_.comment ? 0 : 1;
             at = skip_to_line_end(at, end);
         }
-        const auto place = static_cast<std::size_t>(at - text_.data());
-        if (const std::uint64_t count = count_rows(text_.substr(place), rows_.comment); count > 0)
+        const auto location = static_cast<std::size_t>(at - text_.data());
+        if (const std::uint64_t count = count_rows(text_.substr(location), rows_.comment); count > 0)
             remarks_.add(fmt::format("line {}: left out {} from here on, beyond the {} rows of {}",
-                                     line_of(source_, place), counted(count, "line"), all_rows(),
+                                     line_of(source_, location), counted(count, "line"), all_rows(),
                                      rows_.counted_where));
     }
 
     /// Counts the lines of each chunk to guess the number of its first row.
-    void guess_rows(std::vector<FacePiece>& pieces) {
-        std::vector<std::uint64_t> counts(pieces.size());
-        executor_.for_chunks(pieces.size() - 1, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+    void guess_rows(std::vector<FaceChunk>& chunks) {
+        std::vector<std::uint64_t> counts(chunks.size());
+        executor_.for_chunks(chunks.size() - 1, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
             counts[i] =
-                count_rows(text_.substr(pieces[i].begin, pieces[i].limit - pieces[i].begin), rows_.comment);
+                count_rows(text_.substr(chunks[i].begin, chunks[i].limit - chunks[i].begin), rows_.comment);
         });
-        for (std::size_t i = 1; i < pieces.size(); ++i)
-            pieces[i].before = pieces[i - 1].before + counts[i - 1];
+        for (std::size_t i = 1; i < chunks.size(); ++i)
+            chunks[i].before = chunks[i - 1].before + counts[i - 1];
     }
 
     const ByteSource& source_;
@@ -334,8 +334,8 @@ class RowsReader {
     Executor executor_;
     ProgressMeter progress_;
     std::string_view text_;
-    std::optional<PieceParser<FacePiece>> parser_;
-    std::vector<FacePiece> pieces_;
+    std::optional<ChunkParser<FaceChunk>> parser_;
+    std::vector<FaceChunk> chunks_;
     std::optional<TextFault> fault_;
 };
 

@@ -8,7 +8,7 @@
 #include "read/face_mesh.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 #include "system/byte_source.hpp"
 
 #include <cstddef>
@@ -42,9 +42,9 @@ class RowWords : Words {
     /// Skips a count and this many words.
     void skip_list();
     /// Adds a face to the chunk: a count, then this many vertex indices from 0.
-    void add_face(FacePiece& piece);
+    void add_face(FaceChunk& chunk);
     /// Takes a count and this many vertex indices: strips of triangles, separated by a negative number.
-    void add_strips(FacePiece& piece);
+    void add_strips(FaceChunk& chunk);
 
     /// Ends the row. Returns the earliest beginning of the next one.
     [[nodiscard]] const char* end_row();
@@ -52,7 +52,7 @@ class RowWords : Words {
   private:
     void to_word(std::string_view expected);
     std::int64_t count(std::string_view expected);
-    bool take_triangle(FacePiece& piece);
+    bool take_triangle(FaceChunk& chunk);
 
     RowLayout layout_;
     std::vector<std::uint32_t> corners_;
@@ -67,7 +67,7 @@ struct FaceRows {
     bool any_lines = false;
     std::string counted_where; ///< where the file states the numbers of rows, for errors
     /// Reads row number `row` into the chunk.
-    std::function<void(std::uint64_t row, RowWords& words, FacePiece& piece)> read_row;
+    std::function<void(std::uint64_t row, RowWords& words, FaceChunk& chunk)> read_row;
 };
 
 /// Reads the rows and makes them into a mesh file. Lines without a word are not rows.

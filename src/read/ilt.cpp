@@ -4,7 +4,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/ilt_format.hpp"
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/xml.hpp"
 #include "core/lower_case.hpp"
 #include "read/common_layer.hpp"
@@ -13,7 +13,7 @@
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <fmt/format.h>
 
@@ -125,14 +125,15 @@ std::vector<Section> read_parameters(std::string_view text, const std::string& n
 }
 
 /// Warns of files that are not in the list: they have no parameters and are not read.
-void tell_unlisted(const ZipReader& zip, const std::set<const ZipEntry*>& listed,
-                   std::vector<std::string>& warnings) {
-    Oddity unlisted("Common Layer Interface file is not in the list of parameters; it was left out",
-                    "Common Layer Interface files are not in the list of parameters; they were left out");
+void report_unlisted(const ZipReader& zip, const std::set<const ZipEntry*>& listed,
+                     std::vector<std::string>& warnings) {
+    CountedWarning unlisted(
+        "Common Layer Interface file is not in the list of parameters; it was left out",
+        "Common Layer Interface files are not in the list of parameters; they were left out");
     for (const ZipEntry& entry : zip.entries())
         if (listed.count(&entry) == 0 && lower_case(entry.name).ends_with(".cli"))
             unlisted.note([&] { return excerpt(entry.name); });
-    unlisted.say(warnings);
+    unlisted.append_to(warnings);
 }
 
 /// A word in the name of a file, and the vectors that it denotes.
@@ -261,7 +262,7 @@ Exposure named_exposure(std::string_view file, VectorKind held, bool& known) {
 /// Returns the exposure of a part of a file in the archive. Returns none if the file has no speed and its
 /// label does not specify scan vectors. `unknown` notes names without a known word.
 std::optional<Exposure> exposure_of(const Section& section, std::string_view label, VectorKind held,
-                                    Oddity& unknown) {
+                                    CountedWarning& unknown) {
     std::optional<Exposure> exposure = labelled_exposure(label);
     if (!exposure && section.parameters.speed_mm_s > 0) {
         bool known = false;
@@ -282,11 +283,11 @@ bool same_height(double a, double b) {
 LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
     LayerStack all;
     for (const LayerFile& file : files) {
-        const auto place = [&] {
+        const auto location = [&] {
             return std::string_view(file.path);
         };
         for (const Layer& layer : file.parts.front().layers) {
-            limits.make_room(all, 1, place);
+            limits.make_room(all, 1, location);
             all.push_back({.z = layer.z, .bottom = layer.bottom, .top = layer.top});
         }
     }
@@ -320,11 +321,10 @@ LayerStack on_planes(LayerStack layers, const LayerStack& planes, const std::str
         plane.hatches = layer.hatches;
     }
     if (next != layers.size())
-        throw Error(
-            ErrorKind::input,
-            fmt::format("{}: found layers at z = {} mm that are thinner than {} mm; they cannot be told "
-                        "apart",
-                        file, layers[next].top, ilt_one_plane_mm));
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: found layers at z = {} mm that are thinner than {} mm; they cannot be "
+                                "apart",
+                                file, layers[next].top, ilt_one_plane_mm));
     return result;
 }
 
@@ -337,17 +337,18 @@ bool is_ilt(const ZipReader& zip) {
 LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
     const ByteSource list = zip.read(*zip.find(ilt_parameters));
     std::vector<CommonLayerContent> contents;
-    LayerFile result{.path = zip.name(), .format = "ilt", .warnings = zip.oddities()};
+    LayerFile result{.path = zip.name(), .format = "ilt", .warnings = zip.counted_warnings()};
     std::uint64_t bytes = 0;
     std::vector<std::string> sections; // of `contents`
     std::set<const ZipEntry*> known;
-    Oddity unknown(
+    CountedWarning unknown(
         "file has a name that says nothing of its vectors; they are taken for those of the core",
         "files have names that say nothing of their vectors; they are taken for those of the core");
-    Oddity pulsed("file is for a pulsed beam; the distance and time of its points were left out",
-                  "files are for a pulsed beam; the distance and time of its points were left out");
-    Oddity one_of_two("file has but one of LaserSpeed and LaserPower; the other one is taken to be 0",
-                      "files have but one of LaserSpeed and LaserPower; the other one is taken to be 0");
+    CountedWarning pulsed("file is for a pulsed beam; the distance and time of its points were left out",
+                          "files are for a pulsed beam; the distance and time of its points were left out");
+    CountedWarning one_of_two(
+        "file has but one of LaserSpeed and LaserPower; the other one is taken to be 0",
+        "files have but one of LaserSpeed and LaserPower; the other one is taken to be 0");
     const std::string_view text = list.text().substr(after_byte_order_mark(list.text()));
     for (const Section& section : read_parameters(text, list.name, limits)) {
         const ZipEntry* const entry = zip.find(section.name);
@@ -392,10 +393,10 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
         for (const std::string& warning : files.back().warnings)
             result.warnings.push_back(fmt::format("{}: {}", sections[i], warning));
     }
-    unknown.say(result.warnings);
-    one_of_two.say(result.warnings);
-    pulsed.say(result.warnings);
-    tell_unlisted(zip, known, result.warnings);
+    unknown.append_to(result.warnings);
+    one_of_two.append_to(result.warnings);
+    pulsed.append_to(result.warnings);
+    report_unlisted(zip, known, result.warnings);
     result.units_mm = files.front().units_mm;
     result.rounding = files.front().rounding;
     for (const LayerFile& file : files)

@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/counted.hpp"
 #include "core/let_go.hpp"
 
@@ -44,7 +44,7 @@ bool is_in_order(const RawLayer& raw, const LayerFile& file) {
 }
 
 /// Warns if the order of vectors changes, because machines execute them in this order.
-void tell_changed_order(std::span<const RawLayer> layers, LayerFile& file) {
+void report_changed_order(std::span<const RawLayer> layers, LayerFile& file) {
     std::size_t changed = 0;
     double lowest = 0;
     for (const RawLayer& raw : layers)
@@ -74,7 +74,7 @@ std::string ReadLabels::of(std::string_view label) {
     return text;
 }
 
-void ReadLabels::say(std::vector<std::string>& warnings) const {
+void ReadLabels::append_to(std::vector<std::string>& warnings) const {
     if (changed_ != 0)
         warnings.push_back(
             fmt::format("{} bytes that are no text (UTF-8), or more than 4096 of them; the first "
@@ -82,7 +82,7 @@ void ReadLabels::say(std::vector<std::string>& warnings) const {
                         counted(changed_, "label has", "labels have"), excerpt(first_)));
 }
 
-void say(const DistinctNames& names, std::vector<std::string>& warnings) {
+void append_to(const DistinctNames& names, std::vector<std::string>& warnings) {
     constexpr std::size_t longest = 60;
     if (const std::uint64_t changed = names.changed(); changed != 0)
         warnings.push_back(fmt::format("{} the name of another one; a number was put behind it, the first is "
@@ -91,7 +91,7 @@ void say(const DistinctNames& names, std::vector<std::string>& warnings) {
                                        printable(names.first_changed(), longest)));
 }
 
-void Oddity::say(std::vector<std::string>& warnings) const {
+void CountedWarning::append_to(std::vector<std::string>& warnings) const {
     if (count_ != 0)
         warnings.push_back(fmt::format("{} (first at {})", counted(count_, one_, many_), first_));
 }
@@ -113,12 +113,12 @@ bool RawLayer::keep_contour(bool closed, std::uint32_t part) {
 
 void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,
                ReadLimits& limits) {
-    const auto place = [&] {
-        return raw.place.empty() ? fmt::format("layer {}", index) : raw.place;
+    const auto location = [&] {
+        return raw.location.empty() ? fmt::format("layer {}", index) : raw.location;
     };
     for (LayerPart& part : file.parts)
-        limits.make_room(part.layers, 1, place);
-    limits.add_bytes_at(file.parts.size() * of_empty_layer, place);
+        limits.make_room(part.layers, 1, location);
+    limits.add_bytes_at(file.parts.size() * of_empty_layer, location);
     std::vector<LayerBuilder> builders(file.parts.size());
     std::size_t next = 0;
     for (const auto& [end, closed, part] : raw.ends) {
@@ -154,7 +154,7 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
 }
 
 void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits) {
-    tell_changed_order(layers, file);
+    report_changed_order(layers, file);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const double top = layers[i].z;
         add_layer(file, layers[i], i, bottom + (top - bottom) / 2, bottom, top, limits);
@@ -163,7 +163,7 @@ void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bott
 }
 
 void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits) {
-    tell_changed_order(layers, file);
+    report_changed_order(layers, file);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const double bottom = layers[i].z;
         const double end = i + 1 < layers.size() ? layers[i + 1].z : top;

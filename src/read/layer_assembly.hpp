@@ -25,19 +25,19 @@
 namespace lamella {
 
 /// Counts one kind of irregularity and warns once for the whole file.
-class Oddity {
+class CountedWarning {
   public:
     /// Takes the warning for one occurrence, and for several.
-    Oddity(const char* one, const char* many) : one_(one), many_(many) {}
+    CountedWarning(const char* one, const char* many) : one_(one), many_(many) {}
 
     /// `place` is called only for the first one.
-    template <class Place>
-    void note(const Place& place) {
+    template <class Location>
+    void note(const Location& location) {
         if (count_++ == 0)
-            first_ = place();
+            first_ = location();
     }
     /// Adds a warning such as "3 contours were not closed; they were closed (first at byte 120)".
-    void say(std::vector<std::string>& warnings) const;
+    void append_to(std::vector<std::string>& warnings) const;
 
   private:
     const char* one_;
@@ -47,20 +47,20 @@ class Oddity {
 };
 
 /// Irregularities of all formats.
-struct DroppedContours : Oddity {
+struct DroppedContours : CountedWarning {
     DroppedContours()
-        : Oddity("contour had too few different points; it was dropped",
-                 "contours had too few different points; they were dropped") {}
+        : CountedWarning("contour had too few different points; it was dropped",
+                         "contours had too few different points; they were dropped") {}
 };
-struct UnclosedContours : Oddity {
+struct UnclosedContours : CountedWarning {
     UnclosedContours()
-        : Oddity("closed contour did not return to its first point; it was closed",
-                 "closed contours did not return to their first point; they were closed") {}
+        : CountedWarning("closed contour did not return to its first point; it was closed",
+                         "closed contours did not return to their first point; they were closed") {}
 };
-struct ReturningChains : Oddity {
+struct ReturningChains : CountedWarning {
     ReturningChains()
-        : Oddity("open contour ends where it began; it is taken for a closed one",
-                 "open contours end where they began; they are taken for closed ones") {}
+        : CountedWarning("open contour ends where it began; it is taken for a closed one",
+                         "open contours end where they began; they are taken for closed ones") {}
 };
 
 /// Makes labels of parts in a file fit for messages and other files.
@@ -69,7 +69,7 @@ class ReadLabels {
     /// Returns the label made printable (see printable()) and cut to the largest length of a label.
     [[nodiscard]] std::string of(std::string_view label);
     /// Warns of labels that were changed.
-    void say(std::vector<std::string>& warnings) const;
+    void append_to(std::vector<std::string>& warnings) const;
 
   private:
     std::uint64_t changed_ = 0;
@@ -89,8 +89,8 @@ struct RawLayer {
         std::size_t behind; ///< number of contours before these hatches
     };
 
-    double z = 0;      ///< as in the file
-    std::string place; ///< for error messages
+    double z = 0;         ///< as in the file
+    std::string location; ///< for error messages
     std::vector<Point2> points;
     std::vector<Contour> ends;
     std::vector<Point2> hatches; ///< two points each
@@ -110,8 +110,8 @@ struct RawLayer {
     /// Ends the contour. Drops points equal to the one before, and the last point of a ring if it repeats the
     /// first one. If fewer than three points (of a chain: two) are left, drops the contour, notes it in
     /// `dropped` and returns false.
-    template <class Place>
-    bool end_contour(bool closed, std::uint32_t part, ReadLimits& limits, const Place& where,
+    template <class Location>
+    bool end_contour(bool closed, std::uint32_t part, ReadLimits& limits, const Location& where,
                      DroppedContours& dropped) {
         limits.make_room(ends, 1, where);
         const bool kept = keep_contour(closed, part);
@@ -120,8 +120,8 @@ struct RawLayer {
         return kept;
     }
 
-    template <class Place>
-    void end_hatches(std::uint32_t part, ReadLimits& limits, const Place& where) {
+    template <class Location>
+    void end_hatches(std::uint32_t part, ReadLimits& limits, const Location& where) {
         limits.make_room(hatch_ends, 1, where);
         hatch_ends.push_back({hatches.size(), part, ends.size()});
     }
@@ -147,13 +147,13 @@ class PartNumbers {
         return found == numbers_.end() ? nullptr : &found->first;
     }
 
-    template <class Place>
-    std::uint32_t number_of(const Key& key, const Place& place) {
+    template <class Location>
+    std::uint32_t number_of(const Key& key, const Location& location) {
         if (last_ == numbers_.end() || last_->first != key)
             last_ = numbers_.find(key);
         if (last_ == numbers_.end()) {
             // The part and temporary data for it.
-            limits_.add_bytes_at(node_bytes + sizeof key + 2 * sizeof(LayerPart), place);
+            limits_.add_bytes_at(node_bytes + sizeof key + 2 * sizeof(LayerPart), location);
             last_ = numbers_.emplace(key, static_cast<std::uint32_t>(numbers_.size())).first;
         }
         return last_->second;
@@ -162,16 +162,16 @@ class PartNumbers {
     /// Makes parts by `part_of(key)`; contours and hatches get the numbers that the parts have in the file.
     template <class PartOf>
     void put(LayerFile& file, std::span<RawLayer> layers, const PartOf& part_of) const {
-        std::vector<std::uint32_t> places(numbers_.size());
+        std::vector<std::uint32_t> locations(numbers_.size());
         for (const auto& [key, number] : numbers_) {
-            places[number] = static_cast<std::uint32_t>(file.parts.size());
+            locations[number] = static_cast<std::uint32_t>(file.parts.size());
             file.parts.push_back(part_of(key));
         }
         for (RawLayer& layer : layers) {
             for (RawLayer::Contour& contour : layer.ends)
-                contour.part = places[contour.part];
+                contour.part = locations[contour.part];
             for (RawLayer::Hatches& hatches : layer.hatch_ends)
-                hatches.part = places[hatches.part];
+                hatches.part = locations[hatches.part];
         }
     }
 
@@ -186,7 +186,7 @@ class PartNumbers {
 [[nodiscard]] std::string_view negative_parameter(const ParameterSet& set);
 
 /// Warns of names of parts that were changed.
-void say(const DistinctNames& names, std::vector<std::string>& warnings);
+void append_to(const DistinctNames& names, std::vector<std::string>& warnings);
 
 /// Bytes that even an empty layer takes besides itself: the list of offsets, and the owner of the points.
 inline constexpr std::uint64_t of_empty_layer = 128;
@@ -217,7 +217,7 @@ void sort_by_height(std::vector<T>& layers, std::vector<std::string>& warnings, 
         const auto first = std::is_sorted_until(layers.begin(), layers.end(), below);
         warnings.push_back(
             fmt::format("layers do not ascend: z = {} mm follows z = {} mm ({}); they were sorted", first->z,
-                        std::prev(first)->z, first->place));
+                        std::prev(first)->z, first->location));
         std::stable_sort(layers.begin(), layers.end(), below);
     }
     std::size_t kept = 0;

@@ -3,7 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/gzip.hpp"
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/zip_reader.hpp"
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
@@ -55,7 +55,7 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
                 fmt::format("{}: found '{}' at its beginning; a slice file is expected: {}, 3MF with slice "
                             "stacks or toolpaths, "
                             "NumPy arrays or ILT",
-                            source.name, printable(bytes.substr(0, 16), 48), layer_marks()));
+                            source.name, printable(bytes.substr(0, 16), 48), layer_magics()));
 }
 
 } // namespace

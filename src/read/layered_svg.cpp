@@ -1,6 +1,6 @@
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/xml.hpp"
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
@@ -8,7 +8,7 @@
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <fmt/format.h>
 
@@ -187,13 +187,13 @@ class SvgReader {
                         fmt::format("{}: found no layer; a layered SVG holds one <g> with slic3r:z for "
                                     "each layer",
                                     name_));
-        labels_.say(file_.warnings);
-        open_.say(file_.warnings);
-        returning_.say(file_.warnings);
-        outside_.say(file_.warnings);
-        other_.say(file_.warnings);
-        transformed_.say(file_.warnings);
-        dropped_.say(file_.warnings);
+        labels_.append_to(file_.warnings);
+        open_.append_to(file_.warnings);
+        returning_.append_to(file_.warnings);
+        outside_.append_to(file_.warnings);
+        other_.append_to(file_.warnings);
+        transformed_.append_to(file_.warnings);
+        dropped_.append_to(file_.warnings);
         place_groups(groups_, file_.warnings);
         check_part_planes(file_, groups_.size(), bytes_);
         for (std::size_t i = 0; i < groups_.size(); ++i) {
@@ -232,7 +232,7 @@ class SvgReader {
         in_layer_ = true;
         Group group;
         group.z = *z;
-        group.place = fmt::format("line {}", line);
+        group.location = fmt::format("line {}", line);
         group.slice_z = number(attributes, "slic3r:slice-z", line);
         group.height = number(attributes, "slic3r:layer-height", line);
         if (group.height && *group.height < 0)
@@ -364,13 +364,13 @@ class SvgReader {
     Point2 origin_; ///< origin of the part in Lamella's own files; else coordinates are relative to a corner
                     ///< of the part
     std::vector<Group> groups_;
-    Oddity open_{"contour is open", "contours are open"};
-    Oddity outside_{"outline lies outside of the groups with slic3r:z; it was left out",
-                    "outlines lie outside of the groups with slic3r:z; they were left out"};
-    Oddity other_{"element is no outline; it was passed over",
-                  "elements are no outlines; they were passed over"};
-    Oddity transformed_{"element has transforms, which were not followed",
-                        "elements have transforms, which were not followed"};
+    CountedWarning open_{"contour is open", "contours are open"};
+    CountedWarning outside_{"outline lies outside of the groups with slic3r:z; it was left out",
+                            "outlines lie outside of the groups with slic3r:z; they were left out"};
+    CountedWarning other_{"element is no outline; it was passed over",
+                          "elements are no outlines; they were passed over"};
+    CountedWarning transformed_{"element has transforms, which were not followed",
+                                "elements have transforms, which were not followed"};
     ReturningChains returning_;
     ReadLabels labels_;
     DroppedContours dropped_;

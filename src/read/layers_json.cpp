@@ -1,11 +1,11 @@
 #include "container/json_text.hpp"
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <fmt/format.h>
 
@@ -48,7 +48,7 @@ class LayersJsonReader {
             text_.fail("no \"format\"", fmt::format("it must be \"{}\"", format_name));
         if (file_.parts.empty() || file_.parts.front().layers.empty())
             text_.fail("no layer", "a slice file must have at least one");
-        dropped_.say(file_.warnings);
+        dropped_.append_to(file_.warnings);
         progress_.finish();
     }
 
@@ -98,7 +98,7 @@ class LayersJsonReader {
             label = labels.of(label);
             file_.parts.push_back({label, {}, labelled_exposure(label)});
         });
-        labels.say(file_.warnings);
+        labels.append_to(file_.warnings);
     }
 
     void read_layers() {

@@ -75,8 +75,8 @@ class MeshDocumentReader {
         };
         if (skim_) {
             handlers.many = {form.vertex.tag, form.triangle.tag};
-            handlers.skim = [this, &form](std::string_view document, std::size_t place) {
-                return skim(document, place, form);
+            handlers.skim = [this, &form](std::string_view document, std::size_t location) {
+                return skim(document, location, form);
             };
         }
         parse_xml(text, name_, handlers, rules);
@@ -122,14 +122,14 @@ class MeshDocumentReader {
     }
 
   private:
-    std::size_t skim(std::string_view document, std::size_t place, const MeshTextForm& form) {
+    std::size_t skim(std::string_view document, std::size_t location, const MeshTextForm& form) {
         const bool vertices = in() == Where::vertices;
         if (!vertices && in() != Where::triangles)
             return 0;
         MeshText& text = object().text;
-        text.place = here();
-        return vertices ? take_run(document, place, form.vertex.end_of_list, text.vertices)
-                        : take_run(document, place, form.triangle.end_of_list, text.triangles);
+        text.location = here();
+        return vertices ? take_run(document, location, form.vertex.end_of_list, text.vertices)
+                        : take_run(document, location, form.triangle.end_of_list, text.triangles);
     }
 
     /// In a skimmed document the parser must not read a vertex: the order of vertices would be lost.

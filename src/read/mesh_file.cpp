@@ -94,7 +94,7 @@ MeshFile MeshInput::stream(const TriangleSink& sink, const MeshReadOptions& opti
     if (!can_stream())
         throw Error(
             ErrorKind::usage,
-            fmt::format("{}: only STL files that are not packed can be read batch by batch", source_->name));
+            fmt::format("{}: only STL files that are not compressed can be read in chunks", source_->name));
     MeshFile file = mesh_format_of(*source_, options).stream(*source_, sink, options, execution, share);
     file.path = path_;
     return file;

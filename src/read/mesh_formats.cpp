@@ -5,7 +5,7 @@
 #include "container/zip_reader.hpp"
 #include "core/lower_case.hpp"
 #include "read/layer_readers.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <fmt/format.h>
 
@@ -46,18 +46,18 @@ bool holds_model(const ZipReader& zip) {
 }
 
 /// Returns whether this is AMF, perhaps compressed under another name, but not a 3MF package.
-bool is_plain_or_packed_amf(const ByteSource& source, const MeshReadOptions& options) {
+bool is_plain_or_compressed_amf(const ByteSource& source, const MeshReadOptions& options) {
     if (!is_zip(source.text()))
         return is_amf(source.text());
     const ZipReader zip(source, options.max_memory);
     if (holds_model(zip))
         return false;
     return holds(zip, ".amf") || holds(zip, ".amf.xml") ||
-           (zip.entries().size() == 1 && is_amf(zip.first_bytes(zip.entries().front(), amf_mark_within)));
+           (zip.entries().size() == 1 && is_amf(zip.first_bytes(zip.entries().front(), amf_root_within)));
 }
 
 /// Returns whether the archive contains images, such as a job for a resin printer.
-bool holds_pictures(const ZipReader& zip) {
+bool holds_images(const ZipReader& zip) {
     return holds(zip, ".png") && !holds_model(zip);
 }
 
@@ -85,9 +85,9 @@ bool is_tar(std::string_view text) {
 
 constexpr std::string_view web_page = "is a web page, no mesh file; download the file itself";
 constexpr std::string_view utf16 = "is text in UTF-16; save it as UTF-8, or as a binary file";
-constexpr std::string_view picture = "is a picture, no mesh file";
-constexpr std::string_view packed =
-    "is packed in a way that is not read here; unpack it first, or pack it with gzip";
+constexpr std::string_view image = "is an image, no mesh file";
+constexpr std::string_view compressed =
+    "is compressed by a method that is not read here; decompress it first, or compress it with gzip";
 constexpr std::string_view surfaces =
     "is a CAD file of surfaces without triangles; export STL, 3MF, OBJ or PLY from a CAD program";
 constexpr std::string_view scene =
@@ -109,9 +109,9 @@ constexpr std::array rows = {
                   .advice =
                       "holds scan vectors (ILT): layers already, no mesh; view, convert or verify it as "
                       "it is"},
-    MeshFormatRow{.extension = "amf", .recognises = is_plain_or_packed_amf, .read = read_amf},
-    MeshFormatRow{.recognises = by_archive<holds_pictures>,
-                  .advice = "holds pictures of layers, as for a resin printer: it is sliced already, and "
+    MeshFormatRow{.extension = "amf", .recognises = is_plain_or_compressed_amf, .read = read_amf},
+    MeshFormatRow{.recognises = by_archive<holds_images>,
+                  .advice = "holds images of layers, as for a resin printer: it is sliced already, and "
                             "neither a mesh nor contours can be read from it"},
     MeshFormatRow{.extension = "3mf", .recognises = by_text<is_zip>, .read = read_three_mf},
     MeshFormatRow{.extension = "ovf",
@@ -121,7 +121,7 @@ constexpr std::array rows = {
                       "holds scan vectors (Open Vector Format): layers already, no mesh; view, convert or "
                       "verify it as it is",
                   .read_layers = read_ovf,
-                  .layer_mark = "Open Vector Format (LVF!)"},
+                  .layer_magic = "Open Vector Format (LVF!)"},
     MeshFormatRow{.recognises = by_text<is_tar>,
                   .advice = "is a tar archive, no mesh file; unpack it, and take the mesh that is in it"},
     // Texts, and binary files with a text header.
@@ -140,14 +140,14 @@ constexpr std::array rows = {
                       "is a slice file (SLC): it holds layers already, no mesh; view, convert or verify "
                       "it as it is",
                   .read_layers = read_slc,
-                  .layer_mark = "SLC (-SLCVER)"},
+                  .layer_magic = "SLC (-SLCVER)"},
     MeshFormatRow{.extension = "json",
                   .recognises = by_text<is_json>,
                   .goes_by_name = true,
                   .advice = "is a JSON document, which may hold layers, but no mesh that is read here; view, "
                             "convert or verify layers as they are",
                   .read_layers = read_layers_json,
-                  .layer_mark = "JSON of layers ({)"},
+                  .layer_magic = "JSON of layers ({)"},
     MeshFormatRow{.extension = "cli",
                   .first_bytes = "$$"sv,
                   .recognises = by_text<is_common_layer>,
@@ -155,17 +155,18 @@ constexpr std::array rows = {
                   .advice = "is a slice file (Common Layer Interface): it holds layers already, no mesh; "
                             "view, convert or verify it as it is",
                   .read_layers = read_common_layer,
-                  .layer_mark = "Common Layer Interface ($$HEADERSTART)"},
+                  .layer_magic = "Common Layer Interface ($$HEADERSTART)"},
     MeshFormatRow{.extension = "svg",
                   .recognises = by_text<is_svg>,
                   .goes_by_name = true,
                   .advice = "is an SVG document, which may hold layers, but no mesh; view, convert or verify "
                             "layers as they are",
                   .read_layers = read_layered_svg,
-                  .layer_mark = "layered SVG (<svg)"},
+                  .layer_magic = "layered SVG (<svg)"},
     // Files that are often named like a mesh file, or given by mistake. Binary ones would be taken for binary
     // STL with a wrong count.
-    MeshFormatRow{.first_bytes = "\x1f\x8b"sv, .advice = "is packed with gzip twice; unpack it once first"},
+    MeshFormatRow{.first_bytes = "\x1f\x8b"sv,
+                  .advice = "is compressed with gzip twice; decompress it once first"},
     MeshFormatRow{.first_bytes = "<?xml"sv, .advice = "is an XML file of an unknown kind, no mesh file"},
     MeshFormatRow{.first_bytes = "version https://git-lfs"sv,
                   .advice = "is a pointer of Git LFS to the real file; fetch it with 'git lfs pull'"},
@@ -173,24 +174,24 @@ constexpr std::array rows = {
     MeshFormatRow{.first_bytes = "\xfe\xff"sv, .advice = utf16},
     MeshFormatRow{.first_bytes = "eos 1993 sli"sv,
                   .advice = "is an SLI slice file of EOS, which is not read here; export CLI instead"},
-    MeshFormatRow{.first_bytes = "\x89PNG"sv, .advice = picture},
-    MeshFormatRow{.first_bytes = "\xff\xd8\xff"sv, .advice = picture},
-    MeshFormatRow{.first_bytes = "GIF8"sv, .advice = picture},
-    MeshFormatRow{.first_bytes = "II*\0"sv, .advice = picture}, // TIFF
-    MeshFormatRow{.first_bytes = "MM\0*"sv, .advice = picture},
+    MeshFormatRow{.first_bytes = "\x89PNG"sv, .advice = image},
+    MeshFormatRow{.first_bytes = "\xff\xd8\xff"sv, .advice = image},
+    MeshFormatRow{.first_bytes = "GIF8"sv, .advice = image},
+    MeshFormatRow{.first_bytes = "II*\0"sv, .advice = image}, // TIFF
+    MeshFormatRow{.first_bytes = "MM\0*"sv, .advice = image},
     MeshFormatRow{.first_bytes = "%pdf-"sv, .advice = "is a PDF document, no mesh file"},
     MeshFormatRow{.first_bytes = "\x7f"
                                  "ELF"sv,
                   .advice = "is a program, no mesh file"},
-    MeshFormatRow{.first_bytes = "BZh"sv, .advice = packed},
+    MeshFormatRow{.first_bytes = "BZh"sv, .advice = compressed},
     MeshFormatRow{.first_bytes = "\xfd"
                                  "7zXZ"sv,
-                  .advice = packed},
-    MeshFormatRow{.first_bytes = "\x28\xb5\x2f\xfd"sv, .advice = packed}, // Zstandard
-    MeshFormatRow{.first_bytes = "7z\xbc\xaf"sv, .advice = packed},
-    MeshFormatRow{.first_bytes = "\x04\x22\x4d\x18"sv, .advice = packed}, // LZ4
-    MeshFormatRow{.first_bytes = "MSCF"sv, .advice = packed},             // Microsoft Cabinet
-    MeshFormatRow{.first_bytes = "Rar!"sv, .advice = packed},
+                  .advice = compressed},
+    MeshFormatRow{.first_bytes = "\x28\xb5\x2f\xfd"sv, .advice = compressed}, // Zstandard
+    MeshFormatRow{.first_bytes = "7z\xbc\xaf"sv, .advice = compressed},
+    MeshFormatRow{.first_bytes = "\x04\x22\x4d\x18"sv, .advice = compressed}, // LZ4
+    MeshFormatRow{.first_bytes = "MSCF"sv, .advice = compressed},             // Microsoft Cabinet
+    MeshFormatRow{.first_bytes = "Rar!"sv, .advice = compressed},
     MeshFormatRow{.first_bytes = "iso-10303-21"sv, .advice = surfaces}, // STEP
     // Compound documents, as SolidWorks and Inventor write.
     MeshFormatRow{.first_bytes = "\xd0\xcf\x11\xe0"sv, .advice = surfaces},
@@ -276,11 +277,11 @@ const MeshFormatRow* layer_format_of(const ByteSource& source) {
     });
 }
 
-std::string layer_marks() {
+std::string layer_magics() {
     std::string marks;
     for (const MeshFormatRow& row : rows)
         if (row.read_layers != nullptr)
-            marks.append(marks.empty() ? "" : ", ").append(row.layer_mark);
+            marks.append(marks.empty() ? "" : ", ").append(row.layer_magic);
     return marks;
 }
 

@@ -34,10 +34,10 @@ struct MeshFormatRow {
 
     /// The kind of file and advice: the end of a sentence that begins with the file's name.
     std::string_view advice = {};
-    /// Reads a slice file that is not an archive. `layer_mark` is its name and first bytes, for errors.
+    /// Reads a slice file that is not an archive. `layer_magic` is its name and first bytes, for errors.
     LayerFile (*read_layers)(std::string_view bytes, const std::string& name, ReadLimits&,
                              const Execution&) = nullptr;
-    std::string_view layer_mark = {};
+    std::string_view layer_magic = {};
 
     ReadMesh* read = nullptr;
     /// Reads in chunks; see MeshInput::stream.
@@ -67,6 +67,6 @@ struct MeshFormatRow {
 [[nodiscard]] const MeshFormatRow* layer_format_of(const ByteSource& source);
 
 /// Returns the signatures of all rows with `read_layers`: "SLC (-SLCVER), JSON of layers ({)".
-[[nodiscard]] std::string layer_marks();
+[[nodiscard]] std::string layer_magics();
 
 } // namespace lamella

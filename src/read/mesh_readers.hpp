@@ -42,7 +42,7 @@ ReadMesh read_stl;
 /// AMF (ISO/ASTM 52915): objects as meshes in XML, plain or in a zip archive, and constellations of them.
 [[nodiscard]] bool is_amf(std::string_view text);
 /// A text is recognised within this many bytes.
-inline constexpr std::size_t amf_mark_within = std::size_t{1} << 16;
+inline constexpr std::size_t amf_root_within = std::size_t{1} << 16;
 /// The volumes of an object become one mesh, those of type support only if the options include them. Objects
 /// that no constellation places keep their coordinates. Edges and normals, which bend triangles, are skipped
 /// with a warning. Angles are degrees, except in files of Slic3r and its descendants: these have radians, and

@@ -3,7 +3,7 @@
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "read/read_limits.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -35,22 +35,22 @@ class Elements {
 
     /// Counts the elements of each chunk if all are plain, and numbers those of each mesh.
     void count(Executor& executor) {
-        executor.for_chunks(pieces_.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-            ElementRun& piece = pieces_[i];
+        executor.for_chunks(chunks_.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+            ElementRun& chunk = chunks_[i];
             const auto marks =
-                static_cast<std::size_t>(std::count(piece.text.begin(), piece.text.end(), '<'));
-            piece.count = marks / kind_.marks;
-            piece.plain = marks % kind_.marks == 0 && piece.count <= piece.text.size() / kind_.least;
+                static_cast<std::size_t>(std::count(chunk.text.begin(), chunk.text.end(), '<'));
+            chunk.count = marks / kind_.marks;
+            chunk.plain = marks % kind_.marks == 0 && chunk.count <= chunk.text.size() / kind_.least;
         });
         counts_.assign(texts_.size(), 0);
-        for (ElementRun& piece : pieces_) {
-            std::optional<std::size_t>& count = counts_[piece.mesh];
-            if (!piece.plain)
+        for (ElementRun& chunk : chunks_) {
+            std::optional<std::size_t>& count = counts_[chunk.mesh];
+            if (!chunk.plain)
                 count.reset();
             if (!count)
                 continue;
-            piece.first = *count;
-            *count += piece.count;
+            chunk.first = *count;
+            *count += chunk.count;
         }
     }
 
@@ -61,37 +61,37 @@ class Elements {
     template <class ItemsOf, class Done>
     void read(Executor& executor, const std::vector<bool>& wanted, const ItemsOf& items_of,
               const Done& done) {
-        executor.for_chunks(pieces_.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-            ElementRun& piece = pieces_[i];
-            if (!wanted[piece.mesh])
+        executor.for_chunks(chunks_.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+            ElementRun& chunk = chunks_[i];
+            if (!wanted[chunk.mesh])
                 return;
-            const std::span<Item> items = items_of(piece.mesh).subspan(piece.first, piece.count);
-            piece.plain = kind_.read(piece.text, texts_[piece.mesh], items) && done(piece.mesh, items);
+            const std::span<Item> items = items_of(chunk.mesh).subspan(chunk.first, chunk.count);
+            chunk.plain = kind_.read(chunk.text, texts_[chunk.mesh], items) && done(chunk.mesh, items);
         });
     }
 
     void drop_odd(std::vector<bool>& wanted) const {
-        for (const ElementRun& piece : pieces_)
-            if (!piece.plain)
-                wanted[piece.mesh] = false;
+        for (const ElementRun& chunk : chunks_)
+            if (!chunk.plain)
+                wanted[chunk.mesh] = false;
     }
 
   private:
     /// Divides a sequence between elements.
     void cut(std::string_view run, std::size_t mesh) {
-        while (run.size() > text_piece_bytes) {
-            const std::size_t cut = run.find(kind_.tag, text_piece_bytes);
+        while (run.size() > text_chunk_bytes) {
+            const std::size_t cut = run.find(kind_.tag, text_chunk_bytes);
             if (cut == std::string_view::npos)
                 break;
-            pieces_.push_back({run.substr(0, cut), mesh});
+            chunks_.push_back({run.substr(0, cut), mesh});
             run.remove_prefix(cut);
         }
-        pieces_.push_back({run, mesh});
+        chunks_.push_back({run, mesh});
     }
 
     const MeshTextKind<Item>& kind_;
     std::span<const MeshText> texts_;
-    std::vector<ElementRun> pieces_;
+    std::vector<ElementRun> chunks_;
     std::vector<std::optional<std::size_t>> counts_;
 };
 
@@ -105,13 +105,13 @@ void give_back(const IndexedMesh& mesh, ReadLimits& limits) {
     limits.give_back(mesh.triangles.size(), mesh_bytes(mesh.vertices.size(), mesh.triangles.size()));
 }
 
-std::size_t take_run(std::string_view document, std::size_t place, std::string_view end_tag,
+std::size_t take_run(std::string_view document, std::size_t location, std::string_view end_tag,
                      std::vector<std::string_view>& runs) {
-    const std::size_t end = document.find(end_tag, place);
+    const std::size_t end = document.find(end_tag, location);
     if (end == std::string_view::npos)
         return 0;
-    runs.push_back(document.substr(place, end - place));
-    return end - place;
+    runs.push_back(document.substr(location, end - location));
+    return end - location;
 }
 
 std::size_t degenerate_triangles(const IndexedMesh& mesh) {
@@ -135,8 +135,8 @@ std::vector<std::optional<IndexedMesh>> read_mesh_texts(std::span<const MeshText
                    *triangles.count_of(i) <= most;
         if (!plain[i])
             continue;
-        limits.add_triangles(*triangles.count_of(i), texts[i].place);
-        limits.add_bytes(mesh_bytes(*vertices.count_of(i), *triangles.count_of(i)), texts[i].place);
+        limits.add_triangles(*triangles.count_of(i), texts[i].location);
+        limits.add_bytes(mesh_bytes(*vertices.count_of(i), *triangles.count_of(i)), texts[i].location);
     }
 
     std::vector<std::optional<IndexedMesh>> meshes(texts.size());

@@ -29,12 +29,12 @@ struct MeshText {
     std::vector<std::string_view> triangles;
     /// Prefixes of namespaces that attributes may have.
     std::span<const std::string> prefixes;
-    std::string place; ///< for error messages
+    std::string location; ///< for error messages
 };
 
 /// Appends the sequence from offset `place` of a document up to `end_tag` to `runs` and returns its length; 0
 /// if this tag is missing.
-[[nodiscard]] std::size_t take_run(std::string_view document, std::size_t place, std::string_view end_tag,
+[[nodiscard]] std::size_t take_run(std::string_view document, std::size_t location, std::string_view end_tag,
                                    std::vector<std::string_view>& runs);
 
 /// The written form of a kind of element.

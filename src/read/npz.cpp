@@ -1,6 +1,6 @@
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/utf8.hpp"
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
@@ -29,7 +29,7 @@ class Array {
   public:
     Array(const ZipReader& zip, const ZipEntry& entry) : source_(zip.read(entry)) {
         bytes_ = source_.text();
-        read_head();
+        read_header();
     }
 
     [[nodiscard]] std::uint64_t size() const { return shape_.front(); }
@@ -107,7 +107,7 @@ class Array {
 
     // The header: "\x93NUMPY", a version, the length of the dictionary (16 bits in version 1, then 32), the
     // dictionary.
-    void read_head() {
+    void read_header() {
         constexpr std::string_view magic = "\x93NUMPY";
         if (!bytes_.starts_with(magic) || bytes_.size() < 12)
             fail("no NumPy array", "it must begin with \\x93NUMPY");
@@ -116,7 +116,7 @@ class Array {
         std::uint64_t length = 0;
         std::memcpy(&length, bytes_.data() + magic.size() + 2, old ? 2 : 4);
         if (length > bytes_.size() - text_begin)
-            fail(fmt::format("a head of {} bytes", length), fmt::format("the array has {}", bytes_.size()));
+            fail(fmt::format("a header of {} bytes", length), fmt::format("the array has {}", bytes_.size()));
         const std::string_view dictionary = bytes_.substr(text_begin, length);
         begin_ = text_begin + length;
         type_ = std::string(quoted(dictionary, "descr"));
@@ -144,7 +144,7 @@ class Array {
         at = at == std::string_view::npos ? at : dictionary.find(':', at);
         at = at == std::string_view::npos ? at : dictionary.find_first_not_of(' ', at + 1);
         if (at == std::string_view::npos)
-            fail(fmt::format("a head without '{}'", key), "NumPy writes it");
+            fail(fmt::format("a header without '{}'", key), "NumPy writes it");
         return dictionary.substr(at);
     }
 
@@ -222,14 +222,14 @@ class NpzReader {
             labels.fail("no part", "there must be one");
         constexpr std::uint64_t most_parts = std::numeric_limits<std::uint32_t>::max();
         if (labels.size() > most_parts || labels.size() > zip_.unpacked() + 1)
-            labels.fail(fmt::format("{} parts", labels.size()), "so many are not possible");
+            labels.fail(fmt::format("{} parts", labels.size()), "this many are not possible");
         limits_.make_room(file_.parts, labels.size(), [] { return std::string_view("array 'labels'"); });
         ReadLabels read_labels;
         for (std::uint64_t i = 0; i < labels.size(); ++i) {
             const std::string label = read_labels.of(labels.text(i));
             file_.parts.push_back({label, {}, labelled_exposure(label)});
         }
-        read_labels.say(file_.warnings);
+        read_labels.append_to(file_.warnings);
         check_part_planes(file_, z.size(), zip_.unpacked());
         read_rule();
 
@@ -254,7 +254,7 @@ class NpzReader {
         for (const Array* lengths : {&points, &z, &bottom, &top})
             if (lengths->is_single_precision())
                 file_.rounding.single_precision = true;
-        dropped_.say(file_.warnings);
+        dropped_.append_to(file_.warnings);
     }
 
   private:
@@ -293,13 +293,13 @@ class NpzReader {
                 offsets.fail(fmt::format("{} behind {}", end, begin), "they must not descend");
             RawLayer& into = raw[layer.whole(i, raw.size() - 1)];
             const auto of_part = static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1));
-            const auto place = [&] {
+            const auto position = [&] {
                 return fmt::format("contour {}", i);
             };
-            limits_.make_room(into.points, end - begin, place);
+            limits_.make_room(into.points, end - begin, position);
             for (std::uint64_t k = begin; k < end; ++k)
                 into.points.push_back({points.length(2 * k), points.length(2 * k + 1)});
-            into.end_contour(closed.whole(i, 1) != 0, of_part, limits_, place, dropped_);
+            into.end_contour(closed.whole(i, 1) != 0, of_part, limits_, position, dropped_);
             begin = end;
         }
     }
@@ -325,14 +325,14 @@ class NpzReader {
         const Array part = list("hatch_part", hatches.size(), "hatch lines");
         for (std::uint64_t i = 0; i < hatches.size(); ++i) {
             RawLayer& into = raw[layer.whole(i, raw.size() - 1)];
-            const auto place = [&] {
+            const auto position = [&] {
                 return fmt::format("hatch line {}", i);
             };
-            limits_.make_room(into.hatches, 2, place);
+            limits_.make_room(into.hatches, 2, position);
             for (std::uint64_t k = 4 * i; k < 4 * i + 4; k += 2)
                 into.hatches.push_back({hatches.length(k), hatches.length(k + 1)});
             into.end_hatches(static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1)), limits_,
-                             place);
+                             position);
         }
         if (hatches.is_single_precision())
             file_.rounding.single_precision = true;
@@ -351,7 +351,7 @@ bool is_npz(const ZipReader& zip) {
 }
 
 LayerFile read_npz(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
-    LayerFile file{.path = zip.name(), .format = "npz", .units_mm = 1, .warnings = zip.oddities()};
+    LayerFile file{.path = zip.name(), .format = "npz", .units_mm = 1, .warnings = zip.counted_warnings()};
     NpzReader(zip, file, limits).read(execution);
     return file;
 }

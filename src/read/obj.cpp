@@ -1,11 +1,11 @@
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "read/coordinate_text.hpp"
 #include "read/face_mesh.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,23 +21,23 @@ using namespace std::string_view_literals;
 /// Parses a chunk line by line.
 class ObjLines : Words {
   public:
-    ObjLines(std::string_view text, FacePiece& piece, std::uint64_t most_triangles)
-        : Words(text, piece.begin), piece_(piece), most_triangles_(most_triangles) {}
+    ObjLines(std::string_view text, FaceChunk& chunk, std::uint64_t most_triangles)
+        : Words(text, chunk.begin), chunk_(chunk), most_triangles_(most_triangles) {}
 
     void run() {
         try {
             while (next_line()) {
             }
         } catch (TextFault& fault) {
-            piece_.fault = std::move(fault);
+            chunk_.fault = std::move(fault);
         }
-        piece_.end = offset();
+        chunk_.end = offset();
     }
 
   private:
     bool next_line() {
         skip_blanks();
-        if (at_ == end_ || offset() >= piece_.limit)
+        if (at_ == end_ || offset() >= chunk_.limit)
             return false;
         if (begins_with_keyword("f") || begins_with_keyword("fo")) // former name of "f"
             return face();
@@ -72,7 +72,7 @@ class ObjLines : Words {
                 throw TextFault{offset(), "the x, y and z of a vertex"};
             value = coordinate();
         }
-        piece_.vertices.push_back({p[0], p[1], p[2]});
+        chunk_.vertices.push_back({p[0], p[1], p[2]});
     }
 
     /// Takes a coordinate. A backslash may follow it without a blank.
@@ -96,11 +96,11 @@ class ObjLines : Words {
         bool relative = false;
         for (to_word(); at_ != end_ && !is_line_end(*at_) && *at_ != '#'; to_word())
             corners_.push_back(corner(relative));
-        const std::uint64_t first = piece_.triangles.size();
-        piece_.add_face(corners_, begin);
+        const std::uint64_t first = chunk_.triangles.size();
+        chunk_.add_face(corners_, begin);
         if (relative)
             note_relative(first);
-        if (piece_.triangles.size() > most_triangles_) {
+        if (chunk_.triangles.size() > most_triangles_) {
             at_ = begin_ + begin;
             return false;
         }
@@ -130,36 +130,36 @@ class ObjLines : Words {
         if (at_ != end_ && !is_blank(*at_) && *at_ != '\\')
             return fail();
         if (!backwards)
-            return number - 1 < FacePiece::no_vertex ? static_cast<std::uint32_t>(number - 1)
-                                                     : FacePiece::no_vertex;
+            return number - 1 < FaceChunk::no_vertex ? static_cast<std::uint32_t>(number - 1)
+                                                     : FaceChunk::no_vertex;
         // Relative to the vertices so far, in this chunk or before it. In a file of more than 2^31 vertices
         // none further back can be addressed.
         relative = true;
         constexpr std::uint64_t furthest = std::uint64_t{1} << 31;
         relative_.resize(corners_.size() + 1, false);
         if (number == 0 || number > furthest)
-            return FacePiece::no_vertex;
+            return FaceChunk::no_vertex;
         relative_[corners_.size()] = true;
-        return static_cast<std::uint32_t>(piece_.vertices.size() - number);
+        return static_cast<std::uint32_t>(chunk_.vertices.size() - number);
     }
 
     /// Notes which corners of the last face are relative to the first vertex of this chunk.
     void note_relative(std::uint64_t first_triangle) {
         relative_.resize(corners_.size(), false);
-        for (std::uint64_t t = first_triangle; t < piece_.triangles.size(); ++t) {
-            const std::array<std::size_t, 3> places{0, t - first_triangle + 1, t - first_triangle + 2};
+        for (std::uint64_t t = first_triangle; t < chunk_.triangles.size(); ++t) {
+            const std::array<std::size_t, 3> locations{0, t - first_triangle + 1, t - first_triangle + 2};
             for (std::size_t k = 0; k < 3; ++k)
-                if (relative_[places[k]])
-                    piece_.relative.push_back(3 * t + k);
+                if (relative_[locations[k]])
+                    chunk_.relative.push_back(3 * t + k);
         }
         relative_.clear();
     }
 
     void other() {
-        if (begins_with_keyword("o") && piece_.name == nowhere)
-            piece_.name = offset() + 1;
+        if (begins_with_keyword("o") && chunk_.name == nowhere)
+            chunk_.name = offset() + 1;
         if (begins_with_keyword("surf") || begins_with_keyword("curv"))
-            piece_.free_form.note(offset());
+            chunk_.free_form.note(offset());
     }
 
     static bool is_digit(char c) { return static_cast<unsigned char>(c - '0') < 10; }
@@ -185,7 +185,7 @@ class ObjLines : Words {
         }
     }
 
-    FacePiece& piece_;
+    FaceChunk& chunk_;
     std::uint64_t most_triangles_;
     std::vector<std::uint32_t> corners_;
     std::vector<bool> relative_; ///< the corners that are relative to the first vertex of this chunk
@@ -217,25 +217,25 @@ MeshFile read_obj(const ByteSource& source, const MeshReadOptions& options, cons
     ReadLimits limits(source, options);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, text.size());
-    PieceFormat<FacePiece> format;
-    format.parse = [text](FacePiece& piece, std::uint64_t most_triangles) {
-        ObjLines(text, piece, most_triangles).run();
+    ChunkFormat<FaceChunk> format;
+    format.parse = [text](FaceChunk& chunk, std::uint64_t most_triangles) {
+        ObjLines(text, chunk, most_triangles).run();
     };
     format.find_cut = [text](std::size_t from, std::size_t limit) {
         return find_line(text, from, limit);
     };
-    PieceParser<FacePiece> parser(source, after_byte_order_mark(text), std::move(format), executor, progress,
-                                  face_pieces_ahead(executor));
+    ChunkParser<FaceChunk> parser(source, after_byte_order_mark(text), std::move(format), executor, progress,
+                                  face_chunks_ahead(executor));
     std::size_t name = nowhere;
-    std::vector<FacePiece> pieces = parser.rest([&](const FacePiece& piece) {
-        count_piece(piece, limits);
-        name = std::min(name, piece.name);
+    std::vector<FaceChunk> chunks = parser.rest([&](const FaceChunk& chunk) {
+        count_chunk(chunk, limits);
+        name = std::min(name, chunk.name);
     });
-    if (pieces.back().fault)
-        refuse_text(source, *pieces.back().fault);
+    if (chunks.back().fault)
+        refuse_text(source, *chunks.back().fault);
 
     Remarks remarks(source.name, options.strict);
-    MeshFile file = make_mesh_file(source, parser, pieces, 1, remarks, executor);
+    MeshFile file = make_mesh_file(source, parser, chunks, 1, remarks, executor);
     if (name != nowhere)
         file.name = first_line(text, name);
     file.objects.front().name = file.name;

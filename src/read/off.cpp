@@ -2,7 +2,7 @@
 #include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <optional>
 #include <string>
@@ -42,9 +42,9 @@ std::optional<OffKind> kind_of(std::string_view word) {
 }
 
 /// A cursor over the words before the rows.
-class OffHead : public Words {
+class OffHeader : public Words {
   public:
-    explicit OffHead(std::string_view text) : Words(text, after_byte_order_mark(text)) {}
+    explicit OffHeader(std::string_view text) : Words(text, after_byte_order_mark(text)) {}
 
     /// Returns the next word, across lines and comments; empty at the end.
     std::string_view peek() {
@@ -73,7 +73,7 @@ class OffHead : public Words {
 
     /// Returns whether the next line that is not a comment contains only one word. A row never does.
     [[nodiscard]] bool next_line_is_one_word() const {
-        OffHead ahead = *this;
+        OffHeader ahead = *this;
         ahead.skip_line();
         return !ahead.peek().empty() && (ahead.skip_word(), !ahead.line_goes_on());
     }
@@ -86,42 +86,42 @@ struct OffCounts {
     std::size_t end = 0;
 };
 
-OffCounts read_head(std::string_view text) {
-    OffHead head(text);
+OffCounts read_header(std::string_view text) {
+    OffHeader header(text);
     OffCounts counts;
-    const std::string_view first = head.peek();
+    const std::string_view first = header.peek();
     if (const auto kind = kind_of(first)) {
         counts.kind = *kind;
-        head.move_to(head.position() + kind->word_size);
+        header.move_to(header.position() + kind->word_size);
     }
-    if (const std::string_view word = head.peek(); word == "BINARY" || word == "binary")
-        throw TextFault{head.offset(), "a text (binary OFF is not read; save it as ASCII OFF or PLY)"};
+    if (const std::string_view word = header.peek(); word == "BINARY" || word == "binary")
+        throw TextFault{header.offset(), "a text (binary OFF is not read; save it as ASCII OFF or PLY)"};
     if (counts.kind.any_dimension) {
-        const std::size_t place = (static_cast<void>(head.peek()), head.offset());
-        if (head.count("the number of coordinates, 3") != 3)
-            throw TextFault{place, "the number of coordinates, 3"};
+        const std::size_t location = (static_cast<void>(header.peek()), header.offset());
+        if (header.count("the number of coordinates, 3") != 3)
+            throw TextFault{location, "the number of coordinates, 3"};
     }
-    counts.vertices = head.count("the numbers of vertices, faces and edges");
-    counts.faces = head.count("the number of faces");
+    counts.vertices = header.count("the numbers of vertices, faces and edges");
+    counts.faces = header.count("the number of faces");
     // The number of edges is not needed, and some files omit it.
-    if (head.line_goes_on() || head.next_line_is_one_word())
-        static_cast<void>(head.count("the number of edges"));
-    head.skip_line();
-    counts.end = head.offset();
+    if (header.line_goes_on() || header.next_line_is_one_word())
+        static_cast<void>(header.count("the number of edges"));
+    header.skip_line();
+    counts.end = header.offset();
     return counts;
 }
 
 } // namespace
 
 bool is_off(std::string_view text) {
-    return kind_of(OffHead(text).peek()).has_value();
+    return kind_of(OffHeader(text).peek()).has_value();
 }
 
 MeshFile read_off(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
     const std::string_view text = source.text();
     OffCounts counts;
     try {
-        counts = read_head(text);
+        counts = read_header(text);
     } catch (const TextFault& fault) {
         refuse_text(source, fault);
     }
@@ -132,9 +132,9 @@ MeshFile read_off(const ByteSource& source, const MeshReadOptions& options, cons
     rows.rows = counts.vertices + counts.faces;
     rows.comment = '#';
     rows.counted_where = "the numbers of vertices and faces";
-    rows.read_row = [&](std::uint64_t row, RowWords& words, FacePiece& piece) {
+    rows.read_row = [&](std::uint64_t row, RowWords& words, FaceChunk& chunk) {
         if (row >= counts.vertices) {
-            words.add_face(piece);
+            words.add_face(chunk);
             return;
         }
         const double x = words.coordinate();
@@ -142,9 +142,9 @@ MeshFile read_off(const ByteSource& source, const MeshReadOptions& options, cons
         const double z = words.coordinate();
         const double w = counts.kind.homogeneous ? words.coordinate() : 1;
         if (w == 1)
-            piece.vertices.push_back({x, y, z});
+            chunk.vertices.push_back({x, y, z});
         else
-            piece.vertices.push_back({x / w + 0.0, y / w + 0.0, z / w + 0.0});
+            chunk.vertices.push_back({x / w + 0.0, y / w + 0.0, z / w + 0.0});
     };
     MeshFile file = read_face_rows(source, rows, remarks, limits, execution);
     file.warnings = remarks.take();

@@ -6,7 +6,7 @@
 
 #include "container/ovf_format.hpp"
 #include "container/protobuf_reader.hpp"
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
@@ -59,8 +59,8 @@ class JobShell {
   public:
     JobShell(const std::string& name, ReadLimits& limits) : name_(name), limits_(limits) {}
 
-    void read(std::string_view bytes, std::uint64_t place) {
-        ProtobufReader job = ProtobufReader::delimited(bytes, place, name_);
+    void read(std::string_view bytes, std::uint64_t offset) {
+        ProtobufReader job = ProtobufReader::delimited(bytes, offset, name_);
         while (job.next()) {
             if (job.field() == ovf::job::marking_params)
                 read_entry(job, [&](std::int64_t key, const ProtobufReader& value) {
@@ -136,8 +136,8 @@ class JobShell {
             else if (entry.field() == ovf::map_entry::value)
                 value = entry.message();
         }
-        limits_.add_bytes_at(node_bytes + sizeof(ParameterSet) + map.bytes().size(), at_byte(map.place()));
-        take(key, value.value_or(ProtobufReader({}, map.place(), name_)));
+        limits_.add_bytes_at(node_bytes + sizeof(ParameterSet) + map.bytes().size(), at_byte(map.position()));
+        take(key, value.value_or(ProtobufReader({}, map.position(), name_)));
     }
 
     static ParameterSet read_parameters(ProtobufReader fields) {
@@ -196,45 +196,46 @@ class OvfMessages {
     OvfMessages(std::string_view bytes, const std::string& name, ReadLimits& limits, ProgressMeter& progress)
         : bytes_(bytes), name_(name), limits_(limits), progress_(progress) {}
 
-    [[noreturn]] void fail(std::uint64_t place, const std::string& found, const std::string& expected) const {
+    [[noreturn]] void fail(std::uint64_t offset, const std::string& found,
+                           const std::string& expected) const {
         throw Error(ErrorKind::input,
-                    fmt::format("{}, byte {}: found {}; {}", name_, place, found, expected));
+                    fmt::format("{}, byte {}: found {}; {}", name_, offset, found, expected));
     }
 
     /// Returns the 64-bit offset that is stored at `place`.
-    std::uint64_t position_at(std::uint64_t place) const {
+    std::uint64_t position_at(std::uint64_t offset) const {
         std::int64_t position = 0;
-        if (place > bytes_.size() || bytes_.size() - place < sizeof position)
-            fail(place, "the end of the file", "the place of a table must stand here");
-        std::memcpy(&position, bytes_.data() + place, sizeof position);
+        if (offset > bytes_.size() || bytes_.size() - offset < sizeof position)
+            fail(offset, "the end of the file", "expected the offset of a table here");
+        std::memcpy(&position, bytes_.data() + offset, sizeof position);
         if (position < 0 || static_cast<std::uint64_t>(position) >= bytes_.size())
-            fail(place, fmt::format("a table at byte {}", position),
+            fail(offset, fmt::format("a table at byte {}", position),
                  fmt::format("the file has {}", bytes_.size()));
         return static_cast<std::uint64_t>(position);
     }
 
     /// Returns the message at `place`. Many tables can refer to the same message; if it were read again each
     /// time, a small file could take long.
-    ProtobufReader at(std::uint64_t place) {
-        std::uint64_t end = place;
+    ProtobufReader at(std::uint64_t offset) {
+        std::uint64_t end = offset;
         ProtobufReader fields = ProtobufReader::delimited(bytes_, end, name_);
-        progress_.add(end - place);
-        const auto next = taken_.upper_bound(place);
+        progress_.add(end - offset);
+        const auto next = taken_.upper_bound(offset);
         const auto last = next == taken_.begin() ? taken_.end() : std::prev(next);
-        if ((next != taken_.end() && next->first < end) || (last != taken_.end() && last->second > place))
-            fail(place, "a table, a head or a block once more", "work planes must share none");
-        if (last != taken_.end() && last->second == place) {
+        if ((next != taken_.end() && next->first < end) || (last != taken_.end() && last->second > offset))
+            fail(offset, "a second table, header or block", "work planes must share none");
+        if (last != taken_.end() && last->second == offset) {
             last->second = end;
         } else {
-            limits_.add_bytes_at(node_bytes, at_byte(place));
-            taken_.emplace_hint(next, place, end);
+            limits_.add_bytes_at(node_bytes, at_byte(offset));
+            taken_.emplace_hint(next, offset, end);
         }
         return fields;
     }
 
-    Table table_at(std::uint64_t place) {
+    Table table_at(std::uint64_t offset) {
         Table table;
-        ProtobufReader fields = at(place);
+        ProtobufReader fields = at(offset);
         while (fields.next()) {
             const auto position = [&](std::int64_t value) {
                 if (value < 0 || static_cast<std::uint64_t>(value) >= bytes_.size())
@@ -246,7 +247,7 @@ class OvfMessages {
                 table.shell = position(fields.integer());
             else if (fields.field() == ovf::table::positions)
                 fields.integers([&](std::int64_t value) {
-                    limits_.make_room(table.positions, 1, at_byte(fields.place()));
+                    limits_.make_room(table.positions, 1, at_byte(fields.position()));
                     table.positions.push_back(position(value));
                 });
         }
@@ -282,11 +283,11 @@ class OvfReader {
                                                  job_.planes(), layers_.size()));
         number_parts();
         make_layers();
-        say(names_, file_.warnings);
-        for (const Oddity* oddity : {&other_blocks_, &other_numbers_, &moved_, &other_vectors_,
-                                     &repeated_blocks_, &repeated_planes_, &other_lasers_})
-            oddity->say(file_.warnings);
-        dropped_.say(file_.warnings);
+        append_to(names_, file_.warnings);
+        for (const CountedWarning* warning : {&other_blocks_, &other_numbers_, &moved_, &other_vectors_,
+                                              &repeated_blocks_, &repeated_planes_, &other_lasers_})
+            warning->append_to(file_.warnings);
+        dropped_.append_to(file_.warnings);
         progress_.finish();
     }
 
@@ -296,7 +297,7 @@ class OvfReader {
         const Table table = messages_.table_at(messages_.position_at(begin));
         limits_.make_room(layers_, 1, at_byte(begin));
         RawLayer& raw = layers_.emplace_back();
-        raw.place = fmt::format("byte {}", begin);
+        raw.location = fmt::format("byte {}", begin);
         std::int64_t blocks = 0; // as stated by the plane
         std::uint64_t number = 0;
         ProtobufReader shell = messages_.at(table.shell);
@@ -436,7 +437,7 @@ class OvfReader {
             }
             return part;
         });
-        read_labels.say(file_.warnings);
+        read_labels.append_to(file_.warnings);
     }
 
     /// Makes layers; the heights are their tops.
@@ -461,21 +462,22 @@ class OvfReader {
     std::vector<RawLayer> layers_;
     PartNumbers<BlockKind> parts_;
     std::uint64_t last_number_ = 0; ///< of the last work plane
-    Oddity other_blocks_{"work plane announces another number of blocks than the file has",
-                         "work planes announce another number of blocks than the file has"};
-    Oddity other_numbers_{
+    CountedWarning other_blocks_{"work plane announces another number of blocks than the file has",
+                                 "work planes announce another number of blocks than the file has"};
+    CountedWarning other_numbers_{
         "number of a work plane does not follow that of the one before; planes may be missing",
         "numbers of work planes do not follow those of the ones before; planes may be missing"};
-    Oddity moved_{"work plane is moved or turned; its vectors were read as they stand",
-                  "work planes are moved or turned; their vectors were read as they stand"};
-    Oddity other_vectors_{"block holds other vectors than lines and hatches; it was left out",
-                          "blocks hold other vectors than lines and hatches; they were left out"};
-    Oddity repeated_blocks_{"block is to be executed more than once; its vectors were read once",
-                            "blocks are to be executed more than once; their vectors were read once"};
-    Oddity repeated_planes_{"work plane is to be executed more than once; its vectors were read once",
-                            "work planes are to be executed more than once; their vectors were read once"};
-    Oddity other_lasers_{"block is for another laser than the first; which one was left out",
-                         "blocks are for another laser than the first; which one was left out"};
+    CountedWarning moved_{"work plane is moved or rotated; its vectors were read as they stand",
+                          "work planes are moved or rotated; their vectors were read as they stand"};
+    CountedWarning other_vectors_{"block holds other vectors than lines and hatches; it was left out",
+                                  "blocks hold other vectors than lines and hatches; they were left out"};
+    CountedWarning repeated_blocks_{"block is to be executed more than once; its vectors were read once",
+                                    "blocks are to be executed more than once; their vectors were read once"};
+    CountedWarning repeated_planes_{
+        "work plane is to be executed more than once; its vectors were read once",
+        "work planes are to be executed more than once; their vectors were read once"};
+    CountedWarning other_lasers_{"block is for another laser than the first; which one was left out",
+                                 "blocks are for another laser than the first; which one was left out"};
     DistinctNames names_;
     DroppedContours dropped_;
 };

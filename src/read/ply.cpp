@@ -7,7 +7,7 @@
 #include "read/ply_header.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <fmt/format.h>
 
@@ -27,42 +27,42 @@ std::size_t find_element(const PlyHeader& header, std::string_view name) {
                                     header.elements.begin());
 }
 
-PlyPlaces find_places(const PlyHeader& header, const std::string& file) {
+PlyPositions find_positions(const PlyHeader& header, const std::string& file) {
     const auto fail = [&](std::string_view what) {
         throw Error(ErrorKind::input, fmt::format("{}: {}", file, what));
     };
-    PlyPlaces places;
-    places.vertex = find_element(header, "vertex");
-    if (places.vertex == header.elements.size())
-        fail("the head has no 'element vertex', expected one with the properties x, y and z");
-    const PlyElement& vertex = header.elements[places.vertex];
+    PlyPositions positions;
+    positions.vertex = find_element(header, "vertex");
+    if (positions.vertex == header.elements.size())
+        fail("the header has no 'element vertex', expected one with the properties x, y and z");
+    const PlyElement& vertex = header.elements[positions.vertex];
     constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto at = vertex.find(axes[axis]);
         if (!at || vertex.properties[*at].list_length)
-            fail(fmt::format("the head has no 'property float {}' of the element 'vertex'", axes[axis]));
-        places.coordinates[axis] = *at;
+            fail(fmt::format("the header has no 'property float {}' of the element 'vertex'", axes[axis]));
+        positions.coordinates[axis] = *at;
     }
-    places.face = find_element(header, "face");
-    if (places.face == header.elements.size() || header.elements[places.face].rows == 0) {
-        places.face = find_element(header, "tristrips");
-        places.strips = true;
+    positions.face = find_element(header, "face");
+    if (positions.face == header.elements.size() || header.elements[positions.face].rows == 0) {
+        positions.face = find_element(header, "tristrips");
+        positions.strips = true;
     }
-    if (places.face == header.elements.size() || header.elements[places.face].rows == 0)
+    if (positions.face == header.elements.size() || header.elements[positions.face].rows == 0)
         fail(fmt::format("holds no triangle: {} vertices without an element 'face' (a cloud of points has no "
                          "surface to slice)",
                          vertex.rows));
-    const PlyElement& face = header.elements[places.face];
-    const std::string_view what = places.strips
+    const PlyElement& face = header.elements[positions.face];
+    const std::string_view what = positions.strips
                                       ? "property list int int vertex_indices' of the element 'tristrips"
                                       : "property list uchar int vertex_indices' of the element 'face";
     for (const std::string_view name : {"vertex_indices", "vertex_index"})
         if (const auto at = face.find(name); at && face.properties[*at].list_length) {
-            places.corners = *at;
-            return places;
+            positions.corners = *at;
+            return positions;
         }
-    fail(fmt::format("the head has no '{}'", what));
-    return places;
+    fail(fmt::format("the header has no '{}'", what));
+    return positions;
 }
 
 void skip_value(const PlyProperty& property, RowWords& words) {
@@ -72,26 +72,27 @@ void skip_value(const PlyProperty& property, RowWords& words) {
         words.skip_word();
 }
 
-void read_vertex(const PlyElement& element, const PlyPlaces& places, RowWords& words, FacePiece& piece) {
+void read_vertex(const PlyElement& element, const PlyPositions& positions, RowWords& words,
+                 FaceChunk& chunk) {
     std::array<double, 3> p{};
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
-        const auto* const axis = std::find(places.coordinates.begin(), places.coordinates.end(), i);
-        if (axis != places.coordinates.end())
-            p[static_cast<std::size_t>(axis - places.coordinates.begin())] = words.coordinate();
+        const auto* const axis = std::find(positions.coordinates.begin(), positions.coordinates.end(), i);
+        if (axis != positions.coordinates.end())
+            p[static_cast<std::size_t>(axis - positions.coordinates.begin())] = words.coordinate();
         else
             skip_value(element.properties[i], words);
     }
-    piece.vertices.push_back({p[0], p[1], p[2]});
+    chunk.vertices.push_back({p[0], p[1], p[2]});
 }
 
-void read_face(const PlyElement& element, const PlyPlaces& places, RowWords& words, FacePiece& piece) {
+void read_face(const PlyElement& element, const PlyPositions& positions, RowWords& words, FaceChunk& chunk) {
     for (std::size_t i = 0; i < element.properties.size(); ++i)
-        if (i != places.corners)
+        if (i != positions.corners)
             skip_value(element.properties[i], words);
-        else if (places.strips)
-            words.add_strips(piece);
+        else if (positions.strips)
+            words.add_strips(chunk);
         else
-            words.add_face(piece);
+            words.add_face(chunk);
 }
 
 struct Rows {
@@ -114,24 +115,24 @@ std::vector<Rows> rows_of(const PlyHeader& header) {
     return rows;
 }
 
-MeshFile read_ascii(const ByteSource& source, const PlyHeader& header, const PlyPlaces& places,
+MeshFile read_ascii(const ByteSource& source, const PlyHeader& header, const PlyPositions& positions,
                     Remarks& remarks, ReadLimits& limits, const Execution& execution) {
     const std::vector<Rows> element_rows = rows_of(header);
-    const Rows vertex_rows = element_rows[places.vertex];
-    const Rows face_rows = element_rows[places.face];
-    const PlyElement& vertex = header.elements[places.vertex];
-    const PlyElement& face = header.elements[places.face];
+    const Rows vertex_rows = element_rows[positions.vertex];
+    const Rows face_rows = element_rows[positions.face];
+    const PlyElement& vertex = header.elements[positions.vertex];
+    const PlyElement& face = header.elements[positions.face];
     FaceRows rows;
     rows.begin = header.end;
     rows.rows = std::max(vertex_rows.end, face_rows.end);
     rows.more_rows = element_rows.back().end - rows.rows;
     rows.any_lines = true;
     rows.counted_where = "the head";
-    rows.read_row = [&](std::uint64_t row, RowWords& words, FacePiece& piece) {
+    rows.read_row = [&](std::uint64_t row, RowWords& words, FaceChunk& chunk) {
         if (vertex_rows.hold(row)) {
-            read_vertex(vertex, places, words, piece);
+            read_vertex(vertex, positions, words, chunk);
         } else if (face_rows.hold(row)) {
-            read_face(face, places, words, piece);
+            read_face(face, positions, words, chunk);
         } else {
             const auto other = std::upper_bound(element_rows.begin(), element_rows.end(), row,
                                                 [](auto value, const Rows& one) { return value < one.end; });
@@ -153,10 +154,10 @@ MeshFile read_ply(const ByteSource& source, const MeshReadOptions& options, cons
     Remarks remarks(source.name, options.strict);
     ReadLimits limits(source, options);
     const PlyHeader header = read_ply_header(source, remarks);
-    const PlyPlaces places = find_places(header, source.name);
+    const PlyPositions positions = find_positions(header, source.name);
     MeshFile file = header.form == PlyForm::ascii
-                        ? read_ascii(source, header, places, remarks, limits, execution)
-                        : read_ply_binary(source, header, places, remarks, limits, execution);
+                        ? read_ascii(source, header, positions, remarks, limits, execution)
+                        : read_ply_binary(source, header, positions, remarks, limits, execution);
     file.warnings = remarks.take();
     return file;
 }

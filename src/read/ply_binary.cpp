@@ -90,7 +90,7 @@ std::uint64_t whole_number_at(const std::byte* at, PlyType type) {
 }
 
 std::uint32_t as_vertex(std::uint64_t number) {
-    return static_cast<std::uint32_t>(std::min<std::uint64_t>(number, FacePiece::no_vertex));
+    return static_cast<std::uint32_t>(std::min<std::uint64_t>(number, FaceChunk::no_vertex));
 }
 
 /// Consecutive values of fixed size, or a list.
@@ -241,7 +241,7 @@ class FaceRows {
     }
 
     /// Returns the beginning of the face that the triangle is part of.
-    [[nodiscard]] const std::byte* place(std::uint64_t triangle) const {
+    [[nodiscard]] const std::byte* position(std::uint64_t triangle) const {
         auto run = std::upper_bound(runs_.begin(), runs_.end(), triangle,
                                     [](auto value, const Run& one) { return value < one.triangles; });
         --run;
@@ -271,21 +271,21 @@ class FaceRows {
         const auto around = rows_.bytes_around_list();
         if (!around)
             return false;
-        const auto [head, tail] = *around;
+        const auto [header, tail] = *around;
         const ByteSource& source = rows_.source();
         const auto left = static_cast<std::uint64_t>(source.bytes.data() + source.bytes.size() - first);
-        if (left < head + rows_.length_bytes())
+        if (left < header + rows_.length_bytes())
             return false;
-        corners_ = rows_.length(first + head);
+        corners_ = rows_.length(first + header);
         constexpr std::uint64_t many = 1'000;
         if (corners_ < 3 || corners_ > many)
             return false;
-        row_bytes_ = head + rows_.length_bytes() + corners_ * rows_.item_bytes() + tail;
+        row_bytes_ = header + rows_.length_bytes() + corners_ * rows_.item_bytes() + tail;
         const std::uint64_t rows = rows_.element().rows;
         if (rows > left / row_bytes_)
             return false;
         std::atomic<bool> even{true};
-        const std::byte* const first_length = first + head;
+        const std::byte* const first_length = first + header;
         executor_.for_chunks(rows, chunk_rows, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
             const std::byte* at = first_length + begin * row_bytes_;
             for (std::uint64_t i = begin; i < end && even.load(std::memory_order_relaxed);
@@ -296,7 +296,7 @@ class FaceRows {
         if (!even)
             return false;
         even_ = true;
-        index_offset_ = head + rows_.length_bytes();
+        index_offset_ = header + rows_.length_bytes();
         for (std::uint64_t row = 0;; row = std::min(row + chunk_rows, rows)) {
             runs_.push_back(
                 {first + row * row_bytes_, row, row * (corners_ - 2), corners_ > 3 ? row : std::uint64_t{0}});
@@ -391,28 +391,28 @@ const std::byte* for_each_in_strips(const CornerRows<swapped>& rows, const std::
 template <bool swapped>
 class BinaryReader {
   public:
-    BinaryReader(const ByteSource& source, const PlyHeader& header, const PlyPlaces& places, Remarks& remarks,
-                 ReadLimits& limits, const Execution& execution)
-        : source_(source), header_(header), places_(places), remarks_(remarks), limits_(limits),
+    BinaryReader(const ByteSource& source, const PlyHeader& header, const PlyPositions& positions,
+                 Remarks& remarks, ReadLimits& limits, const Execution& execution)
+        : source_(source), header_(header), positions_(positions), remarks_(remarks), limits_(limits),
           executor_(execution), progress_(execution, Stage::read, source.bytes.size()),
           begin_(source.bytes.data()), at_(begin_ + header.end), end_(begin_ + source.bytes.size()),
-          rows_(source, header.elements[places.face], places.corners) {}
+          rows_(source, header.elements[positions.face], positions.corners) {}
 
     MeshFile run() {
-        const std::size_t last = std::max(places_.vertex, places_.face);
+        const std::size_t last = std::max(positions_.vertex, positions_.face);
         for (std::size_t i = 0; i <= last; ++i) {
             const PlyElement& element = header_.elements[i];
-            if (i == places_.vertex)
+            if (i == positions_.vertex)
                 read_vertices(element);
-            else if (i == places_.face)
-                places_.strips ? read_strips() : read_faces();
+            else if (i == positions_.face)
+                positions_.strips ? read_strips() : read_faces();
             else
                 skip(element);
         }
         MeshFile file = make_mesh_file(
-            std::move(faces_), source_.name, 0, [this](std::uint64_t triangle) { return place(triangle); },
+            std::move(faces_), source_.name, 0, [this](std::uint64_t triangle) { return position(triangle); },
             remarks_, executor_);
-        tell_rest(last + 1);
+        report_rest(last + 1);
         progress_.finish();
         return file;
     }
@@ -420,7 +420,7 @@ class BinaryReader {
   private:
     /// Reports bytes after the rows of all elements: the counts in the file are wrong, and these bytes are
     /// lost. The elements from `first` on are not needed, so they may be cut off.
-    void tell_rest(std::size_t first) {
+    void report_rest(std::size_t first) {
         for (std::size_t i = first; i < header_.elements.size(); ++i) {
             const PlyElement& element = header_.elements[i];
             if (const auto row_bytes = element.row_bytes()) {
@@ -443,7 +443,7 @@ class BinaryReader {
             return is_blank(static_cast<char>(byte));
         };
         if (!std::all_of(at_, end_, is_white))
-            remarks_.add(fmt::format("byte {}: left out {} bytes from here on, beyond the rows of the head",
+            remarks_.add(fmt::format("byte {}: left out {} bytes from here on, beyond the rows of the header",
                                      at_ - begin_, left()));
     }
 
@@ -490,8 +490,8 @@ class BinaryReader {
         std::array<std::size_t, 3> offsets{};
         std::array<PlyType, 3> types{};
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            types[axis] = element.properties[places_.coordinates[axis]].type;
-            for (std::size_t i = 0; i < places_.coordinates[axis]; ++i)
+            types[axis] = element.properties[positions_.coordinates[axis]].type;
+            for (std::size_t i = 0; i < positions_.coordinates[axis]; ++i)
                 offsets[axis] += ply_bytes(element.properties[i].type);
         }
         std::vector<Point3>& vertices = faces_.mesh.vertices;
@@ -520,14 +520,14 @@ class BinaryReader {
         const std::vector<Step> row_steps = steps_of(element, 0, element.properties.size());
         std::array<std::vector<Step>, 3> steps;
         for (std::size_t axis = 0; axis < 3; ++axis)
-            steps[axis] = steps_of(element, 0, places_.coordinates[axis]);
+            steps[axis] = steps_of(element, 0, positions_.coordinates[axis]);
         for (std::uint64_t row = 0; row < element.rows; ++row) {
             const std::byte* const begin = at_;
             step_over(element, row_steps, row);
             std::array<double, 3> p{};
             for (std::size_t axis = 0; axis < 3; ++axis)
                 p[axis] = number_at<double, swapped>(walk<swapped>(steps[axis], begin, at_),
-                                                     element.properties[places_.coordinates[axis]].type) +
+                                                     element.properties[positions_.coordinates[axis]].type) +
                           0.0;
             limits_.add_bytes(sizeof(Point3));
             faces_.mesh.vertices.push_back({p[0], p[1], p[2]});
@@ -547,7 +547,7 @@ class BinaryReader {
         faces.put(faces_, progress_);
         at_ = faces.end();
         if (faces.thin().count != 0)
-            tell_thin_faces(remarks_, fmt::format("byte {}", faces.thin().first), faces.thin().count);
+            report_thin_faces(remarks_, fmt::format("byte {}", faces.thin().first), faces.thin().count);
     }
 
     void read_strips() {
@@ -563,11 +563,11 @@ class BinaryReader {
         progress_.add(static_cast<std::uint64_t>(at_ - strips_));
     }
 
-    [[nodiscard]] std::string place(std::uint64_t triangle) const {
+    [[nodiscard]] std::string position(std::uint64_t triangle) const {
         const std::byte* found = strips_;
         std::uint64_t count = 0;
         if (face_rows_)
-            found = face_rows_->place(triangle);
+            found = face_rows_->position(triangle);
         else
             for_each_in_strips(rows_, strips_, [&](const Corners&, const std::byte* row) {
                 if (count++ == triangle)
@@ -578,7 +578,7 @@ class BinaryReader {
 
     const ByteSource& source_;
     const PlyHeader& header_;
-    const PlyPlaces& places_;
+    const PlyPositions& positions_;
     Remarks& remarks_;
     ReadLimits& limits_;
     Executor executor_;
@@ -595,11 +595,11 @@ class BinaryReader {
 
 } // namespace
 
-MeshFile read_ply_binary(const ByteSource& source, const PlyHeader& header, const PlyPlaces& places,
+MeshFile read_ply_binary(const ByteSource& source, const PlyHeader& header, const PlyPositions& positions,
                          Remarks& remarks, ReadLimits& limits, const Execution& execution) {
     if (header.form == PlyForm::big_endian)
-        return BinaryReader<true>(source, header, places, remarks, limits, execution).run();
-    return BinaryReader<false>(source, header, places, remarks, limits, execution).run();
+        return BinaryReader<true>(source, header, positions, remarks, limits, execution).run();
+    return BinaryReader<false>(source, header, positions, remarks, limits, execution).run();
 }
 
 } // namespace lamella

@@ -15,7 +15,7 @@
 namespace lamella {
 
 /// The rows to read: indices of elements and of their properties.
-struct PlyPlaces {
+struct PlyPositions {
     std::size_t vertex = 0;
     std::array<std::size_t, 3> coordinates{};
     std::size_t face = 0;
@@ -24,7 +24,7 @@ struct PlyPlaces {
 };
 
 [[nodiscard]] MeshFile read_ply_binary(const ByteSource& source, const PlyHeader& header,
-                                       const PlyPlaces& places, Remarks& remarks, ReadLimits& limits,
+                                       const PlyPositions& positions, Remarks& remarks, ReadLimits& limits,
                                        const Execution& execution);
 
 } // namespace lamella

@@ -2,8 +2,8 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
-#include "read/text_pieces.hpp"
+#include "container/text_position.hpp"
+#include "read/text_chunks.hpp"
 
 #include <fmt/format.h>
 
@@ -71,7 +71,7 @@ class HeaderReader {
             } else if (keyword == "property") {
                 read_property();
             } else if (!keyword.empty() && keyword != "comment" && keyword != "obj_info") {
-                remarks_.add(fmt::format("line {}: took '{}' in the head for a comment", line_number_,
+                remarks_.add(fmt::format("line {}: took '{}' in the header for a comment", line_number_,
                                          printable(line_, 40)));
             }
         }
@@ -86,7 +86,7 @@ class HeaderReader {
   private:
     [[noreturn]] void fail(std::string_view expected) const {
         throw Error(ErrorKind::input,
-                    fmt::format("{}: line {}: found '{}' in the head of a PLY file, expected {}",
+                    fmt::format("{}: line {}: found '{}' in the header of a PLY file, expected {}",
                                 source_.name, line_number_, printable(line_, 40), expected));
     }
 

@@ -47,34 +47,34 @@ class ReadLimits {
     ReadLimits(const ByteSource& source, const LayerReadOptions& options)
         : ReadLimits(source, 0, options.max_memory) {}
 
-    void add_triangles(std::uint64_t count, std::string_view place = {}) {
-        check_triangles(triangles_.fetch_add(count) + count, place);
+    void add_triangles(std::uint64_t count, std::string_view location = {}) {
+        check_triangles(triangles_.fetch_add(count) + count, location);
     }
     /// Checks a sum of triangles that are not counted one by one.
-    void check_triangles(std::uint64_t count, std::string_view place = {}) const {
+    void check_triangles(std::uint64_t count, std::string_view location = {}) const {
         if (count > max_triangles_ && max_triangles_ != 0)
             throw Error(ErrorKind::limit,
                         fmt::format("{}: holds more than the {} triangles of `max_triangles`{}", file_name_,
-                                    max_triangles_, up_to(place)));
+                                    max_triangles_, up_to(location)));
     }
-    void add_bytes(std::uint64_t count, std::string_view place = {}) {
-        add_bytes_at(count, [&] { return place; });
+    void add_bytes(std::uint64_t count, std::string_view location = {}) {
+        add_bytes_at(count, [&] { return location; });
     }
     /// `place` is called only for the error.
-    template <class Place>
-    void add_bytes_at(std::uint64_t count, const Place& place) {
+    template <class Location>
+    void add_bytes_at(std::uint64_t count, const Location& location) {
         const std::uint64_t before = bytes_.fetch_add(count);
         if (before > max_memory_ || count > max_memory_ - before)
-            refuse_bytes(place());
+            refuse_bytes(location());
     }
     /// Makes room for `more` items and counts it before. The capacity grows as by push_back.
-    template <class T, class Place>
-    void make_room(std::vector<T>& items, std::uint64_t more, const Place& place) {
+    template <class T, class Location>
+    void make_room(std::vector<T>& items, std::uint64_t more, const Location& location) {
         const std::uint64_t room = items.capacity();
         if (room - items.size() >= more)
             return;
         const std::uint64_t wanted = std::max(items.size() + more, 2 * room);
-        add_bytes_at((wanted - room) * sizeof(T), place);
+        add_bytes_at((wanted - room) * sizeof(T), location);
         items.reserve(wanted);
     }
     /// Subtracts triangles and bytes that were counted and are not kept.
@@ -95,16 +95,16 @@ class ReadLimits {
         add_bytes(source.bytes_in_memory());
     }
 
-    [[noreturn]] void refuse_bytes(std::string_view place) const {
+    [[noreturn]] void refuse_bytes(std::string_view location) const {
         throw Error(ErrorKind::limit,
                     asked_ ? fmt::format("{}: takes more than the {} bytes of `max_memory`{}", file_name_,
-                                         max_memory_, up_to(place))
+                                         max_memory_, up_to(location))
                            : fmt::format("{}: takes more than {} bytes, three quarters of the memory there "
                                          "is{}; `max_memory` allows more",
-                                         file_name_, max_memory_, up_to(place)));
+                                         file_name_, max_memory_, up_to(location)));
     }
-    static std::string up_to(std::string_view place) {
-        return place.empty() ? std::string() : fmt::format(" (counted up to {})", place);
+    static std::string up_to(std::string_view location) {
+        return location.empty() ? std::string() : fmt::format(" (counted up to {})", location);
     }
 
     std::string file_name_;

@@ -22,9 +22,9 @@ struct Occurrences {
     std::uint64_t count = 0;
     std::size_t first = 0; ///< byte or line
 
-    void note(std::size_t place) {
+    void note(std::size_t location) {
         if (count++ == 0)
-            first = place;
+            first = location;
     }
     /// Adds the occurrences of a later part of the file.
     void add(const Occurrences& later) {
@@ -65,21 +65,21 @@ class Remarks {
 
 /// Warns that `count` of `stored` triangles (`count` is not 0) were skipped, the first at `place`. Throws
 /// Error{input} if no triangle is left.
-inline void tell_nonfinite(Remarks& remarks, std::string_view place, std::uint64_t count,
-                           std::uint64_t stored) {
+inline void report_nonfinite(Remarks& remarks, std::string_view location, std::uint64_t count,
+                             std::uint64_t stored) {
     if (count == stored)
         throw Error(ErrorKind::input,
                     fmt::format("{}: {}: holds no usable triangle: each of the {} has a corner that is NaN "
                                 "or infinite",
-                                remarks.file_name(), place, stored));
+                                remarks.file_name(), location, stored));
     remarks.add(fmt::format("{}: left out {} of {} triangles, which have a corner that is NaN or infinite "
                             "(this is the first)",
-                            place, count, stored));
+                            location, count, stored));
 }
 
 /// Warns that `count` faces (not 0) were skipped, the first at `place`.
-inline void tell_thin_faces(Remarks& remarks, std::string_view place, std::uint64_t count) {
-    remarks.add(fmt::format("{}: left out {} of fewer than three corners (this is the first)", place,
+inline void report_thin_faces(Remarks& remarks, std::string_view location, std::uint64_t count) {
+    remarks.add(fmt::format("{}: left out {} of fewer than three corners (this is the first)", location,
                             counted(count, "face")));
 }
 

@@ -4,7 +4,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/xml.hpp"
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
@@ -67,9 +67,9 @@ class SlcReader {
         read_layers(execution);
         if (raw_.empty())
             fail(at_, "no layer", "a slice file must have at least one");
-        unclosed_.say(file_.warnings);
-        gaps_.say(file_.warnings);
-        dropped_.say(file_.warnings);
+        unclosed_.append_to(file_.warnings);
+        gaps_.append_to(file_.warnings);
+        dropped_.append_to(file_.warnings);
         place_layers();
     }
 
@@ -157,7 +157,7 @@ class SlcReader {
             limits_.make_room(raw_, 1, at_byte(at));
             RawLayer& layer = raw_.emplace_back();
             layer.z = z;
-            layer.place = fmt::format("byte {}", at);
+            layer.location = fmt::format("byte {}", at);
             for (std::uint32_t i = 0; i < contours; ++i)
                 read_contour(layer);
             if (at_ - reported > (std::size_t{1} << 22)) {
@@ -171,7 +171,7 @@ class SlcReader {
 
     void read_contour(RawLayer& layer) {
         const std::size_t at = at_;
-        const auto place = at_byte(at);
+        const auto position = at_byte(at);
         const auto count = take<std::uint32_t>("a contour");
         const auto gaps = take<std::uint32_t>("a contour");
         constexpr std::size_t point_size = 2 * sizeof(float);
@@ -179,8 +179,8 @@ class SlcReader {
             fail(at, fmt::format("a contour of {} points", count),
                  fmt::format("{} bytes are left in the file, room for {}", left(), left() / point_size));
         if (gaps != 0)
-            gaps_.note(place);
-        limits_.make_room(layer.points, count, place);
+            gaps_.note(position);
+        limits_.make_room(layer.points, count, position);
         for (std::uint32_t i = 0; i < count; ++i) {
             std::array<float, 2> p{};
             std::memcpy(p.data(), bytes_.data() + at_, sizeof p);
@@ -192,8 +192,8 @@ class SlcReader {
         }
         const bool returns = layer.returns();
         const bool closed = returns || !open_;
-        if (layer.end_contour(closed, 0, limits_, place, dropped_) && closed && !returns)
-            unclosed_.note(place);
+        if (layer.end_contour(closed, 0, limits_, position, dropped_) && closed && !returns)
+            unclosed_.note(position);
     }
 
     /// Makes the layers. A layer extends to the next one, because the format allows a layer to be omitted if
@@ -234,8 +234,8 @@ class SlcReader {
     std::vector<RawLayer> raw_;
     std::optional<double> top_;
     UnclosedContours unclosed_;
-    Oddity gaps_{"contour has gaps, which were taken for lines",
-                 "contours have gaps, which were taken for lines"};
+    CountedWarning gaps_{"contour has gaps, which were taken for lines",
+                         "contours have gaps, which were taken for lines"};
     DroppedContours dropped_;
 };
 

@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/xml.hpp"
 #include "core/counted.hpp"
 #include "core/executor.hpp"

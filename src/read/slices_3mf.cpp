@@ -4,7 +4,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/transform.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/xml.hpp"
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
@@ -99,15 +99,15 @@ class SliceModelReader {
     [[nodiscard]] const std::map<std::uint32_t, std::shared_ptr<const Stack>>& stacks() const {
         return stacks_;
     }
-    void say(std::vector<std::string>& warnings) const {
-        open_.say(warnings);
-        returning_.say(warnings);
-        dropped_.say(warnings);
+    void append_to(std::vector<std::string>& warnings) const {
+        open_.append_to(warnings);
+        returning_.append_to(warnings);
+        dropped_.append_to(warnings);
     }
 
   private:
     /// Returns the position of the parser, for errors.
-    auto place() const { return at_line(line_); }
+    auto location() const { return at_line(line_); }
 
     void start_core_element(const ThreeMfElement& element) {
         const std::string_view name = element.name.local;
@@ -116,7 +116,7 @@ class SliceModelReader {
             static_cast<void>(element.required_extensions());
         } else if (name == "object") {
             const std::string_view label = element["name"].text;
-            limits_.add_bytes_at(node_bytes + sizeof(Object) + label.size(), place());
+            limits_.add_bytes_at(node_bytes + sizeof(Object) + label.size(), location());
             const std::uint32_t id = element["id"].index();
             const auto [object, is_new] =
                 objects_.try_emplace(id, Object{std::string(label), nullptr, {}, element.object_type()});
@@ -126,10 +126,10 @@ class SliceModelReader {
             if (const ThreeMfValue stack = element[XmlName{three_mf::slices, "slicestackid"}]; stack.is_there)
                 object_->stack = stack_of(stack);
         } else if (name == "component" && object_ != nullptr) {
-            limits_.make_room(object_->components, 1, place());
+            limits_.make_room(object_->components, 1, location());
             object_->components.push_back(element.use(unit_));
         } else if (name == "item") {
-            limits_.make_room(items_, 1, place());
+            limits_.make_room(items_, 1, location());
             items_.push_back(element.use(unit_));
         }
     }
@@ -138,7 +138,7 @@ class SliceModelReader {
         const std::string_view name = element.name.local;
         if (name == "slicestack") {
             const std::uint32_t id = element["id"].index();
-            limits_.add_bytes_at(node_bytes + sizeof(Stack), place());
+            limits_.add_bytes_at(node_bytes + sizeof(Stack), location());
             stack_ = std::make_shared<Stack>();
             if (!stacks_.try_emplace(id, stack_).second)
                 element.fail(fmt::format("a second slice stack {}", id), "ids that differ");
@@ -150,11 +150,11 @@ class SliceModelReader {
             if (!(top > top_of_stack()))
                 element.fail(fmt::format("a slice with ztop = {}", top),
                              fmt::format("it to lie above z = {}", top_of_stack()));
-            limits_.make_room(stack_->slices, 1, place());
+            limits_.make_room(stack_->slices, 1, location());
             stack_->slices.emplace_back().top = top;
             vertices_.clear();
         } else if (name == "vertex" && in_slice()) {
-            limits_.make_room(vertices_, 1, place());
+            limits_.make_room(vertices_, 1, location());
             vertices_.push_back({element["x"].number(), element["y"].number()});
         } else if (name == "polygon" && in_slice()) {
             start_ = element["startv"].index();
@@ -176,7 +176,7 @@ class SliceModelReader {
             element.fail(fmt::format("vertex {}", index),
                          fmt::format("less than {}, the number of vertices of the slice", vertices_.size()));
         last_ = index;
-        limits_.make_room(raw().points, 1, place());
+        limits_.make_room(raw().points, 1, location());
         raw().points.push_back(vertices_[index]);
     }
 
@@ -186,10 +186,10 @@ class SliceModelReader {
         const bool returning_chain = last_ != start_ && raw().is_returning_chain();
         const bool closed = last_ == start_ || returning_chain;
         if (returning_chain)
-            returning_.note(place());
+            returning_.note(location());
         else if (!closed)
-            open_.note(place());
-        raw().end_contour(closed, 0, limits_, place(), dropped_);
+            open_.note(location());
+        raw().end_contour(closed, 0, limits_, location(), dropped_);
         start_.reset();
     }
 
@@ -200,8 +200,8 @@ class SliceModelReader {
             if (!(slice.top > top_of_stack()))
                 element.fail(fmt::format("a reference to slices that end at z = {}", slice.top),
                              fmt::format("them to lie above z = {}", top_of_stack()));
-            limits_.make_room(stack_->slices, 1, place());
-            limits_.add_bytes_at(contour_bytes(slice.raw), place());
+            limits_.make_room(stack_->slices, 1, location());
+            limits_.add_bytes_at(contour_bytes(slice.raw), location());
             stack_->slices.push_back(slice);
         }
     }
@@ -225,7 +225,7 @@ class SliceModelReader {
     std::optional<std::uint32_t> start_; ///< first vertex of the polygon under construction
     std::uint32_t last_ = 0;
     Object* object_ = nullptr;
-    Oddity open_{"contour is open", "contours are open"};
+    CountedWarning open_{"contour is open", "contours are open"};
     ReturningChains returning_;
     DroppedContours dropped_;
 };
@@ -255,14 +255,14 @@ class PackageReader {
         // The build of a package that contains only meshes may use features that are not supported here.
         if (has_slices(model))
             for (const ThreeMfUse& item : model.reader->items())
-                place(model, item, {}, false, 0);
+                location(model, item, {}, false, 0);
         if (placed_.empty())
             throw NoLayers(
                 fmt::format("{}: found no slice stack in the build; a 3MF file of layers has one for each "
                             "object",
                             zip_.name()));
-        for (const Oddity* oddity : {&without_slices_, &no_solid_, &not_printed_})
-            oddity->say(file_.warnings);
+        for (const CountedWarning* warning : {&without_slices_, &no_solid_, &not_printed_})
+            warning->append_to(file_.warnings);
         make_layers();
     }
 
@@ -291,7 +291,7 @@ class PackageReader {
             source, [&](const ThreeMfElement& element) { model->start(element); },
             [&](XmlName name) { model->end(name); }, executor_);
         let_go(source);
-        model->say(file_.warnings);
+        model->append_to(file_.warnings);
         return model;
     }
 
@@ -343,7 +343,8 @@ class PackageReader {
         return found->second;
     }
 
-    void place(const Model& user, const ThreeMfUse& use, const Transform& outer, bool in_support, int depth) {
+    void location(const Model& user, const ThreeMfUse& use, const Transform& outer, bool in_support,
+                  int depth) {
         constexpr int deepest = 32;
         constexpr std::size_t most = std::size_t{1} << 20;
         if (!use.part.empty() && &user != &models_.at(root_))
@@ -380,7 +381,7 @@ class PackageReader {
             if (object->second.components.empty())
                 without_slices_.note(at_line(use.line));
             for (const ThreeMfUse& component : object->second.components)
-                place(model, component, placement, support, depth + 1);
+                location(model, component, placement, support, depth + 1);
             return;
         }
         limits_.make_room(placed_, 1, at_line(use.line));
@@ -399,7 +400,7 @@ class PackageReader {
         if (!planar || !finite(placement))
             throw NoLayers(
                 fmt::format("{}, line {}: found a transform that tilts slices or changes their heights; "
-                            "slices may only be moved, and turned, scaled and mirrored in their plane",
+                            "slices may only be moved, and rotated, scaled and mirrored in their plane",
                             zip_.name(), line));
         return {object.name, object.stack, placement, unit, placement.offset[2]};
     }
@@ -452,7 +453,7 @@ class PackageReader {
             file_.parts.push_back(
                 {.label = labels.of(placed_[k].label), .layers = {}, .support = placed_[k].support});
         }
-        labels.say(file_.warnings);
+        labels.append_to(file_.warnings);
         check_part_planes(file_, heights.size() - 1, std::max(points, zip_.unpacked()));
         std::uint64_t left = 64 * (points + heights.size() + (std::uint64_t{1} << 20));
         for (std::size_t k = 0; k < placed_.size(); ++k)
@@ -531,12 +532,12 @@ class PackageReader {
     std::map<std::string, std::unique_ptr<SliceModelReader>> parts_; ///< referenced parts
     std::vector<Placed> placed_;
     std::size_t uses_ = 0;
-    Oddity without_slices_{"object of the build has no slices; it was left out",
-                           "objects of the build have no slices; they were left out"};
-    Oddity no_solid_{"object is of type surface or other, which is no solid; it was left out",
-                     "objects are of type surface or other, which are no solids; they were left out"};
-    Oddity not_printed_{"item is marked in the build as not to be printed; it was left out",
-                        "items are marked in the build as not to be printed; they were left out"};
+    CountedWarning without_slices_{"object of the build has no slices; it was left out",
+                                   "objects of the build have no slices; they were left out"};
+    CountedWarning no_solid_{"object is of type surface or other, which is no solid; it was left out",
+                             "objects are of type surface or other, which are no solids; they were left out"};
+    CountedWarning not_printed_{"item is marked in the build as not to be printed; it was left out",
+                                "items are marked in the build as not to be printed; they were left out"};
 };
 
 } // namespace
@@ -550,7 +551,7 @@ LayerFile read_slices_3mf(const ZipReader& package, ReadLimits& limits, const Ex
                    .format = "3mf",
                    .units_mm = 1,
                    .rounding = text_rounding,
-                   .warnings = package.oddities()};
+                   .warnings = package.counted_warnings()};
     PackageReader(package, file, limits, execution).read();
     return file;
 }

@@ -1,10 +1,10 @@
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/stl_ascii.hpp"
 #include "read/stl_binary.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 #include "system/memory_size.hpp"
 
 #include <fmt/format.h>
@@ -34,8 +34,8 @@ bool looks_like_text(std::string_view text) {
 }
 
 bool has_stl_size(std::span<const std::byte> beginning, std::uint64_t size) {
-    return size >= stl_head_bytes &&
-           size == stl_head_bytes + std::uint64_t{stl_record_bytes} * stl_declared_count(beginning);
+    return size >= stl_header_bytes &&
+           size == stl_header_bytes + std::uint64_t{stl_record_bytes} * stl_declared_count(beginning);
 }
 
 /// Returns whether most corners can be those of a part. Most corners in data of another kind, such as
@@ -43,12 +43,12 @@ bool has_stl_size(std::span<const std::byte> beginning, std::uint64_t size) {
 bool has_likely_corners(std::span<const std::byte> bytes) {
     constexpr std::size_t enough = 1000;      // triangles
     constexpr std::size_t corners_begin = 12; // after the normal
-    static_assert(stl_head_bytes + enough * stl_record_bytes <= window_beginning);
-    const std::size_t count = std::min((bytes.size() - stl_head_bytes) / stl_record_bytes, enough);
+    static_assert(stl_header_bytes + enough * stl_record_bytes <= window_beginning);
+    const std::size_t count = std::min((bytes.size() - stl_header_bytes) / stl_record_bytes, enough);
     std::size_t likely = 0;
     for (std::size_t i = 0; i < count; ++i) {
         std::array<float, 9> corners{};
-        std::memcpy(corners.data(), bytes.data() + stl_head_bytes + i * stl_record_bytes + corners_begin,
+        std::memcpy(corners.data(), bytes.data() + stl_header_bytes + i * stl_record_bytes + corners_begin,
                     sizeof corners);
         likely += static_cast<std::size_t>(std::count_if(corners.begin(), corners.end(), [](float value) {
             const float size = std::abs(value);
@@ -75,7 +75,7 @@ bool is_likely(std::span<const std::byte> record) {
 bool is_shifted(const ByteSource& source) {
     constexpr std::size_t few = 5; // for files that lose or gain bytes repeatedly
     constexpr std::size_t enough = 1000;
-    const std::size_t stored = (source.size() - stl_head_bytes) / stl_record_bytes;
+    const std::size_t stored = (source.size() - stl_header_bytes) / stl_record_bytes;
     const std::uint32_t declared = stl_declared_count(source.bytes);
     const std::size_t records = declared == 0 ? stored : std::min<std::size_t>(stored, declared);
     const auto likely = [&](std::size_t count, const auto& offset_of) {
@@ -88,7 +88,7 @@ bool is_shifted(const ByteSource& source) {
         return found;
     };
     const auto record = [&](std::size_t i) {
-        return stl_head_bytes + i * stl_record_bytes;
+        return stl_header_bytes + i * stl_record_bytes;
     };
     const std::size_t ends = std::min(records, few);
     const std::size_t sample = std::min(records, enough);
@@ -157,11 +157,11 @@ bool is_binary(const ByteSource& source) {
                          "ASCII STL file, or the beginning of another mesh format",
                          line_at(text, text.size() - begin.size()), printable(line, 40)));
     }
-    if (size < stl_head_bytes)
+    if (size < stl_header_bytes)
         fail(fmt::format(
             "is not an STL file, or cut off: found {} bytes, expected at least {} (binary) or the "
             "word 'solid' (ASCII)",
-            size, stl_head_bytes));
+            size, stl_header_bytes));
     if (const std::string_view damage = text_mode_damage(source); !damage.empty())
         fail(fmt::format(
             "is a binary STL file that was damaged, as by a transfer or a checkout in text mode: {}; "
@@ -181,7 +181,7 @@ bool is_likely_stl_binary(std::span<const std::byte> beginning, std::uint64_t si
     if (has_stl_size(beginning, size))
         return true;
     const std::string_view text(reinterpret_cast<const char*>(beginning.data()), beginning.size());
-    return size >= stl_head_bytes && !looks_like_text(text) && has_likely_corners(beginning);
+    return size >= stl_header_bytes && !looks_like_text(text) && has_likely_corners(beginning);
 }
 
 bool is_stl(const ByteSource& source) {
@@ -206,7 +206,7 @@ MeshFile stream_stl(const ByteSource& source, const TriangleSink& sink, const Me
         return stream_stl_binary(source, sink, options, execution, share);
     if (share)
         throw Error(ErrorKind::usage,
-                    fmt::format("{}: is an ASCII STL file, which can be read as a whole only; a share of "
+                    fmt::format("{}: is an ASCII STL file, which can be read as a whole only; a part of "
                                 "its triangles can be read of a binary one",
                                 source.name));
     return stream_stl_ascii(whole(source, execution, memory_of_file(options.max_memory)), sink, options,

@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "core/let_go.hpp"
@@ -11,7 +11,7 @@
 #include "read/coordinate_text.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
-#include "read/text_pieces.hpp"
+#include "read/text_chunks.hpp"
 
 #include <fmt/format.h>
 
@@ -102,7 +102,7 @@ struct CutOff {};
 
 /// A chunk of facets, and of solids that begin and end between them. `before` is whether the chunk begins in
 /// a solid.
-struct FacetPiece : TextPiece {
+struct FacetChunk : TextChunk {
     std::vector<Triangle3f> triangles;
     std::uint64_t stored = 0; ///< number of facets, including those with a corner that is not finite
     Occurrences nonfinite;
@@ -118,31 +118,31 @@ struct FacetPiece : TextPiece {
 class FacetParser {
   public:
     /// Stops before a facet that would exceed `most`.
-    FacetParser(std::string_view text, FacetPiece& piece, std::uint64_t most)
-        : words_(text, piece.begin), piece_(piece), most_(most), in_solid_(piece.before != 0) {}
+    FacetParser(std::string_view text, FacetChunk& chunk, std::uint64_t most)
+        : words_(text, chunk.begin), chunk_(chunk), most_(most), in_solid_(chunk.before != 0) {}
 
     void run() {
         try {
             while (next()) {
             }
         } catch (const CutOff&) {
-            piece_.cut_off.note(facet_);
+            chunk_.cut_off.note(facet_);
             words_.move_to(words_.text_end());
         } catch (TextFault& fault) {
-            piece_.fault = std::move(fault);
+            chunk_.fault = std::move(fault);
         }
-        piece_.end = words_.offset();
-        piece_.after = in_solid_ ? 1 : 0;
+        chunk_.end = words_.offset();
+        chunk_.after = in_solid_ ? 1 : 0;
     }
 
   private:
     /// Takes one facet, or the beginning or the end of a solid. Returns false if the chunk is done.
     bool next() {
         to_next_word(words_);
-        if (words_.at_end() || words_.offset() >= piece_.limit)
+        if (words_.at_end() || words_.offset() >= chunk_.limit)
             return false;
         const std::size_t here = words_.offset();
-        if (piece_.stored == most_ && matches(words_.peek(), "facet"))
+        if (chunk_.stored == most_ && matches(words_.peek(), "facet"))
             return false;
         if (words_.take("facet")) {
             facet_ = here;
@@ -153,7 +153,7 @@ class FacetParser {
             take_name(words_);
         } else if (words_.take("solid")) {
             if (in_solid_)
-                piece_.unended.note(here);
+                chunk_.unended.note(here);
             in_solid_ = true;
             take_name(words_);
         } else {
@@ -175,7 +175,7 @@ class FacetParser {
         for (Words rest = words_; !rest.at_end(); rest.skip_word(), rest.skip_blanks())
             if (facet_begins(rest))
                 throw TextFault{here, "'solid' or the end of the file"};
-        piece_.garbage.note(here);
+        chunk_.garbage.note(here);
         words_.move_to(words_.text_end());
         return false;
     }
@@ -205,11 +205,11 @@ class FacetParser {
                 false};
         expect_end("loop", "endloop");
         expect_end("facet", "endfacet");
-        ++piece_.stored;
+        ++chunk_.stored;
         if (finite(triangle)) {
-            piece_.triangles.push_back(triangle);
+            chunk_.triangles.push_back(triangle);
         } else {
-            piece_.nonfinite.note(facet_);
+            chunk_.nonfinite.note(facet_);
         }
     }
 
@@ -230,7 +230,7 @@ class FacetParser {
             words_.skip_word();
         }
         if (odd)
-            piece_.odd_normals.note(facet_);
+            chunk_.odd_normals.note(facet_);
     }
 
     /// Takes "endloop" or "end loop", and skips other words on its line.
@@ -249,7 +249,7 @@ class FacetParser {
         const std::size_t here = words_.offset();
         if (!take_two_words(words_, of))
             return false;
-        piece_.two_words.note(here);
+        chunk_.two_words.note(here);
         return true;
     }
 
@@ -265,7 +265,7 @@ class FacetParser {
         };
         if (!is_extra())
             return;
-        piece_.extra_words.note(words_.offset());
+        chunk_.extra_words.note(words_.offset());
         do {
             words_.skip_word();
         } while (is_extra());
@@ -324,7 +324,7 @@ class FacetParser {
     }
 
     Words words_;
-    FacetPiece& piece_;
+    FacetChunk& chunk_;
     std::uint64_t most_;
     bool in_solid_;
     std::size_t facet_ = nowhere;
@@ -347,60 +347,60 @@ std::size_t find_cut(std::string_view text, std::size_t from, std::size_t limit)
     return nowhere;
 }
 
-PieceFormat<FacetPiece> format_of(std::string_view text) {
-    PieceFormat<FacetPiece> format;
-    format.parse = [text](FacetPiece& piece, std::uint64_t most) {
-        FacetParser(text, piece, most).run();
+ChunkFormat<FacetChunk> format_of(std::string_view text) {
+    ChunkFormat<FacetChunk> format;
+    format.parse = [text](FacetChunk& chunk, std::uint64_t most) {
+        FacetParser(text, chunk, most).run();
     };
     format.find_cut = [text](std::size_t from, std::size_t limit) {
         return find_cut(text, from, limit);
     };
-    format.guess = [](std::vector<FacetPiece>& pieces) {
-        for (std::size_t i = 1; i < pieces.size(); ++i)
-            pieces[i].before = 1;
+    format.guess = [](std::vector<FacetChunk>& chunks) {
+        for (std::size_t i = 1; i < chunks.size(); ++i)
+            chunks[i].before = 1;
     };
     return format;
 }
 
-TriangleSoup join(std::vector<FacetPiece>& pieces, Executor& executor) {
-    std::vector<std::size_t> first(pieces.size());
+TriangleSoup join(std::vector<FacetChunk>& chunks, Executor& executor) {
+    std::vector<std::size_t> first(chunks.size());
     std::size_t count = 0;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
         first[i] = count;
-        count += pieces[i].triangles.size();
+        count += chunks[i].triangles.size();
     }
     const auto memory = std::make_shared<PageArray<Triangle3f>>(count);
-    executor.for_chunks(pieces.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        std::copy(pieces[i].triangles.begin(), pieces[i].triangles.end(), memory->data() + first[i]);
-        let_go(pieces[i].triangles);
+    executor.for_chunks(chunks.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        std::copy(chunks[i].triangles.begin(), chunks[i].triangles.end(), memory->data() + first[i]);
+        let_go(chunks[i].triangles);
     });
     return {TriangleSoup::KnownFinite{}, memory, reinterpret_cast<const std::byte*>(memory->data()),
             sizeof(Triangle3f), count};
 }
 
 /// Adds up the counts of the chunks, which come in order.
-void add(FacetPiece& sum, const FacetPiece& piece) {
-    sum.stored += piece.stored;
-    sum.nonfinite.add(piece.nonfinite);
-    sum.odd_normals.add(piece.odd_normals);
-    sum.two_words.add(piece.two_words);
-    sum.extra_words.add(piece.extra_words);
-    sum.unended.add(piece.unended);
-    sum.cut_off.add(piece.cut_off);
-    sum.garbage.add(piece.garbage);
-    sum.after = piece.after;
-    sum.fault = piece.fault;
+void add(FacetChunk& sum, const FacetChunk& chunk) {
+    sum.stored += chunk.stored;
+    sum.nonfinite.add(chunk.nonfinite);
+    sum.odd_normals.add(chunk.odd_normals);
+    sum.two_words.add(chunk.two_words);
+    sum.extra_words.add(chunk.extra_words);
+    sum.unended.add(chunk.unended);
+    sum.cut_off.add(chunk.cut_off);
+    sum.garbage.add(chunk.garbage);
+    sum.after = chunk.after;
+    sum.fault = chunk.fault;
 }
 
-void count_triangles(const PieceParser<FacetPiece>& parser, const FacetPiece& piece, ReadLimits& limits) {
+void count_triangles(const ChunkParser<FacetChunk>& parser, const FacetChunk& chunk, ReadLimits& limits) {
     const std::uint64_t left = limits.triangles_left();
-    limits.add_triangles(piece.stored, piece.stored <= left
+    limits.add_triangles(chunk.stored, chunk.stored <= left
                                            ? std::string()
-                                           : fmt::format("line {}", parser.line_of_triangle(piece, left)));
+                                           : fmt::format("line {}", parser.line_of_triangle(chunk, left)));
 }
 
 /// Adds the warnings about the text as a whole.
-MeshFile describe(const ByteSource& source, const FacetPiece& sum, const MeshReadOptions& options) {
+MeshFile describe(const ByteSource& source, const FacetChunk& sum, const MeshReadOptions& options) {
     const std::string_view text = source.text();
     const auto line = [&](std::size_t offset) {
         return line_of(source, offset);
@@ -419,8 +419,8 @@ MeshFile describe(const ByteSource& source, const FacetPiece& sum, const MeshRea
 
     Remarks remarks(source.name, options.strict);
     if (sum.nonfinite.count != 0)
-        tell_nonfinite(remarks, fmt::format("line {}", line(sum.nonfinite.first)), sum.nonfinite.count,
-                       sum.stored);
+        report_nonfinite(remarks, fmt::format("line {}", line(sum.nonfinite.first)), sum.nonfinite.count,
+                         sum.stored);
     if (sum.odd_normals.count != 0)
         remarks.add(fmt::format("line {}: {} other words or more than three numbers, which were passed over "
                                 "(this is the first); normals are not needed",
@@ -494,17 +494,17 @@ MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options
     ReadLimits limits(source, options);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, source.bytes.size());
-    PieceParser<FacetPiece> parser(source, after_byte_order_mark(source.text()), format_of(source.text()),
+    ChunkParser<FacetChunk> parser(source, after_byte_order_mark(source.text()), format_of(source.text()),
                                    executor, progress);
-    FacetPiece sum;
-    std::vector<FacetPiece> pieces = parser.rest([&](const FacetPiece& piece) {
-        count_triangles(parser, piece, limits);
-        limits.add_bytes_at(piece.triangles.size() * sizeof(Triangle3f), at_byte(piece.end));
-        add(sum, piece);
+    FacetChunk sum;
+    std::vector<FacetChunk> chunks = parser.rest([&](const FacetChunk& chunk) {
+        count_triangles(parser, chunk, limits);
+        limits.add_bytes_at(chunk.triangles.size() * sizeof(Triangle3f), at_byte(chunk.end));
+        add(sum, chunk);
     });
     progress.finish();
     MeshFile file = describe(source, sum, options);
-    file.objects.front().mesh = Mesh(join(pieces, executor));
+    file.objects.front().mesh = Mesh(join(chunks, executor));
     return file;
 }
 
@@ -513,21 +513,21 @@ MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink, co
     ReadLimits limits(source, options);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, source.bytes.size());
-    PieceParser<FacetPiece> parser(source, after_byte_order_mark(source.text()), format_of(source.text()),
+    ChunkParser<FacetChunk> parser(source, after_byte_order_mark(source.text()), format_of(source.text()),
                                    executor, progress);
-    FacetPiece sum;
+    FacetChunk sum;
     std::uint64_t batches = 0;
     while (!parser.done()) {
-        std::vector<FacetPiece> pieces = parser.next();
-        for (const FacetPiece& piece : pieces) {
-            add(sum, piece);
-            count_triangles(parser, piece, limits);
+        std::vector<FacetChunk> chunks = parser.next();
+        for (const FacetChunk& chunk : chunks) {
+            add(sum, chunk);
+            count_triangles(parser, chunk, limits);
         }
-        executor.for_chunks(pieces.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-            if (!pieces[i].triangles.empty())
-                sink(TriangleSoup(std::move(pieces[i].triangles)), batches + i);
+        executor.for_chunks(chunks.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+            if (!chunks[i].triangles.empty())
+                sink(TriangleSoup(std::move(chunks[i].triangles)), batches + i);
         });
-        batches += pieces.size();
+        batches += chunks.size();
     }
     progress.finish();
     return describe(source, sum, options);

@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "mesh/folds.hpp"
@@ -32,14 +32,14 @@ namespace {
 constexpr std::size_t normal_bytes = 12;
 
 /// Offset of the corners of the first triangle in a file.
-constexpr std::size_t corners_at = stl_head_bytes + normal_bytes;
+constexpr std::size_t corners_at = stl_header_bytes + normal_bytes;
 
 /// About a megabyte: small enough to distribute to threads, large enough that overhead is negligible.
 constexpr std::uint64_t chunk_triangles = 20'000;
 
 /// Triangles of a chunk of a stream: as many as in a chunk of a fold, so that sums over chunks of the stream
 /// have the same bits as sums over the whole. pipeline/feed uses the chunk's number to find it again.
-constexpr std::uint64_t batch_triangles = fold_piece;
+constexpr std::uint64_t batch_triangles = fold_chunk;
 
 // A float is NaN or infinite when all bits of its exponent are set.
 constexpr std::uint32_t exponent_bits = 0x7F800000;
@@ -126,11 +126,11 @@ Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOp
     found.per_chunk.resize((n + chunk_triangles - 1) / chunk_triangles);
     std::vector<Box3> boxes(executor.workers());
     executor.for_chunks(n, chunk_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
-        const std::size_t place = begin * stl_record_bytes;
+        const std::size_t location = begin * stl_record_bytes;
         if (memory)
-            copy_out(source, corners_at + place,
-                     memory->span().subspan(place, std::min(end * stl_record_bytes, size) - place));
-        const Survey surveyed = survey(corners + place, end - begin);
+            copy_out(source, corners_at + location,
+                     memory->span().subspan(location, std::min(end * stl_record_bytes, size) - location));
+        const Survey surveyed = survey(corners + location, end - begin);
         boxes[worker].add(surveyed.box);
         if (!surveyed.finite) {
             std::uint32_t count = 0;
@@ -194,10 +194,10 @@ std::uint32_t stl_declared_count(std::span<const std::byte> bytes) {
 }
 
 StlExtent stl_extent(std::uint64_t file_bytes, std::uint32_t declared) {
-    const std::uint64_t stored = (file_bytes - stl_head_bytes) / stl_record_bytes;
+    const std::uint64_t stored = (file_bytes - stl_header_bytes) / stl_record_bytes;
     const bool unknown = declared == 0 || declared == std::numeric_limits<std::uint32_t>::max();
     StlExtent extent{unknown ? stored : std::min<std::uint64_t>(declared, stored), {}};
-    const std::uint64_t end = stl_head_bytes + stl_record_bytes * extent.triangles;
+    const std::uint64_t end = stl_header_bytes + stl_record_bytes * extent.triangles;
     const std::uint64_t rest = file_bytes - end;
     if (unknown && stored != declared)
         extent.remark = fmt::format(
@@ -217,7 +217,7 @@ StlExtent stl_extent(std::uint64_t file_bytes, std::uint32_t declared) {
 namespace {
 
 /// Returns the number of triangles, from the header and the size of the file.
-std::uint64_t check_head(const ByteSource& source, const MeshReadOptions& options, Remarks& remarks) {
+std::uint64_t check_header(const ByteSource& source, const MeshReadOptions& options, Remarks& remarks) {
     const std::uint32_t declared = stl_declared_count(source.bytes);
     const auto [stored, remark] = stl_extent(source.size(), declared);
     if (stored == 0)
@@ -225,7 +225,7 @@ std::uint64_t check_head(const ByteSource& source, const MeshReadOptions& option
             ErrorKind::input,
             fmt::format("{}: holds no triangle: a binary STL file whose count is {} and that ends after "
                         "{} bytes (its first triangle would end at byte {})",
-                        source.name, declared, source.size(), stl_head_bytes + stl_record_bytes));
+                        source.name, declared, source.size(), stl_header_bytes + stl_record_bytes));
     ReadLimits(source, options).add_triangles(stored);
     if (!remark.empty())
         remarks.add(remark);
@@ -253,7 +253,7 @@ void judge_nonfinite(std::uint64_t count, std::uint64_t first, std::uint64_t sto
     if (count == 0)
         return;
     const std::string where = fmt::format("the first is triangle {} at byte {}", first + 1,
-                                          stl_head_bytes + stl_record_bytes * first);
+                                          stl_header_bytes + stl_record_bytes * first);
     if (count == stored)
         throw Error(ErrorKind::input,
                     fmt::format("{}: holds no usable triangle: each of the {} has a corner that is NaN or "
@@ -266,7 +266,7 @@ void judge_nonfinite(std::uint64_t count, std::uint64_t first, std::uint64_t sto
 MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& options,
                          const Execution& execution) {
     Remarks remarks(source.name, options.strict);
-    const std::uint64_t stored = check_head(source, options, remarks);
+    const std::uint64_t stored = check_header(source, options, remarks);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, source.size());
     const auto [owner, corners, nonfinite] =
@@ -287,7 +287,7 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
 MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink, const MeshReadOptions& options,
                            const Execution& execution, const std::optional<RecordRange>& share) {
     Remarks remarks(source.name, options.strict);
-    const std::uint64_t stored = check_head(source, options, remarks);
+    const std::uint64_t stored = check_header(source, options, remarks);
     const RecordRange records = share.value_or(RecordRange{0, stored});
     if (records.begin > records.end || records.end > stored)
         throw Error(ErrorKind::usage, fmt::format("{}: asked for triangles {} to {}, and there are {}",

@@ -18,10 +18,10 @@
 
 namespace lamella {
 
-inline constexpr std::size_t stl_head_bytes = 84;
+inline constexpr std::size_t stl_header_bytes = 84;
 inline constexpr std::size_t stl_record_bytes = 50;
 
-/// Returns the count field (bytes 80 to 83). The file must have at least stl_head_bytes.
+/// Returns the count field (bytes 80 to 83). The file must have at least stl_header_bytes.
 [[nodiscard]] std::uint32_t stl_declared_count(std::span<const std::byte> bytes);
 
 /// The triangles of a binary file; its size and its count field may disagree.
@@ -34,7 +34,7 @@ struct StlExtent {
 /// because programs that cannot seek back leave these values.
 [[nodiscard]] StlExtent stl_extent(std::uint64_t file_bytes, std::uint32_t declared);
 
-/// Reads a binary file of at least stl_head_bytes.
+/// Reads a binary file of at least stl_header_bytes.
 [[nodiscard]] MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& options,
                                        const Execution& execution);
 

@@ -1,6 +1,6 @@
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "read/assembly.hpp"
 #include "read/body_selection.hpp"
@@ -211,8 +211,8 @@ class ThreeMfReader {
           loader_(package_, remarks_, limits_, executor_, execution) {}
 
     MeshFile read() {
-        for (const std::string& oddity : package_.oddities())
-            remarks_.add(oddity);
+        for (const std::string& warning : package_.counted_warnings())
+            remarks_.add(warning);
         loader_.load();
         for (const PartLoader::Part& part : parts_)
             for (const std::string& remark : part.model.remarks)
@@ -247,8 +247,8 @@ class ThreeMfReader {
                 AssemblyNode node;
                 node.name = sources_.back()->name;
                 node.unit = scaling(unit, unit, unit);
-                node.place = place(parts_[i].model, sources_.back()->line,
-                                   fmt::format("object {}", sources_.back()->id));
+                node.location = location(parts_[i].model, sources_.back()->line,
+                                         fmt::format("object {}", sources_.back()->id));
                 nodes_.push_back(std::move(node));
             }
         const auto make_use = [&](std::size_t part, const ThreeMfUse& use) {
@@ -314,7 +314,7 @@ class ThreeMfReader {
             }
     }
 
-    static std::string place(const ThreeMfModel& model, std::size_t line, std::string_view what) {
+    static std::string location(const ThreeMfModel& model, std::size_t line, std::string_view what) {
         return fmt::format("part '{}', line {}: {}", printable(model.part, longest_file_name), line, what);
     }
 
@@ -416,7 +416,7 @@ class ThreeMfReader {
                     ErrorKind::input,
                     fmt::format("{}, {}: its mesh is of low resolution and only stands in for its slices; "
                                 "slices are layers already: view, convert or verify them as they are",
-                                package_.name(), nodes_[node].place));
+                                package_.name(), nodes_[node].location));
             if (source.mesh.triangles.empty()) {
                 ++empty;
                 continue;

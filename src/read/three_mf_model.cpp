@@ -2,7 +2,7 @@
 
 #include "read/three_mf_model.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/xml.hpp"
 #include "core/lower_case.hpp"
 #include "read/decimal_text.hpp"
@@ -106,7 +106,7 @@ class ResourceIds {
 };
 
 /// Element that contains the current one.
-enum class ModelPlace {
+enum class ModelElement {
     outside,
     model,
     title,
@@ -123,7 +123,7 @@ enum class ModelPlace {
     elsewhere ///< in an element that is skipped
 };
 
-class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
+class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
   public:
     ModelReader(const ByteSource& source, const std::string& part, bool is_root, bool skim,
                 ReadLimits& limits)
@@ -137,11 +137,11 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
     ThreeMfModel read(std::string_view text, const std::function<void(std::size_t)>& progress) {
         ThreeMfModel& model = document();
         XmlHandlers handlers;
-        handlers.text = [&](std::string_view piece) {
+        handlers.text = [&](std::string_view chunk) {
             if (in() == Where::title && model.title.size() < longest_model_title)
-                model.title += piece;
+                model.title += chunk;
             else if (in() == Where::setting && setting_value_.size() < longest_setting)
-                setting_value_ += piece;
+                setting_value_ += chunk;
         };
         handlers.declare = [this](std::string_view prefix, std::string_view space) {
             if (in() == Where::outside)
@@ -163,7 +163,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
     }
 
   private:
-    using Where = ModelPlace;
+    using Where = ModelElement;
     using Step = Where (ModelReader::*)(const ThreeMfElement&);
 
     static const auto& rules() {
@@ -237,7 +237,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
         return Where::elsewhere;
     }
 
-    template <ModelPlace what>
+    template <ModelElement what>
     Where is(const ThreeMfElement&) {
         return what;
     }
@@ -289,7 +289,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelPlace> {
     Where pass_over(const ThreeMfElement&) { return Where::elsewhere; }
 
     /// Refuses an element that must not occur twice.
-    template <ModelPlace what>
+    template <ModelElement what>
     Where once(const ThreeMfElement& element) {
         if (!seen_.insert(what).second)
             element.fail(fmt::format("a second <{}>", element.name.local), "one");

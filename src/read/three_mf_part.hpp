@@ -82,7 +82,7 @@ struct ThreeMfElement {
 
     /// Throws Error{input}: "x, part 'y', line 7: found `found`, expected `expected`".
     [[noreturn]] void fail(std::string_view found, std::string_view expected) const;
-    [[nodiscard]] auto place() const { return at_line(line); }
+    [[nodiscard]] auto location() const { return at_line(line); }
 };
 
 /// Returns the part that the package names as its model, or the usual one if it names none.

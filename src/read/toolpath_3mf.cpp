@@ -4,7 +4,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "container/toolpath_3mf_format.hpp"
 #include "container/xml.hpp"
 #include "core/executor.hpp"
@@ -88,7 +88,7 @@ class ToolpathModelReader {
             model_.unit_mm = element.unit_mm();
         } else if (name == "object") {
             const std::string_view label = element["name"].text;
-            limits_.add_bytes_at(node_bytes + label.size(), element.place());
+            limits_.add_bytes_at(node_bytes + label.size(), element.location());
             model_.objects[element["id"].index()] = label;
         } else if (name == "build") {
             for (const std::string_view space : {toolpath_3mf::space, toolpath_3mf::draft_space})
@@ -97,7 +97,7 @@ class ToolpathModelReader {
         } else if (name == "item") {
             const std::string uuid(element[XmlName{three_mf::production, "UUID"}].text);
             const auto object = model_.objects.find(element["objectid"].index());
-            limits_.add_bytes_at(2 * node_bytes + 2 * uuid.size(), element.place());
+            limits_.add_bytes_at(2 * node_bytes + 2 * uuid.size(), element.location());
             model_.items.try_emplace(uuid, model_.items.size(),
                                      object == model_.objects.end() ? std::string() : object->second);
         }
@@ -106,7 +106,7 @@ class ToolpathModelReader {
     void start_toolpath_element(const ThreeMfElement& element) {
         const std::string_view name = element.name.local;
         if (name == "toolpathresource") {
-            limits_.add_bytes_at(node_bytes + sizeof(Toolpath), element.place());
+            limits_.add_bytes_at(node_bytes + sizeof(Toolpath), element.location());
             toolpath_ = &model_.toolpaths[element["id"].index()];
             *toolpath_ = {};
             toolpath_->unit = element["unitfactor"].number();
@@ -125,7 +125,7 @@ class ToolpathModelReader {
         } else if (name == "toolpathlayers") {
             toolpath_->bottom = element["zbottom"].number_or(0);
         } else if (name == "toolpathlayer") {
-            limits_.make_room(toolpath_->layers, 1, element.place());
+            limits_.make_room(toolpath_->layers, 1, element.location());
             toolpath_->layers.push_back({static_cast<double>(element["ztop"].whole()),
                                          std::string(element["path"].text), element.line});
         }
@@ -171,7 +171,7 @@ class ToolpathModelReader {
                 exposure.region = known;
         if (set.speed_mm_s > 0 || profile.says_kind)
             profile.exposure = std::move(exposure);
-        limits_.add_bytes_at(node_bytes + sizeof profile + set.name.size(), element.place());
+        limits_.add_bytes_at(node_bytes + sizeof profile + set.name.size(), element.location());
         profile.number = toolpath_->profiles.size();
         if (!toolpath_->profiles.try_emplace(text("uuid"), std::move(profile)).second)
             element.fail(fmt::format("a second profile {}", printable(text("uuid"), 40)),
@@ -195,7 +195,8 @@ struct SegmentKind {
 class LayerReader {
   public:
     LayerReader(const std::string& document, const Model& model, const Toolpath& toolpath,
-                PartNumbers<SegmentKind>& kinds, Oddity& other_lasers, RawLayer& raw, ReadLimits& limits)
+                PartNumbers<SegmentKind>& kinds, CountedWarning& other_lasers, RawLayer& raw,
+                ReadLimits& limits)
         : document_(document), model_(model), toolpath_(toolpath), kinds_(kinds), other_lasers_(other_lasers),
           raw_(raw), limits_(limits), unit_mm_(toolpath.unit * model.unit_mm) {}
 
@@ -204,10 +205,10 @@ class LayerReader {
             return;
         const std::string_view name = element.name.local;
         if (name == "point" && in_contour_) {
-            limits_.make_room(raw_.points, 1, element.place());
+            limits_.make_room(raw_.points, 1, element.location());
             raw_.points.push_back(point(element, "x", "y"));
         } else if (name == "hatch" && in_hatches_) {
-            limits_.make_room(raw_.hatches, 2, element.place());
+            limits_.make_room(raw_.hatches, 2, element.location());
             raw_.hatches.push_back(point(element, "x1", "y1"));
             raw_.hatches.push_back(point(element, "x2", "y2"));
         } else if (name == "segment") {
@@ -223,7 +224,7 @@ class LayerReader {
         if (!is_toolpath(name.space) || name.local != "segment")
             return;
         const auto where = [this] {
-            return place();
+            return location();
         };
         if (in_contour_)
             raw_.end_contour(closed_, kind_, limits_, where, dropped);
@@ -234,14 +235,14 @@ class LayerReader {
 
   private:
     /// Returns the position of the segment.
-    [[nodiscard]] std::string place() const { return fmt::format("{}, line {}", document_, line_); }
+    [[nodiscard]] std::string location() const { return fmt::format("{}, line {}", document_, line_); }
 
     [[nodiscard]] Point2 point(const ThreeMfElement& element, std::string_view x, std::string_view y) const {
         return {element[x].whole() * unit_mm_ + 0.0, element[y].whole() * unit_mm_ + 0.0};
     }
 
     void add(std::map<std::int32_t, std::string>& to, const ThreeMfElement& element) {
-        limits_.add_bytes_at(node_bytes, element.place());
+        limits_.add_bytes_at(node_bytes, element.location());
         to[element["id"].whole()] = element["uuid"].text;
     }
 
@@ -267,17 +268,17 @@ class LayerReader {
                                                     : "a segment of a profile that the model does not have",
                          "one of the model");
         if (known->second.other_laser || is_other_laser(element))
-            other_lasers_.note([this] { return place(); });
+            other_lasers_.note([this] { return location(); });
         const bool says_kind = known->second.says_kind || !known->second.exposure;
         kind_ = kinds_.number_of({item->second.first, known->second.number, !says_kind && in_hatches_},
-                                 element.place());
+                                 element.location());
     }
 
     const std::string& document_;
     const Model& model_;
     const Toolpath& toolpath_;
     PartNumbers<SegmentKind>& kinds_;
-    Oddity& other_lasers_;
+    CountedWarning& other_lasers_;
     RawLayer& raw_;
     ReadLimits& limits_;
     double unit_mm_;
@@ -324,9 +325,9 @@ class ToolpathReader {
                 fmt::format("{}: found a toolpath without layers; there must be one at least", source.name));
         number_parts(toolpath, layers);
         make_layers(toolpath, layers);
-        say(names_, file_.warnings);
-        other_lasers_.say(file_.warnings);
-        dropped_.say(file_.warnings);
+        append_to(names_, file_.warnings);
+        other_lasers_.append_to(file_.warnings);
+        dropped_.append_to(file_.warnings);
     }
 
   private:
@@ -342,7 +343,7 @@ class ToolpathReader {
     void read_layer(const std::string& name, const Toolpath& toolpath, RawLayer& raw) {
         executor_.check_cancelled();
         const ByteSource source = unpack_part(package_, name);
-        raw.place = source.name;
+        raw.location = source.name;
         LayerReader reader(source.name, model_, toolpath, kinds_, other_lasers_, raw, limits_);
         parse_part(
             source, [&](const ThreeMfElement& element) { reader.start(element); },
@@ -367,7 +368,7 @@ class ToolpathReader {
         });
         if (file_.parts.empty())
             file_.parts.push_back({labels.empty() ? std::string() : read_labels.of(labels.front()), {}});
-        read_labels.say(file_.warnings);
+        read_labels.append_to(file_.warnings);
     }
 
     static LayerPart part_of(const SegmentKind& kind, const std::string& label,
@@ -399,8 +400,8 @@ class ToolpathReader {
     Model model_;
     PartNumbers<SegmentKind> kinds_;
     DistinctNames names_;
-    Oddity other_lasers_{"segment is for another laser than the first; which one was left out",
-                         "segments are for another laser than the first; which one was left out"};
+    CountedWarning other_lasers_{"segment is for another laser than the first; which one was left out",
+                                 "segments are for another laser than the first; which one was left out"};
     DroppedContours dropped_;
 };
 
@@ -415,7 +416,7 @@ bool is_toolpath_3mf(const ZipReader& package) {
 }
 
 LayerFile read_toolpath_3mf(const ZipReader& package, ReadLimits& limits, const Execution& execution) {
-    LayerFile file{.path = package.name(), .format = "3mf-toolpath", .warnings = package.oddities()};
+    LayerFile file{.path = package.name(), .format = "3mf-toolpath", .warnings = package.counted_warnings()};
     ToolpathReader(package, file, limits, execution).read();
     return file;
 }

@@ -44,13 +44,13 @@ class Follower {
 };
 
 /// Where on a ring the other one, which begins at p, can begin: the corner before that place.
-std::size_t nearest_edge(std::span<const Point2> ring, const Point2& p, Point2& place) {
+std::size_t nearest_edge(std::span<const Point2> ring, const Point2& p, Point2& position) {
     std::size_t nearest = 0;
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const Point2 there = nearest_on(ring[i], ring[i + 1 < ring.size() ? i + 1 : 0], p);
-        if (i == 0 || squared_distance(p, there) < squared_distance(p, place)) {
+        if (i == 0 || squared_distance(p, there) < squared_distance(p, position)) {
             nearest = i;
-            place = there;
+            position = there;
         }
     }
     return nearest;
@@ -69,12 +69,12 @@ bool run_alongside(std::span<const Point2> a, std::span<const Point2> b, double 
         return true;
     if (a.empty() || b.empty())
         return false;
-    Point2 place = b.front();
-    const std::size_t corner = place == a.front() ? 0 : nearest_edge(b, a.front(), place);
-    if (squared_distance(a.front(), place) > squared)
+    Point2 position = b.front();
+    const std::size_t corner = position == a.front() ? 0 : nearest_edge(b, a.front(), position);
+    if (squared_distance(a.front(), position) > squared)
         return false;
     Follower first(a, 0, a.front());
-    Follower second(b, corner, place);
+    Follower second(b, corner, position);
     // To the next corner of one of them, or of both: whichever leaves them nearest to each other.
     while (!first.over() || !second.over()) {
         const bool both = !first.over() && !second.over();

@@ -241,8 +241,8 @@ struct Hexagons {
     static double most_rows(const HatchRule& rule) noexcept {
         return std::floor(2 * farthest(rule) / (rule.cell * std::sqrt(3.0) / 2)) + 1;
     }
-    static Cell cell(std::int32_t row, std::int32_t place, unsigned turns) noexcept {
-        std::int32_t q = place;
+    static Cell cell(std::int32_t row, std::int32_t position, unsigned turns) noexcept {
+        std::int32_t q = position;
         std::int32_t r = row;
         for (unsigned k = 0; k < turns; ++k)
             q = -std::exchange(r, q + r);
@@ -414,8 +414,8 @@ bool may_leave_bare(const HatchArea& area, const std::vector<HatchLines>& lines,
 } // namespace
 
 std::vector<CosSin> line_angles(const HatchRule& rule, std::uint64_t layer) {
-    const double turned = std::fmod(rule.turn_degrees, 360) * static_cast<double>(layer);
-    const double degrees = std::fmod(rule.angle_degrees, 360) + std::fmod(turned, 360);
+    const double rotated = std::fmod(rule.turn_degrees, 360) * static_cast<double>(layer);
+    const double degrees = std::fmod(rule.angle_degrees, 360) + std::fmod(rotated, 360);
     switch (rule.pattern) {
     case HatchPattern::chessboard:
         return {cos_sin_degrees(degrees), cos_sin_degrees(degrees + 90)};

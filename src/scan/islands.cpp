@@ -38,7 +38,8 @@ void Islands::make_room_for_cells() {
                         budget_.layer(), most_cells));
     const std::size_t room = std::max<std::size_t>(64, 2 * cells_.capacity());
     constexpr std::uint64_t of_order = 16;
-    budget_.need(room, sizeof(Place) + node_bytes + of_order, "stripes or islands", "a larger `hatch.cell`");
+    budget_.need(room, sizeof(Position) + node_bytes + of_order, "stripes or islands",
+                 "a larger `hatch.cell`");
     cells_.reserve(room);
 }
 
@@ -72,11 +73,11 @@ PointArray Islands::points_in_rows() && {
     });
     std::size_t total = 0;
     for (const std::uint32_t number : order) {
-        Place& place = cells_[number];
-        const bool back = (place.cell.row & 1) != 0;
-        place.step = back ? -1 : 1;
-        place.next = static_cast<std::ptrdiff_t>(back ? total + place.points - 1 : total);
-        total += place.points;
+        Position& position = cells_[number];
+        const bool back = (position.cell.row & 1) != 0;
+        position.step = back ? -1 : 1;
+        position.next = static_cast<std::ptrdiff_t>(back ? total + position.points - 1 : total);
+        total += position.points;
     }
     assert(total == 2 * pieces_.size());
     return points();
@@ -111,32 +112,32 @@ PointArray Islands::points() {
             put(pieces_[i], *directions_[d].lines);
         }
     }
-    for (const Place& place : cells_)
-        end_line(place);
+    for (const Position& position : cells_)
+        end_line(position);
     return PointArray(std::move(points_));
 }
 
 void Islands::put(const Piece& piece, const HatchLines& lines) {
-    Place& place = cells_[piece.cell];
-    if (place.line != piece.line) {
-        end_line(place);
-        place.line = piece.line;
-        place.line_begin = place.next;
-        place.back = !place.back;
+    Position& position = cells_[piece.cell];
+    if (position.line != piece.line) {
+        end_line(position);
+        position.line = piece.line;
+        position.line_begin = position.next;
+        position.back = !position.back;
     }
     const double v = lines.v(piece.line);
     for (const double u : {piece.from, piece.to}) {
-        assert(place.next >= 0 && static_cast<std::size_t>(place.next) < points_.size());
-        points_[static_cast<std::size_t>(place.next)] = lines.frame().point(u, v);
-        place.next += place.step;
+        assert(position.next >= 0 && static_cast<std::size_t>(position.next) < points_.size());
+        points_[static_cast<std::size_t>(position.next)] = lines.frame().point(u, v);
+        position.next += position.step;
     }
 }
 
-void Islands::end_line(const Place& place) {
-    if (place.line == no_line || !place.back)
+void Islands::end_line(const Position& position) {
+    if (position.line == no_line || !position.back)
         return;
-    const auto [begin, end] = place.step > 0 ? std::pair(place.line_begin, place.next)
-                                             : std::pair(place.next + 1, place.line_begin + 1);
+    const auto [begin, end] = position.step > 0 ? std::pair(position.line_begin, position.next)
+                                                : std::pair(position.next + 1, position.line_begin + 1);
     std::reverse(points_.begin() + begin, points_.begin() + end);
 }
 

@@ -53,7 +53,7 @@ class Islands {
   private:
     static constexpr auto no_line = static_cast<std::uint32_t>(-1);
 
-    struct Place {
+    struct Position {
         Cell cell;
         std::uint32_t after = 0;      ///< the cell that was looked for after it, the last time
         std::size_t points = 0;       ///< in it
@@ -77,10 +77,10 @@ class Islands {
     void make_room_for_cells();
     PointArray points();
     void put(const Piece& piece, const HatchLines& lines);
-    void end_line(const Place& place);
+    void end_line(const Position& position);
 
     LayerBudget budget_; ///< for cells
-    std::vector<Place> cells_;
+    std::vector<Position> cells_;
     std::unordered_map<std::uint64_t, std::uint32_t> number_; ///< by row and column
     std::uint32_t last_ = 0;                                  ///< that was looked for
     std::vector<Piece> pieces_;

@@ -83,16 +83,16 @@ struct Axis {
 
 class Outlines {
   public:
-    Outlines(const Layer& places, double width, double thinnest, const LayerBudget& budget)
-        : places_(places), budget_(budget), width_(width), thinnest_(thinnest), unit_(unit_of(places, width)),
-          cells_(unit_) {
+    Outlines(const Layer& positions, double width, double thinnest, const LayerBudget& budget)
+        : positions_(positions), budget_(budget), width_(width), thinnest_(thinnest),
+          unit_(unit_of(positions, width)), cells_(unit_) {
         // Where circles may touch, on both sides of each place, and what becomes of them.
         constexpr std::uint64_t bytes_each = 3 * sizeof(Touching) + 2 * sizeof(Point2);
-        budget.need(4 * static_cast<std::uint64_t>(measure(places).perimeter_mm / unit_) +
-                        places.points.size(),
+        budget.need(4 * static_cast<std::uint64_t>(measure(positions).perimeter_mm / unit_) +
+                        positions.points.size(),
                     bytes_each, "places along thin walls");
-        for (std::size_t ring = 0; ring < places.rings; ++ring) {
-            const std::span<const Point2> points = places.contour(ring);
+        for (std::size_t ring = 0; ring < positions.rings; ++ring) {
+            const std::span<const Point2> points = positions.contour(ring);
             for (std::size_t i = 0; i < points.size(); ++i) {
                 const Edge edge{points[i], points[i + 1 < points.size() ? i + 1 : 0]};
                 const std::size_t pieces = 1 + static_cast<std::size_t>(distance(edge.a, edge.b) / unit_ * 2);
@@ -111,7 +111,7 @@ class Outlines {
     /// What the samples of each ring have in their middle, as far as one follows the other.
     [[nodiscard]] std::vector<Axis> axes() const {
         std::vector<Axis> all;
-        for (std::size_t ring = 0; ring < places_.rings; ++ring)
+        for (std::size_t ring = 0; ring < positions_.rings; ++ring)
             add_axes(touching_of(ring), all);
         return all;
     }
@@ -123,15 +123,15 @@ class Outlines {
     };
 
     /// The width, or more where that would be too many pieces.
-    [[nodiscard]] static double unit_of(const Layer& places, double width) noexcept {
+    [[nodiscard]] static double unit_of(const Layer& positions, double width) noexcept {
         constexpr double most_pieces = 1 << 19;
-        return std::max({width, measure(places).perimeter_mm / most_pieces,
-                         largest_coordinate(places.points.span()) * 0x1p-40});
+        return std::max({width, measure(positions).perimeter_mm / most_pieces,
+                         largest_coordinate(positions.points.span()) * 0x1p-40});
     }
 
     [[nodiscard]] std::vector<std::optional<Touching>> touching_of(std::size_t ring) const {
         std::vector<std::optional<Touching>> found;
-        const std::span<const Point2> points = places_.contour(ring);
+        const std::span<const Point2> points = positions_.contour(ring);
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Point2& a = points[i];
             const Point2 edge = minus(points[i + 1 < points.size() ? i + 1 : 0], a);
@@ -218,7 +218,7 @@ class Outlines {
         all.push_back(std::move(axis));
     }
 
-    const Layer& places_;
+    const Layer& positions_;
     const LayerBudget& budget_;
     double width_;
     double thinnest_;
@@ -330,12 +330,12 @@ double length_of(const std::vector<Point2>& points) noexcept {
 
 } // namespace
 
-std::vector<std::vector<Point2>> middle_lines(const Layer& places, double width, double thinnest,
+std::vector<std::vector<Point2>> middle_lines(const Layer& positions, double width, double thinnest,
                                               const LayerBudget& budget) {
-    if (places.rings == 0 || !(width > 0))
+    if (positions.rings == 0 || !(width > 0))
         return {};
     constexpr double straight = 0.01;
-    const Outlines outlines(places, width, thinnest, budget);
+    const Outlines outlines(positions, width, thinnest, budget);
     std::vector<std::vector<Point2>> lines;
     for (const Axis& axis : without_copies(outlines.axes(), 1.5 * outlines.step())) {
         std::vector<Point2> points;

@@ -16,7 +16,7 @@ namespace lamella {
 /// within them, end about half of the width before their ends or nearer, and are straight to a hundredth of
 /// the width. For any place the same lines, whatever else there is. O(n log n) for n pieces of the outlines
 /// half of the width long.
-[[nodiscard]] std::vector<std::vector<Point2>> middle_lines(const Layer& places, double width,
+[[nodiscard]] std::vector<std::vector<Point2>> middle_lines(const Layer& positions, double width,
                                                             double thinnest, const LayerBudget& budget = {});
 
 } // namespace lamella

@@ -6,8 +6,8 @@
 #include "lamella/polygon/offset.hpp"
 
 #include "polygon/clipping_grid.hpp"
+#include "polygon/collinear_points.hpp"
 #include "polygon/overlay.hpp"
-#include "polygon/straight_points.hpp"
 #include "scan/contours.hpp"
 #include "scan/hatch.hpp"
 #include "scan/middle_lines.hpp"
@@ -27,11 +27,11 @@ namespace lamella {
 
 namespace {
 
-Layer with_head_of(const Layer& head, Layer layer) {
-    layer.index = head.index;
-    layer.z = head.z;
-    layer.bottom = head.bottom;
-    layer.top = head.top;
+Layer with_header_of(const Layer& header, Layer layer) {
+    layer.index = header.index;
+    layer.z = header.z;
+    layer.bottom = header.bottom;
+    layer.top = header.top;
     return layer;
 }
 
@@ -60,7 +60,7 @@ std::vector<double> distances_of(const ScanStrategy& strategy) {
 } // namespace
 
 /// The material of a layer, moved inwards by several distances; each is computed once.
-struct ScanMemory::Insets {
+struct InsetCache::Insets {
     Insets(Layer of, const ScanStrategy& strategy, std::vector<double> by, const LayerLimits& limits)
         : layer(std::move(of)), distances(std::move(by)), contours(strategy.contours),
           filled(hatch_depth(contours, strategy.hatch)),
@@ -70,7 +70,7 @@ struct ScanMemory::Insets {
                 moved[i] = united(layer, limits);
         double depth = 0;
         const auto step_to = [&](double next) {
-            narrow.push_back(narrow_places(depth == 0 ? layer : at(depth), at(next), next - depth, limits));
+            narrow.push_back(narrow_points(depth == 0 ? layer : at(depth), at(next), next - depth, limits));
             depth = next;
         };
         for (std::uint32_t i = 1; i <= contours.count; ++i)
@@ -115,25 +115,25 @@ struct ScanMemory::Insets {
     std::vector<std::vector<std::vector<Point2>>> lines;
 };
 
-std::shared_ptr<const ScanMemory::Insets> ScanMemory::last() const {
+std::shared_ptr<const InsetCache::Insets> InsetCache::last() const {
     const std::lock_guard lock(mutex_);
     return last_;
 }
 
-void ScanMemory::keep(std::shared_ptr<const Insets> insets) {
+void InsetCache::keep(std::shared_ptr<const Insets> insets) {
     const std::lock_guard lock(mutex_);
     last_ = std::move(insets);
 }
 
 namespace {
 
-std::shared_ptr<const ScanMemory::Insets> insets_of(const Layer& layer, const ScanStrategy& strategy,
-                                                    ScanMemory* memory, const LayerLimits& limits) {
+std::shared_ptr<const InsetCache::Insets> insets_of(const Layer& layer, const ScanStrategy& strategy,
+                                                    InsetCache* memory, const LayerLimits& limits) {
     std::vector<double> distances = distances_of(strategy);
     if (memory != nullptr)
         if (auto last = memory->last(); last && last->fit(layer, strategy, distances))
             return last;
-    auto insets = std::make_shared<const ScanMemory::Insets>(layer, strategy, std::move(distances), limits);
+    auto insets = std::make_shared<const InsetCache::Insets>(layer, strategy, std::move(distances), limits);
     if (memory != nullptr)
         memory->keep(insets);
     return insets;
@@ -175,17 +175,17 @@ std::vector<Stroke> strokes_of(const std::vector<Layer>& vectors, std::span<cons
 
 /// Lines along the middle of what is too narrow for a hatch: of those places of which its lines and the
 /// contours leave more than next to nothing bare.
-std::vector<std::vector<Point2>> lines_amid_bare(const Layer& places, std::span<const Stroke> strokes,
+std::vector<std::vector<Point2>> lines_amid_bare(const Layer& positions, std::span<const Stroke> strokes,
                                                  const ContourRule& contours, const HatchRule& hatch,
                                                  const LayerBudget& budget) {
     const double border = hatch_depth(contours, hatch) - contour_depth(contours, contours.count);
     const double widest = std::max(2 * border, surely_hatched(hatch));
-    return middle_lines(bare_places(places, strokes, budget), widest * more_than_reached,
+    return middle_lines(bare_points(positions, strokes, budget), widest * more_than_reached,
                         contour_reach(contours) * (more_than_reached - 1), budget);
 }
 
 /// What of some places is of a region: of what is both, downskin counts.
-Layer in_region(const Layer& places, ScanRegion region, const Skin& downskin, const Skin& upskin,
+Layer in_region(const Layer& positions, ScanRegion region, const Skin& downskin, const Skin& upskin,
                 const LayerLimits& limits) {
     const auto cut = [&limits](const Layer& layer, const Skin& skin, bool inside) {
         if (skin.whole())
@@ -196,8 +196,8 @@ Layer in_region(const Layer& places, ScanRegion region, const Skin& downskin, co
                        limits);
     };
     if (region == ScanRegion::downskin)
-        return cut(places, downskin, true);
-    const Layer rest = cut(places, downskin, false);
+        return cut(positions, downskin, true);
+    const Layer rest = cut(positions, downskin, false);
     return cut(rest, upskin, region == ScanRegion::upskin);
 }
 
@@ -209,7 +209,7 @@ ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding, const LayerLi
     const Overlay overlay(layer, limits);
     if (!overlay.clean())
         inverted_ = inverted_rings(layer, rounding, InversionSearch::full, limits);
-    layer_ = normal_form(without_straight_points(
+    layer_ = normal_form(remove_collinear_points(
         united(layer, overlay),
         std::max(ClippingGrid(layer.points.span()).unit(), 2 * moved_point(layer.points.span(), rounding))));
 }
@@ -220,7 +220,7 @@ void ScanLayer::share_points(const ScanLayer& other) {
 }
 
 std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
-                        std::span<const ScanLayer> above, const ScanStrategy& strategy, ScanMemory* memory,
+                        std::span<const ScanLayer> above, const ScanStrategy& strategy, InsetCache* memory,
                         std::vector<double>* unreached, const LayerLimits& limits) {
     check_strategy(strategy);
     const Layer& layer = scanned.layer();
@@ -229,7 +229,7 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
     const Skin upskin(scanned, above, strategy.upskin, limits);
     LayerBudget budget(limits, layer.index, layer.z); // beside the vectors that there are
     const auto inset = [&](double depth) {
-        return with_head_of(layer, insets->at(depth));
+        return with_header_of(layer, insets->at(depth));
     };
     const auto hatched = [&](ScanRegion region, bool& bare) {
         const HatchRule& rule = hatch_of(strategy, region);
@@ -277,23 +277,23 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
             continue;
         }
         bool may_be_bare = false;
-        Layer lines = with_head_of(layer, {});
+        Layer lines = with_header_of(layer, {});
         lines.hatches = hatched(exposure.region, may_be_bare);
         add(std::move(lines));
-        Layer places = insets->narrow.back();
+        Layer positions = insets->narrow.back();
         if (may_be_bare) {
             const HatchRule& rule = hatch_of(strategy, exposure.region);
             const Layer& within = insets->at(hatch_depth(strategy.contours, rule));
             const double half = surely_hatched(rule) / 2;
-            const Layer narrow = narrow_places(within, offset(within, -half, {}, nullptr, budget.limits()),
+            const Layer narrow = narrow_points(within, offset(within, -half, {}, nullptr, budget.limits()),
                                                half, budget.limits());
-            places = combine(places, narrow, BooleanOperation::unite, budget.limits());
+            positions = combine(positions, narrow, BooleanOperation::unite, budget.limits());
         }
-        if (places.rings > 0)
-            bare[i] = in_region(places, exposure.region, downskin, upskin, budget.limits());
+        if (positions.rings > 0)
+            bare[i] = in_region(positions, exposure.region, downskin, upskin, budget.limits());
     }
     std::vector<Stroke> strokes;
-    if (std::any_of(bare.begin(), bare.end(), [](const Layer& places) { return places.rings > 0; }))
+    if (std::any_of(bare.begin(), bare.end(), [](const Layer& positions) { return positions.rings > 0; }))
         strokes = strokes_of(result, all, strategy, budget);
     if (innermost < all.size()) {
         std::vector<std::vector<Point2>> lines;
@@ -318,7 +318,7 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
 }
 
 // What is left of a part without skins, by other rules.
-std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy, ScanMemory* memory,
+std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy, InsetCache* memory,
                                 std::vector<double>* unreached, const LayerLimits& limits) {
     check_strategy(strategy); // so that errors name fields of supports
     return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), memory, unreached, limits);

@@ -89,8 +89,8 @@ constexpr std::size_t most_at_once = 4;
 /// Rings alongside each other wind around a place alike, unless it lies between them, and then it is nearer
 /// than half of `narrowest` to one of them. So whatever is left lies within rings that have none alongside,
 /// and only what is near to these is looked at.
-Layer open_of(const Layer& layer, std::span<const ScanLayer> neighbours, double narrowest,
-              const LayerLimits& limits) {
+Layer uncovered_area(const Layer& layer, std::span<const ScanLayer> neighbours, double narrowest,
+                     const LayerLimits& limits) {
     const auto count = static_cast<double>(neighbours.size());
     const double reach = narrowest * (1 + spread) * OffsetCorners{}.longest_mitre();
     std::vector<Differing> different;
@@ -157,7 +157,7 @@ Skin::Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const 
         whole_ = true;
         return;
     }
-    const Layer open = open_of(layer.layer(), neighbours, rule.narrowest, limits);
+    const Layer open = uncovered_area(layer.layer(), neighbours, rule.narrowest, limits);
     if (open.rings == 0)
         return;
     std::vector<Layer> moved =

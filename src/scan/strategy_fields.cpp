@@ -40,7 +40,7 @@ std::span<const StrategyField<HatchRule>> hatch_fields() noexcept {
 
 std::span<const StrategyField<SkinRule>> skin_fields() noexcept {
     static constexpr std::array<StrategyField<SkinRule>, 3> fields{
-        {{"layers", "", "skin is what has less than so many layers of material beside it; 0: nothing is",
+        {{"layers", "", "skin has less than this many layers of material above or below; 0: there is no skin",
           &SkinRule::layers},
          {"narrowest", "mm", "narrower strips are no skin, as walls differ from layer to layer",
           &SkinRule::narrowest},

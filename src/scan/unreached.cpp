@@ -165,7 +165,7 @@ constexpr double next_to_nothing = 1.0 / 2; // of the square of a distance
 
 } // namespace
 
-Layer narrow_places(const Layer& material, const Layer& inset, double by, const LayerLimits& limits) {
+Layer narrow_points(const Layer& material, const Layer& inset, double by, const LayerLimits& limits) {
     constexpr double more = 1 + 1e-3; // so that no slivers are left
     if (!(by > 0) || material.rings == 0)
         return {};
@@ -176,12 +176,12 @@ Layer narrow_places(const Layer& material, const Layer& inset, double by, const 
     const double lost = measure(material).area_mm2 - grown_area(inset, by);
     if (lost <= next_to_nothing * by * by || lost - tips_area(material, by) <= next_to_nothing * by * by)
         return {};
-    const Layer places =
+    const Layer positions =
         combine(material, offset(inset, by * more, {}, nullptr, limits), BooleanOperation::subtract, limits);
-    return measure(places).area_mm2 > next_to_nothing * by * by ? places : Layer{};
+    return measure(positions).area_mm2 > next_to_nothing * by * by ? positions : Layer{};
 }
 
-Layer narrow_places(const Layer& material, double depth, const ContourRule& contours,
+Layer narrow_points(const Layer& material, double depth, const ContourRule& contours,
                     const HatchRule& hatch) {
     std::vector<double> steps;
     for (std::uint32_t i = 1; i <= contours.count; ++i)
@@ -195,7 +195,7 @@ Layer narrow_places(const Layer& material, double depth, const ContourRule& cont
     const Layer* outer = &material;
     double last = 0;
     for (std::size_t i = 0; i < steps.size(); ++i) {
-        all = combine(all, narrow_places(*outer, insets[i], last - steps[i]), BooleanOperation::unite);
+        all = combine(all, narrow_points(*outer, insets[i], last - steps[i]), BooleanOperation::unite);
         outer = &insets[i];
         last = steps[i];
     }
@@ -216,11 +216,11 @@ void add_strokes(const Layer& vectors, double reach, std::vector<Stroke>& stroke
         strokes.push_back({vectors.hatches[i], vectors.hatches[i + 1], reach});
 }
 
-double unreached_area(const Layer& places, std::span<const Stroke> strokes, const LayerBudget& budget) {
-    if (places.rings == 0)
+double unreached_area(const Layer& positions, std::span<const Stroke> strokes, const LayerBudget& budget) {
+    if (positions.rings == 0)
         return 0;
-    const double area = measure(places).area_mm2;
-    const Box2 box = box_of(places.points.span());
+    const double area = measure(positions).area_mm2;
+    const Box2 box = box_of(positions.points.span());
     const double least = least_reach(strokes);
     if (!std::isfinite(least))
         return std::max(0.0, area);
@@ -229,11 +229,11 @@ double unreached_area(const Layer& places, std::span<const Stroke> strokes, cons
     constexpr double most_lines = 1 << 15;
     const double distance =
         std::max({least / 2, (box.width() + box.height()) / most_lines, box.largest_coordinate() * 0x1p-40});
-    const HatchLines lines(places, cos_sin_degrees(angle), distance, 0, budget);
+    const HatchLines lines(positions, cos_sin_degrees(angle), distance, 0, budget);
     const LineFrame& frame = lines.frame();
-    Occupied occupied(places); // most strokes are far from all of them
-    for (std::size_t i = 0; i < places.rings; ++i)
-        occupied.add(box_of(places.contour(i)));
+    Occupied occupied(positions); // most strokes are far from all of them
+    for (std::size_t i = 0; i < positions.rings; ++i)
+        occupied.add(box_of(positions.contour(i)));
     std::vector<Reached> reached;
     for (const auto& [a, b, reach] : strokes) {
         budget.check();
@@ -292,32 +292,32 @@ double unreached_area(const Layer& places, std::span<const Stroke> strokes, cons
     return all > 0 ? std::max(0.0, area) * (left / all) : 0;
 }
 
-Layer bare_places(const Layer& places, std::span<const Stroke> strokes, const LayerBudget& budget) {
+Layer bare_points(const Layer& positions, std::span<const Stroke> strokes, const LayerBudget& budget) {
     const double reach = least_reach(strokes);
     const double accepted = std::isfinite(reach) ? reach * reach / 32 : 0; // many of them are not nothing
-    if (!(unreached_area(places, strokes, budget) > accepted))
+    if (!(unreached_area(positions, strokes, budget) > accepted))
         return {};
-    Occupied occupied(places);
-    for (std::size_t i = 0; i < places.rings; ++i)
-        occupied.add(box_of(places.contour(i)));
+    Occupied occupied(positions);
+    for (std::size_t i = 0; i < positions.rings; ++i)
+        occupied.add(box_of(positions.contour(i)));
     budget.need(strokes.size(), sizeof(Stroke), "scan vectors");
     std::vector<Stroke> near;
     std::copy_if(strokes.begin(), strokes.end(), std::back_inserter(near), [&](const Stroke& stroke) {
         return occupied.any_within(Box2::of(stroke.from, stroke.to).grown(stroke.reach));
     });
     LayerBuilder bare;
-    for (const Polygon& body : polygons(nesting(places))) {
+    for (const Polygon& body : polygons(nesting(positions))) {
         std::vector<std::uint32_t> rings{body.outer};
         rings.insert(rings.end(), body.holes.begin(), body.holes.end());
         LayerBuilder one;
         for (const std::uint32_t ring : rings)
-            one.add_contour(places.contour(ring), true);
-        if (unreached_area(one.finish(places.index, places.z, places.bottom, places.top), near, budget) >
-            accepted)
+            one.add_contour(positions.contour(ring), true);
+        if (unreached_area(one.finish(positions.index, positions.z, positions.bottom, positions.top), near,
+                           budget) > accepted)
             for (const std::uint32_t ring : rings)
-                bare.add_contour(places.contour(ring), true);
+                bare.add_contour(positions.contour(ring), true);
     }
-    return normal_form(bare.finish(places.index, places.z, places.bottom, places.top));
+    return normal_form(bare.finish(positions.index, positions.z, positions.bottom, positions.top));
 }
 
 } // namespace lamella

@@ -35,7 +35,7 @@ std::string text_of(const std::pair<double, double>& z_range) {
 
 Error too_far(const std::vector<double>& z) {
     return {ErrorKind::usage,
-            fmt::format("layers at z from {} to {} reach further than a double can say; choose "
+            fmt::format("layers at z from {} to {} reach further than a double can represent; choose "
                         "a larger unit",
                         z.front(), z.back())};
 }

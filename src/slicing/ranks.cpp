@@ -37,8 +37,8 @@ Ranks::Ranks(const Plan& plan) : rule_(plan.rule), snap_mm_(plan.snap_mm) {
         last_cell_ = 0;
     cells_.assign(static_cast<std::size_t>(last_cell_) + 1, {infinity, 0, 0});
     for (std::size_t plane = 0; plane < z_.size(); ++plane) {
-        const double place = (bounds_[plane] - first_) * cells_per_mm_;
-        Cell& cell = cells_[cell_at(place)];
+        const double position = (bounds_[plane] - first_) * cells_per_mm_;
+        Cell& cell = cells_[cell_at(position)];
         if (cell.planes == 0)
             cell.bound = bounds_[plane];
         ++cell.planes;

@@ -26,8 +26,8 @@ class Ranks {
     /// Returns the number of planes with z_i + snap < z (section_above) or with z_i - snap <= z
     /// (section_below).
     [[nodiscard]] std::uint32_t operator()(double z) const noexcept {
-        const double place = (z - first_) * cells_per_mm_;
-        const Cell& cell = cells_[cell_at(place)];
+        const double position = (z - first_) * cells_per_mm_;
+        const Cell& cell = cells_[cell_at(position)];
         // Most cells of evenly spaced planes hold no plane or one, at random: a branch would be mispredicted.
         if (cell.planes <= 1)
             return cell.below + static_cast<std::uint32_t>(cell.bound < z);
@@ -53,10 +53,10 @@ class Ranks {
 
     /// Returns the cell of a scaled height: the first one for NaN and below all cells, the last one above
     /// all.
-    [[nodiscard]] std::size_t cell_at(double place) const noexcept {
+    [[nodiscard]] std::size_t cell_at(double position) const noexcept {
         // The conversion through a signed number is one instruction.
         return static_cast<std::size_t>(
-            static_cast<std::int64_t>(std::min(std::max(0.0, place), last_cell_)));
+            static_cast<std::int64_t>(std::min(std::max(0.0, position), last_cell_)));
     }
 
     std::vector<double> z_;

@@ -2,7 +2,7 @@
 
 #include "core/executor.hpp"
 #include "core/stopwatch.hpp"
-#include "slicing/slabs.hpp"
+#include "slicing/plane_ranges.hpp"
 
 #include <algorithm>
 #include <atomic>

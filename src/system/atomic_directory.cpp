@@ -230,7 +230,7 @@ void AtomicDirectory::commit() {
     remove_folder(aside);
 }
 
-bool begins_with_mark(const fs::path& path, std::string_view mark) {
+bool begins_with_magic(const fs::path& path, std::string_view mark) {
     std::error_code ignored;
     if (!fs::is_regular_file(fs::symlink_status(path, ignored)))
         return false;

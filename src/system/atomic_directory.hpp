@@ -52,6 +52,6 @@ class AtomicDirectory {
 };
 
 /// Returns whether a path is a regular file that begins with `mark`, which identifies files of Lamella.
-[[nodiscard]] bool begins_with_mark(const std::filesystem::path& path, std::string_view mark);
+[[nodiscard]] bool begins_with_magic(const std::filesystem::path& path, std::string_view mark);
 
 } // namespace lamella

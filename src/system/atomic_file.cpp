@@ -279,14 +279,14 @@ void AtomicFile::flush() {
     write_out({buffer_.get(), std::exchange(buffered_, 0)});
 }
 
-void AtomicFile::overwrite(std::uint64_t place, std::string_view bytes) {
+void AtomicFile::overwrite(std::uint64_t offset, std::string_view bytes) {
     flush();
     while (!bytes.empty()) {
         const int descriptor = spool_ >= 0 ? spool_ : descriptor_;
-        const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
         if (written >= 0) {
             bytes.remove_prefix(static_cast<std::size_t>(written));
-            place += static_cast<std::uint64_t>(written);
+            offset += static_cast<std::uint64_t>(written);
         } else if (errno != EINTR) {
             fail(errno);
         }
@@ -296,10 +296,10 @@ void AtomicFile::overwrite(std::uint64_t place, std::string_view bytes) {
 // Copies the spool to the output; later writes go to the output directly.
 void AtomicFile::copy_spool() {
     const int from = std::exchange(spool_, -1);
-    off_t place = 0;
+    off_t offset = 0;
     ssize_t got = 0;
     do {
-        got = ::pread(from, buffer_.get(), buffer_size, place);
+        got = ::pread(from, buffer_.get(), buffer_size, offset);
         if (got > 0) {
             try {
                 write_out({buffer_.get(), static_cast<std::size_t>(got)});
@@ -307,7 +307,7 @@ void AtomicFile::copy_spool() {
                 ::close(from);
                 throw;
             }
-            place += got;
+            offset += got;
         }
     } while (got > 0 || (got < 0 && errno == EINTR));
     const int system_error = errno;

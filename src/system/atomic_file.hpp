@@ -51,7 +51,7 @@ class AtomicFile {
     void append(std::string_view bytes);
 
     /// Replaces bytes that were appended before. Requires Overwriting::yes.
-    void overwrite(std::uint64_t place, std::string_view bytes);
+    void overwrite(std::uint64_t offset, std::string_view bytes);
 
     /// Writes the buffered bytes and gives the file its name. To be called once, at the end.
     void commit();

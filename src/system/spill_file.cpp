@@ -37,35 +37,35 @@ SpillFile::~SpillFile() {
     close(descriptor_);
 }
 
-void SpillFile::write(std::uint64_t place, std::span<const std::byte> bytes) {
+void SpillFile::write(std::uint64_t offset, std::span<const std::byte> bytes) {
     while (!bytes.empty()) {
-        const ssize_t written = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        const ssize_t written = pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
         if (written >= 0) {
             bytes = bytes.subspan(static_cast<std::size_t>(written));
-            place += static_cast<std::uint64_t>(written);
+            offset += static_cast<std::uint64_t>(written);
         } else if (errno != EINTR) {
             fail(errno);
         }
     }
 }
 
-void SpillFile::read(std::uint64_t place, std::span<std::byte> bytes) const {
+void SpillFile::read(std::uint64_t offset, std::span<std::byte> bytes) const {
     while (!bytes.empty()) {
-        const ssize_t got = pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(place));
+        const ssize_t got = pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
         if (got == 0)
             fail(EIO); // the file was longer when it was written
         if (got > 0) {
             bytes = bytes.subspan(static_cast<std::size_t>(got));
-            place += static_cast<std::uint64_t>(got);
+            offset += static_cast<std::uint64_t>(got);
         } else if (errno != EINTR) {
             fail(errno);
         }
     }
 }
 
-void SpillFile::forget(std::uint64_t place, std::uint64_t bytes) noexcept {
+void SpillFile::forget(std::uint64_t offset, std::uint64_t bytes) noexcept {
     const int before = errno;
-    fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(place),
+    fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset),
               static_cast<off_t>(bytes));
     errno = before; // a hint
 }

@@ -24,10 +24,10 @@ class SpillFile {
     SpillFile(const SpillFile&) = delete;
     SpillFile& operator=(const SpillFile&) = delete;
 
-    void write(std::uint64_t place, std::span<const std::byte> bytes);
-    void read(std::uint64_t place, std::span<std::byte> bytes) const;
+    void write(std::uint64_t offset, std::span<const std::byte> bytes);
+    void read(std::uint64_t offset, std::span<std::byte> bytes) const;
     /// Frees the disk space of a range of bytes, if the file system can. It must not be read again.
-    void forget(std::uint64_t place, std::uint64_t bytes) noexcept;
+    void forget(std::uint64_t offset, std::uint64_t bytes) noexcept;
 
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
 

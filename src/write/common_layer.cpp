@@ -130,9 +130,9 @@ std::string position_text(double z, double units) {
 class CommonLayerWriter : public SequentialWriter {
   protected:
     // `precision` and `height_mm` are the precision of heights and the millimetres of one unit of them.
-    CommonLayerWriter(const std::string& path, const LayerFileInfo& info, std::string_view head,
+    CommonLayerWriter(const std::string& path, const LayerFileInfo& info, std::string_view header,
                       std::string precision, double height_mm)
-        : SequentialWriter(path, info, head, holds),
+        : SequentialWriter(path, info, header, holds),
           heights_(std::move(precision), height_mm, rounding_loss()) {
         for (const PartInfo& part : info.parts)
             sequences_.push_back(part.exposure ? Sequence::kept : Sequence::nesting);
@@ -141,11 +141,12 @@ class CommonLayerWriter : public SequentialWriter {
     // Returns the height of a layer as it is written, `height_of(mm)`. The bottom of the first layer of a
     // file or a range is checked first.
     template <class HeightOf>
-    auto checked_height(const PlanePlace& place, const HeightOf& height_of) {
-        const auto height = height_of(place.top);
+    auto checked_height(const PlanePosition& offset, const HeightOf& height_of) {
+        const auto height = height_of(offset.top);
         if (heights_.empty())
-            heights_.add(static_cast<double>(height_of(place.bottom)), place.bottom, "bottom", place.index);
-        heights_.add(static_cast<double>(height), place.top, "top", place.index);
+            heights_.add(static_cast<double>(height_of(offset.bottom)), offset.bottom, "bottom",
+                         offset.index);
+        heights_.add(static_cast<double>(height), offset.top, "top", offset.index);
         return height;
     }
 
@@ -189,10 +190,10 @@ class AsciiWriter final : public CommonLayerWriter {
           units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:
-    std::string layer_head(const PlanePlace& place) override {
+    std::string layer_header(const PlanePosition& offset) override {
         static_cast<void>(
-            checked_height(place, [this](double mm) { return std::nearbyint(mm / units_ * 1e6); }));
-        return fmt::format("$$LAYER/{}\n", position_text(place.top, units_));
+            checked_height(offset, [this](double mm) { return std::nearbyint(mm / units_ * 1e6); }));
+        return fmt::format("$$LAYER/{}\n", position_text(offset.top, units_));
     }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
@@ -230,25 +231,25 @@ class AsciiWriter final : public CommonLayerWriter {
 
 // Writes the header of a polyline or, without a direction, of hatch lines.
 template <class Number>
-char* put_head(char* out, CommonLayerCommand command, int part, std::optional<Direction> direction,
-               std::size_t count) {
+char* put_header(char* out, CommonLayerCommand command, int part, std::optional<Direction> direction,
+                 std::size_t count) {
     out = put_value(put_value(out, command), static_cast<Number>(part));
     if (direction)
         out = put_value(out, static_cast<Number>(*direction));
     return put_value(out, static_cast<Number>(count));
 }
 
-constexpr std::size_t long_head = 14;
-constexpr std::size_t hatches_head = 10;
+constexpr std::size_t long_header = 14;
+constexpr std::size_t hatches_header = 10;
 
-char* put_long_head(char* out, int part, std::optional<Direction> direction, std::size_t count,
-                    std::uint64_t layer) {
+char* put_long_header(char* out, int part, std::optional<Direction> direction, std::size_t count,
+                      std::uint64_t layer) {
     if (count > std::size_t{std::numeric_limits<std::int32_t>::max()})
         throw Error(ErrorKind::limit, fmt::format("layer {} has {}; the format ends at 2^31 - 1", layer,
                                                   direction ? fmt::format("a contour of {} points", count)
                                                             : fmt::format("{} hatch lines", count)));
     const auto command = direction ? CommonLayerCommand::polyline_long : CommonLayerCommand::hatches_long;
-    return put_head<std::int32_t>(out, command, part, direction, count);
+    return put_header<std::int32_t>(out, command, part, direction, count);
 }
 
 class LongWriter final : public CommonLayerWriter {
@@ -267,14 +268,14 @@ class LongWriter final : public CommonLayerWriter {
         return bytes_of(CommonLayerCommand::layer_long) + bytes_of(height);
     }
 
-    std::string layer_head(const PlanePlace& place) override {
-        return layer_start(checked_height(place, [this](double mm) { return height_of(mm, units_); }));
+    std::string layer_header(const PlanePosition& offset) override {
+        return layer_start(checked_height(offset, [this](double mm) { return height_of(mm, units_); }));
     }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for_each_part(parts, [&](const Layer& layer, int part) {
             // Reserves all the space at once: most layers lose no point.
-            static_cast<void>(out.room(layer.contours() * (long_head + float_point_size) +
+            static_cast<void>(out.room(layer.contours() * (long_header + float_point_size) +
                                        layer.points.size() * float_point_size));
             for_each_contour(layer, sequence_of(part), [&](std::span<const Point2> contour, bool closed) {
                 put_polyline(part, contour, closed, layer.index, out);
@@ -286,24 +287,24 @@ class LongWriter final : public CommonLayerWriter {
     void put_hatches(int part, const Layer& layer, ByteBuffer& out) const {
         if (layer.hatches.empty())
             return;
-        char* const head = out.room(hatches_head + layer.hatches.size() * float_point_size);
-        char* const points = head + hatches_head;
+        char* const header = out.room(hatches_header + layer.hatches.size() * float_point_size);
+        char* const points = header + hatches_header;
         const std::size_t listed = floats_.put_lines(layer.hatches.span(), layer.index, points);
         if (listed == 0)
             return;
-        put_long_head(head, part, {}, listed / 2, layer.index);
+        put_long_header(header, part, {}, listed / 2, layer.index);
         out.end_at(points + listed * float_point_size);
     }
 
     void put_polyline(int part, std::span<const Point2> contour, bool closed, std::uint64_t layer,
                       ByteBuffer& out) const {
-        char* const head = out.room(long_head + (contour.size() + 1) * float_point_size);
-        const FloatContour listed = floats_.put(contour, closed, layer, head + long_head);
+        char* const header = out.room(long_header + (contour.size() + 1) * float_point_size);
+        const FloatContour listed = floats_.put(contour, closed, layer, header + long_header);
         if (listed.points == 0)
             return;
-        put_long_head(head, part, closed ? direction_of(listed.area_mm2) : Direction::open, listed.points,
-                      layer);
-        out.end_at(head + long_head + listed.points * float_point_size);
+        put_long_header(header, part, closed ? direction_of(listed.area_mm2) : Direction::open, listed.points,
+                        layer);
+        out.end_at(header + long_header + listed.points * float_point_size);
     }
 
     double units_;
@@ -322,14 +323,14 @@ class ShortWriter final : public CommonLayerWriter {
   public:
     ShortWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
         : CommonLayerWriter(
-              path, info, checked_head(info, options.units_mm),
+              path, info, checked_header(info, options.units_mm),
               fmt::format("units of {} mm; use smaller ones or the long form", options.units_mm),
               options.units_mm),
           units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:
     // Checks the coordinates before an hour of slicing rather than after it.
-    static std::string checked_head(const LayerFileInfo& info, double units) {
+    static std::string checked_header(const LayerFileInfo& info, double units) {
         const double farthest = std::max({info.box.max.x, info.box.max.y, info.box.max.z});
         const auto check = [&](const char* axis, double mm) {
             check_short("the part", axis, whole_units(mm, units), units, farthest);
@@ -374,10 +375,10 @@ class ShortWriter final : public CommonLayerWriter {
         return bytes_of(CommonLayerCommand::layer_short) + bytes_of(static_cast<std::uint16_t>(height));
     }
 
-    std::string layer_head(const PlanePlace& place) override {
+    std::string layer_header(const PlanePosition& offset) override {
         const std::int64_t height =
-            checked_height(place, [this](double mm) { return whole_units(mm, units_); });
-        check_short(fmt::format("layer {}", place.index), "z", height, units_);
+            checked_height(offset, [this](double mm) { return whole_units(mm, units_); });
+        check_short(fmt::format("layer {}", offset.index), "z", height, units_);
         return layer_start(height);
     }
 
@@ -407,14 +408,14 @@ class ShortWriter final : public CommonLayerWriter {
         const auto [part, layer, points, direction] = listed;
         check_short(points, layer);
         const std::size_t count = listed.count();
-        char* at = out.room(long_head + listed.size() * float_point_size);
+        char* at = out.room(long_header + listed.size() * float_point_size);
         const bool counted = count <= most_counted && static_cast<std::size_t>(part) <= most_counted;
         if (counted)
-            at = put_head<std::uint16_t>(
+            at = put_header<std::uint16_t>(
                 at, direction ? CommonLayerCommand::polyline_short : CommonLayerCommand::hatches_short, part,
                 direction, count);
         else
-            at = put_long_head(at, part, direction, count, layer);
+            at = put_long_header(at, part, direction, count, layer);
         for (std::size_t i = 0, n = listed.size(); i < n; ++i)
             at = counted ? put_short(at, listed[i]) : put_long(at, listed[i]);
         out.end_at(at);

@@ -30,11 +30,10 @@ struct Side {
 
 std::uint32_t whole_pixels(double pixels, double part_mm, double pixel_mm) {
     if (!(pixels <= most_pixels))
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("{:.6g} mm need {:.6g} pixels of {:.6g} mm, and {} are the most a picture may "
-                        "have along a side; choose larger pixels",
-                        part_mm, pixels, pixel_mm, most_pixels));
+        throw Error(ErrorKind::usage,
+                    fmt::format("{:.6g} mm need {:.6g} pixels of {:.6g} mm, and {} are the most an image may "
+                                "have along a side; choose larger pixels",
+                                part_mm, pixels, pixel_mm, most_pixels));
     return static_cast<std::uint32_t>(std::max(pixels, 1.0));
 }
 
@@ -77,7 +76,7 @@ std::optional<T> y_of(const std::optional<AlongXY<T>>& pair) {
 
 /// Returns the options with the printer's values unless other options contradict them: its resolution stays
 /// if only a size is given, its size if only a resolution is.
-PictureOptions with_printer(PictureOptions options, const PicturePrinter& printer) {
+ImageOptions with_printer(ImageOptions options, const ImagePrinter& printer) {
     if (printer.name.empty())
         return options;
     if (!options.pixels && !(options.pixel_mm && options.display_mm))
@@ -113,10 +112,10 @@ PixelGrid Display::grid(const Box3& box) const noexcept {
     return grid;
 }
 
-Display display_for(const Box3& box, const PictureOptions& options, const PicturePrinter& printer) {
+Display display_for(const Box3& box, const ImageOptions& options, const ImagePrinter& printer) {
     check_length(options.pixel_mm, "a pixel");
     check_length(options.display_mm, "a display");
-    const PictureOptions given = with_printer(options, printer);
+    const ImageOptions given = with_printer(options, printer);
     const double part_x = box.max.x - box.min.x;
     const double part_y = box.max.y - box.min.y;
     const Side x = side_of(x_of(given.pixel_mm), x_of(given.pixels), x_of(given.display_mm), part_x);

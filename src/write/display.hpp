@@ -2,9 +2,9 @@
 
 // Pixels of a display or image, and the position of the part among them.
 
-#include "lamella/raster/picture.hpp"
+#include "lamella/raster/image.hpp"
+#include "lamella/write/image_options.hpp"
 #include "lamella/write/layer_writer.hpp"
-#include "lamella/write/picture_options.hpp"
 
 #include <cstdint>
 #include <string_view>
@@ -12,7 +12,7 @@
 namespace lamella {
 
 /// Properties of a printer that displays images.
-struct PicturePrinter {
+struct ImagePrinter {
     std::string_view name = {}; ///< as used by people and in its files; "" for none
     AlongXY<std::uint32_t> pixels{};
     AlongXY<double> display_mm{};
@@ -45,7 +45,6 @@ struct Display {
 
 /// Returns the display that the options describe, on this printer. Throws Error{usage} if they contradict
 /// each other, and if the part, which has this box, does not fit; the error states by how much.
-[[nodiscard]] Display display_for(const Box3& box, const PictureOptions& options,
-                                  const PicturePrinter& printer);
+[[nodiscard]] Display display_for(const Box3& box, const ImageOptions& options, const ImagePrinter& printer);
 
 } // namespace lamella

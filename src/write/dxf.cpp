@@ -21,12 +21,12 @@ std::string length_text(double mm) {
 class DxfWriter final : public SequentialWriter {
   public:
     DxfWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, head(info), {.labels = false}), several_(info.parts.size() > 1) {}
+        : SequentialWriter(path, info, header(info), {.labels = false}), several_(info.parts.size() > 1) {}
 
   private:
     // Release 12 needs neither tables nor handles. It has no units, but readers look for $INSUNITS all the
     // same and assume metres without it.
-    static std::string head(const LayerFileInfo& info) {
+    static std::string header(const LayerFileInfo& info) {
         const auto corner = [](std::string_view name, const Point3& p) {
             return fmt::format("  9\n{}\n 10\n{}\n 20\n{}\n 30\n{}\n", name, length_text(p.x),
                                length_text(p.y), length_text(p.z));
@@ -36,7 +36,7 @@ class DxfWriter final : public SequentialWriter {
                "  0\nENDSEC\n  0\nSECTION\n  2\nENTITIES\n";
     }
 
-    std::string layer_head(const PlanePlace&) override { return {}; }
+    std::string layer_header(const PlanePosition&) override { return {}; }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for (std::size_t part = 0; part < parts.size(); ++part)

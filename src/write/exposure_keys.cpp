@@ -27,28 +27,28 @@ auto key_of(const Exposure& exposure) {
 /// Returns the index of an item in a list, and appends it if it is absent. `places` maps the keys of present
 /// items to their indices.
 template <class Key, class T>
-std::size_t place_of(std::map<Key, std::size_t>& places, const Key& key, std::vector<T>& known,
+std::size_t place_of(std::map<Key, std::size_t>& positions, const Key& key, std::vector<T>& known,
                      const T& item) {
-    const auto [place, is_new] = places.try_emplace(key, known.size());
+    const auto [position, is_new] = positions.try_emplace(key, known.size());
     if (is_new)
         known.push_back(item);
-    return place->second;
+    return position->second;
 }
 
 } // namespace
 
 ExposureKeys::ExposureKeys(std::span<const PartInfo> all) {
-    std::map<decltype(key_of(Exposure{})), std::size_t> exposure_places;
-    std::map<std::string_view, std::vector<std::size_t>> places; // indices in `parts` of each label
+    std::map<decltype(key_of(Exposure{})), std::size_t> exposure_keys_of;
+    std::map<std::string_view, std::vector<std::size_t>> positions; // indices in `parts` of each label
     std::map<std::pair<std::string_view, std::optional<std::size_t>>, std::size_t> times;
     for (const PartInfo& part : all) {
         const std::string& label = part.exposure ? part.exposure->part : part.label;
         Key& key = keys.emplace_back();
         if (part.exposure)
-            key.exposure = place_of(exposure_places, key_of(*part.exposure), exposures, *part.exposure);
+            key.exposure = place_of(exposure_keys_of, key_of(*part.exposure), exposures, *part.exposure);
         // An exposure that a part already has belongs to the next part of the same label.
         const std::size_t number = times[{label, key.exposure}]++;
-        std::vector<std::size_t>& same = places[label];
+        std::vector<std::size_t>& same = positions[label];
         if (number == same.size()) {
             same.push_back(parts.size());
             parts.push_back(label);

@@ -145,7 +145,7 @@ void check_range(const Rounded& rounded, std::uint64_t layer) {
 }
 
 // Returns twice the largest rounding error of a coordinate, in written units.
-double last_place(const Rounded& rounded) {
+double last_digit(const Rounded& rounded) {
     const auto& [least, most, area, repeats] = rounded;
     const double largest = std::max({-double{least.x}, -double{least.y}, double{most.x}, double{most.y}});
     return largest * double{std::numeric_limits<float>::epsilon()};
@@ -165,7 +165,7 @@ double largest_move(std::span<const Point2> points, double per_mm) {
 double moved_area(const Rounded& rounded, std::size_t points) {
     const auto& [least, most, area, repeats] = rounded;
     const double extent = (double{most.x} - double{least.x}) + (double{most.y} - double{least.y});
-    const double moved = last_place(rounded);
+    const double moved = last_digit(rounded);
     return 2 * static_cast<double>(points) * moved * (extent + moved);
 }
 
@@ -182,7 +182,7 @@ FloatContour FloatContours::put(std::span<const Point2> contour, bool closed, st
     const std::span points(reinterpret_cast<StoredPoint*>(out), contour.size());
     const std::size_t count = without_repeats(points, rounded.repeats, closed);
     const bool lost = count < (closed ? 3U : 2U);
-    if (is_noticed(last_place(rounded) / 2))
+    if (is_noticed(last_digit(rounded) / 2))
         loss_->add({largest_move(contour, per_mm_), contour.size() - count, lost}, layer);
     else if (lost && loss_ != nullptr)
         loss_->add({.lost = true}, layer);
@@ -203,7 +203,7 @@ std::size_t FloatContours::put_lines(std::span<const Point2> points, std::uint64
         return 0;
     const Rounded rounded = round_points(points, per_mm_, out);
     check_range(rounded, layer);
-    if (is_noticed(last_place(rounded) / 2))
+    if (is_noticed(last_digit(rounded) / 2))
         loss_->add({.moved_mm = largest_move(points, per_mm_)}, layer);
     if (!rounded.repeats)
         return points.size();

@@ -41,7 +41,7 @@ void put_positions(std::span<const GridPoint> points, bool closed, ByteBuffer& o
 class GeoJsonWriter final : public SequentialWriter {
   public:
     GeoJsonWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, head(info), {.written_label = quotable}) {
+        : SequentialWriter(path, info, header(info), {.written_label = quotable}) {
         for (const PartInfo& part : info.parts)
             labels_.push_back(json_quoted(part.label));
     }
@@ -49,7 +49,7 @@ class GeoJsonWriter final : public SequentialWriter {
   private:
     // The standard defines coordinates as degrees on the Earth and no longer allows other systems; consumers
     // have to know that these are millimetres. "units" is an addition of ours.
-    static std::string head(const LayerFileInfo& info) {
+    static std::string header(const LayerFileInfo& info) {
         const Box3& box = info.box;
         return fmt::format("{{\"type\":\"FeatureCollection\",\"units\":\"mm\",\"bbox\":[{},{},{},{}],"
                            "\"features\":[",
@@ -57,7 +57,9 @@ class GeoJsonWriter final : public SequentialWriter {
                            decimal_text(box.max.y));
     }
 
-    std::string layer_head(const PlanePlace& place) override { return place.position == 0 ? "\n" : ",\n"; }
+    std::string layer_header(const PlanePosition& place) override {
+        return place.position == 0 ? "\n" : ",\n";
+    }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         for (std::size_t part = 0; part < parts.size(); ++part) {

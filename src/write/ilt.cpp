@@ -145,15 +145,15 @@ class IltWriter final : public OrderedWriter {
     }
 
   private:
-    struct Stretch {
-        std::uint64_t place;
+    struct FileExtent {
+        std::uint64_t offset;
         std::size_t size;
     };
     /// Writer of a file of the archive, and the location of its bytes in the store.
     struct Entry {
-        LayerFilePiece piece;
+        LayerFileChunk chunk;
         std::unique_ptr<LayerWriter> writer;
-        std::vector<Stretch> waiting;
+        std::vector<FileExtent> waiting;
     };
 
     Write formatted(std::span<const Layer> parts) override {
@@ -164,8 +164,8 @@ class IltWriter final : public OrderedWriter {
                 layers.push_back(parts[part]);
             writes.push_back(entries_[i].writer->prepare(layers));
         }
-        return [this, writes = std::move(writes)](const PlanePlace& place) {
-            check_apart(place);
+        return [this, writes = std::move(writes)](const PlanePosition& offset) {
+            check_apart(offset);
             for (const std::function<void()>& write : writes)
                 write();
         };
@@ -179,9 +179,9 @@ class IltWriter final : public OrderedWriter {
         for (std::size_t i = 1; i < sections_.size(); ++i) {
             zip_.begin(sections_[i].name, ZipMethod::stored);
             std::string bytes;
-            for (const auto& [place, size] : entries_[i].waiting) {
+            for (const auto& [offset, size] : entries_[i].waiting) {
                 bytes.resize(size);
-                store_.read(place, bytes);
+                store_.read(offset, bytes);
                 zip_.append_stored(bytes);
             }
             zip_.end();
@@ -190,23 +190,23 @@ class IltWriter final : public OrderedWriter {
     }
 
     /// Throws if readers would take two heights for one because they differ by less than files round them.
-    void check_apart(const PlanePlace& place) {
-        const double units = place.top / units_;
+    void check_apart(const PlanePosition& offset) {
+        const double units = offset.top / units_;
         const double top =
             units_ * (short_form_ ? std::nearbyint(units) : static_cast<double>(static_cast<float>(units)));
-        if (place.position > 0 && top - last_top_ <= ilt_one_plane_mm)
+        if (offset.position > 0 && top - last_top_ <= ilt_one_plane_mm)
             throw Error(
                 ErrorKind::usage,
                 fmt::format("layer {}: its top, z = {} mm, is not more than {} mm above the one before, and "
                             "planes of ilt that are no further apart are read as one; choose higher layers",
-                            place.index, place.top, ilt_one_plane_mm));
+                            offset.index, offset.top, ilt_one_plane_mm));
         last_top_ = top;
     }
 
     /// Opens a writer for a whole file as a single range, whose bytes go to `put`.
     void open(std::size_t section, const LayerFileInfo& info, const LayerWriteOptions& options) {
         Entry& entry = entries_[section];
-        entry.piece = {0, info.layers, [this, section](std::string_view bytes) {
+        entry.chunk = {0, info.layers, [this, section](std::string_view bytes) {
                            put(section, bytes);
                        }};
         LayerFileInfo part_info{.box = info.box,
@@ -214,7 +214,7 @@ class IltWriter final : public OrderedWriter {
                                 .bottom = info.bottom,
                                 .parts = {},
                                 .rule = info.rule,
-                                .piece = &entry.piece,
+                                .chunk = &entry.chunk,
                                 .known_finite = true}; // else this writer has checked it
         for (const std::size_t part : sections_[section].parts) {
             PartInfo known = info.parts[part];
@@ -235,8 +235,8 @@ class IltWriter final : public OrderedWriter {
         }
         if (bytes.empty())
             return;
-        std::vector<Stretch>& waiting = entries_[section].waiting;
-        if (!waiting.empty() && waiting.back().place + waiting.back().size == store_.size() &&
+        std::vector<FileExtent>& waiting = entries_[section].waiting;
+        if (!waiting.empty() && waiting.back().offset + waiting.back().size == store_.size() &&
             waiting.back().size + bytes.size() <= ByteStore::block_bytes)
             waiting.back().size += bytes.size();
         else

@@ -32,7 +32,7 @@ namespace {
 
 /// Figures of a plane, whether or not all of it is shown.
 struct PlaneFacts {
-    PlanePlace place;
+    PlanePosition position;
     LayerMeasure measure = {};
     OpenGaps gaps = {};
     std::uint64_t crossings = 0;
@@ -43,7 +43,7 @@ struct PlaneFacts {
 };
 
 /// The data of a plane for the page, complete or thinned out.
-struct Picture {
+struct Image {
     std::string bytes; ///< compressed
     std::uint64_t shown = 0;
     std::uint64_t contours_shown = 0;
@@ -56,12 +56,12 @@ constexpr std::size_t most_marks = 1000;
 
 /// Fills in the figures and defects of a plane, and appends the locations of the first crossings.
 void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, PlaneFacts& facts,
-             std::vector<Point2>& places) {
+             std::vector<Point2>& positions) {
     const auto look_for_crossings = [&](const Layer& layer) {
-        const Crossings crossings = find_crossings(layer, most_marks - places.size());
+        const Crossings crossings = find_crossings(layer, most_marks - positions.size());
         facts.crossings += crossings.count;
         for (const Crossing& crossing : crossings.first)
-            places.push_back(crossing.at);
+            positions.push_back(crossing.at);
     };
     std::optional<Point2> beam;
     std::vector<Layer> bounding; // layers that bound material: the parts are checked together
@@ -145,8 +145,8 @@ struct Cost {
     }
 };
 
-Cost cost_of(const Picture& picture) {
-    return {base64_size(picture.bytes.size()), picture.shown};
+Cost cost_of(const Image& image) {
+    return {base64_size(image.bytes.size()), image.shown};
 }
 
 constexpr std::uint64_t most_shares = 4; // largest multiple of a thinned layer's budget
@@ -169,14 +169,14 @@ class Budget {
     [[nodiscard]] const Cost& thinned() const noexcept { return thinned_; }
 
     /// Returns the first version of the next layer that is within the budget, finest first; else the last.
-    const Picture& choose(const std::vector<Picture>& pictures) {
+    const Image& choose(const std::vector<Image>& images) {
         const std::uint64_t left = saved_bytes_ + bytes_;
         const Cost most{vectors_ ? left : std::min(left, most_shares * bytes_), thinned_.points};
-        const auto fitting = std::find_if(pictures.begin(), pictures.end(), [&](const Picture& picture) {
-            const bool whole = &picture == &pictures.front();
-            return cost_of(picture).within(vectors_ && !whole ? thinned_ : most);
+        const auto fitting = std::find_if(images.begin(), images.end(), [&](const Image& image) {
+            const bool whole = &image == &images.front();
+            return cost_of(image).within(vectors_ && !whole ? thinned_ : most);
         });
-        const Picture& chosen = fitting == pictures.end() ? pictures.back() : *fitting;
+        const Image& chosen = fitting == images.end() ? images.back() : *fitting;
         saved_bytes_ = left - std::min(left, cost_of(chosen).bytes);
         return chosen;
     }
@@ -190,35 +190,35 @@ class Budget {
 
 /// Returns versions of a plane: the whole plane, then versions with less detail each, until one costs at most
 /// `thinned`, or little is gained and it costs at most four times as much.
-std::vector<Picture> pictures_of(std::span<const Layer> parts, std::span<const PartInfo> infos,
-                                 std::span<const Point2> places, const PageGrid& grid, const Cost& thinned) {
-    const auto picture = [&](std::span<const Layer> layers, double tolerance) {
-        Picture made{.bytes = {}, .tolerance_mm = tolerance};
-        made.bytes = deflated(layer_numbers(layers, infos, places, grid, made.shown).view());
+std::vector<Image> images_of(std::span<const Layer> parts, std::span<const PartInfo> infos,
+                             std::span<const Point2> positions, const PageGrid& grid, const Cost& thinned) {
+    const auto image = [&](std::span<const Layer> layers, double tolerance) {
+        Image made{.bytes = {}, .tolerance_mm = tolerance};
+        made.bytes = deflated(layer_numbers(layers, infos, positions, grid, made.shown).view());
         for (const Layer& layer : layers) {
             made.contours_shown += layer.contours();
             made.hatches_shown += layer.hatches.size() / 2;
         }
         return made;
     };
-    std::vector<Picture> pictures{picture(parts, 0)};
+    std::vector<Image> images{image(parts, 0)};
     Thinning thinning(parts, grid.step_mm);
     const Cost most{most_shares * thinned.bytes, thinned.points};
     bool saves = true;
-    const auto shows_nothing = [](const Picture& made) {
+    const auto shows_nothing = [](const Image& made) {
         return made.contours_shown == 0 && made.hatches_shown == 0;
     };
-    for (Cost cost = cost_of(pictures.back());
-         !cost.within(thinned) && !thinning.at_end() && !shows_nothing(pictures.back());) {
+    for (Cost cost = cost_of(images.back());
+         !cost.within(thinned) && !thinning.at_end() && !shows_nothing(images.back());) {
         if (!saves && cost.within(most))
             break; // many small rings remain: a larger page is better than a crude one
         thinning.coarsen();
-        pictures.push_back(picture(thinning.layers(), thinning.tolerance_mm()));
-        const Cost next = cost_of(pictures.back());
+        images.push_back(image(thinning.layers(), thinning.tolerance_mm()));
+        const Cost next = cost_of(images.back());
         saves = next.bytes < cost.bytes / 10 * 9 || next.points < cost.points / 10 * 9;
         cost = next;
     }
-    return pictures;
+    return images;
 }
 
 /// Columns of numbers about the planes, as JSON that grows row by row.
@@ -227,24 +227,35 @@ class PlaneTable {
     /// `vectors` adds the columns about scan vectors.
     explicit PlaneTable(bool vectors) : shown_(vectors ? columns.size() : columns.size() - columns_of_scan) {}
 
-    void add(const PlaneFacts& facts, const Picture& picture) {
-        const std::array<std::string, columns.size()> values{
-            std::to_string(facts.place.index),      page_number(facts.place.z),
-            page_number(facts.place.bottom),        page_number(facts.place.top),
-            page_number(facts.measure.area_mm2),    page_number(facts.measure.perimeter_mm),
-            std::to_string(facts.measure.contours), std::to_string(facts.measure.holes),
-            std::to_string(facts.measure.points),   std::to_string(facts.measure.open_chains),
-            page_number(facts.gaps.longest_mm),     page_number(facts.gaps.total_mm),
-            std::to_string(facts.crossings),        std::to_string(facts.misoriented),
-            std::to_string(facts.overlapping),      std::to_string(facts.hatches),
-            std::to_string(picture.shown),          std::to_string(picture.contours_shown),
-            std::to_string(picture.hatches_shown),  page_number(picture.tolerance_mm),
-            std::to_string(facts.scan.vectors),     page_number(facts.scan.marked_mm),
-            page_number(facts.scan.jumped_mm),      page_number(facts.scan.build_seconds),
-            page_number(facts.scan.energy_j)};
+    void add(const PlaneFacts& facts, const Image& image) {
+        const std::array<std::string, columns.size()> values{std::to_string(facts.position.index),
+                                                             page_number(facts.position.z),
+                                                             page_number(facts.position.bottom),
+                                                             page_number(facts.position.top),
+                                                             page_number(facts.measure.area_mm2),
+                                                             page_number(facts.measure.perimeter_mm),
+                                                             std::to_string(facts.measure.contours),
+                                                             std::to_string(facts.measure.holes),
+                                                             std::to_string(facts.measure.points),
+                                                             std::to_string(facts.measure.open_chains),
+                                                             page_number(facts.gaps.longest_mm),
+                                                             page_number(facts.gaps.total_mm),
+                                                             std::to_string(facts.crossings),
+                                                             std::to_string(facts.misoriented),
+                                                             std::to_string(facts.overlapping),
+                                                             std::to_string(facts.hatches),
+                                                             std::to_string(image.shown),
+                                                             std::to_string(image.contours_shown),
+                                                             std::to_string(image.hatches_shown),
+                                                             page_number(image.tolerance_mm),
+                                                             std::to_string(facts.scan.vectors),
+                                                             page_number(facts.scan.marked_mm),
+                                                             page_number(facts.scan.jumped_mm),
+                                                             page_number(facts.scan.build_seconds),
+                                                             page_number(facts.scan.energy_j)};
         for (std::size_t i = 0; i < shown_; ++i)
             append(texts_[i], values[i]);
-        planes_.push_back({facts.place.index, facts.measure.area_mm2});
+        planes_.push_back({facts.position.index, facts.measure.area_mm2});
     }
 
     /// Returns the table as JSON. `changes` are those that layer steps made to the planes; if there are none,
@@ -302,25 +313,25 @@ class PageWriter final : public LayerPageWriter {
     PageWriter(const std::string& path, const LayerFileInfo& info, const PageOptions& options)
         : frame_(page_frame(options)), grid_(page_grid(info.box)), file_(path), order_(info),
           parts_(info.parts), budget_(options, info.layers, has_vectors()), table_(has_vectors()) {
-        file_.append(frame_.head);
-        file_.append(json_element("head", head(info, options)));
+        file_.append(frame_.header);
+        file_.append(json_element("head", header(info, options)));
     }
 
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) override {
         order_.check_parts(parts);
-        PlaneFacts facts{.place = plane_place(parts)};
-        std::vector<Point2> places;
-        look_at(parts, parts_, facts, places);
+        PlaneFacts facts{.position = plane_position(parts)};
+        std::vector<Point2> positions;
+        look_at(parts, parts_, facts, positions);
         return
-            [this, facts, pictures = pictures_of(parts, parts_, places, grid_, budget_.thinned())]() mutable {
-                order_.next(facts.place);
-                write(facts, pictures);
+            [this, facts, images = images_of(parts, parts_, positions, grid_, budget_.thinned())]() mutable {
+                order_.next(facts.position);
+                write(facts, images);
             };
     }
 
-    void tell(PageNotes notes) override {
+    void add_notes(PageNotes notes) override {
         std::move(notes.sections.begin(), notes.sections.end(), std::back_inserter(notes_.sections));
-        std::move(notes.places.begin(), notes.places.end(), std::back_inserter(notes_.places));
+        std::move(notes.locations.begin(), notes.locations.end(), std::back_inserter(notes_.locations));
         std::move(notes.changes.begin(), notes.changes.end(), std::back_inserter(notes_.changes));
     }
 
@@ -356,7 +367,7 @@ class PageWriter final : public LayerPageWriter {
                            [](const PartInfo& part) { return part.exposure.has_value(); });
     }
 
-    [[nodiscard]] std::string head(const LayerFileInfo& info, const PageOptions& options) const {
+    [[nodiscard]] std::string header(const LayerFileInfo& info, const PageOptions& options) const {
         const auto part_json = [](const PartInfo& part) {
             return fmt::format(R"({{"label":{},"box":{}{}}})", page_quoted(part.label), page_box(part.box),
                                part.exposure ? R"(,"exposure":)" + exposure_json(*part.exposure) : "");
@@ -369,17 +380,17 @@ class PageWriter final : public LayerPageWriter {
             options.layer_points, most_marks, json_list(info.parts, part_json));
     }
 
-    void write(const PlaneFacts& facts, const std::vector<Picture>& pictures) {
-        const Picture& picture = budget_.choose(pictures);
-        if (picture.hatches_shown < facts.hatches)
+    void write(const PlaneFacts& facts, const std::vector<Image>& images) {
+        const Image& image = budget_.choose(images);
+        if (image.hatches_shown < facts.hatches)
             ++without_hatches_;
-        if (picture.tolerance_mm > 0) {
+        if (image.tolerance_mm > 0) {
             ++thinned_;
-            largest_tolerance_mm_ = std::max(largest_tolerance_mm_, picture.tolerance_mm);
-            not_shown_ += facts.measure.contours - picture.contours_shown;
+            largest_tolerance_mm_ = std::max(largest_tolerance_mm_, image.tolerance_mm);
+            not_shown_ += facts.measure.contours - image.contours_shown;
         }
-        file_.append(data_element(picture.bytes));
-        table_.add(facts, picture);
+        file_.append(data_element(image.bytes));
+        table_.add(facts, image);
     }
 
     PageFrame frame_;

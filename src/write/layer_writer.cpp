@@ -39,7 +39,7 @@ constexpr std::array formats{
                 .extension = ".cli",
                 .summary = "Common Layer Interface, binary; single precision, or 16 bits in the short form",
                 .open = open_common_layer_binary,
-                .pieces = true,
+                .chunks = true,
                 .joins = true,
                 .rounding = Rounding{.single_precision = true},
                 .units = true,
@@ -49,7 +49,7 @@ constexpr std::array formats{
                 .summary = "Common Layer Interface, ASCII; coordinates in whole units of 0.001 mm",
                 .open = open_common_layer_ascii,
                 .file_extension = ".cli",
-                .pieces = true,
+                .chunks = true,
                 .joins = true,
                 .rounding = Rounding{.step_mm = LayerWriteOptions::usual_units_mm},
                 .units = true},
@@ -57,7 +57,7 @@ constexpr std::array formats{
                 .extension = ".svg",
                 .summary = "all layers in one SVG file as Slic3r writes it; coordinates to 0.001 mm",
                 .open = open_layered_svg,
-                .pieces = true,
+                .chunks = true,
                 .cuts = true,
                 .rounding = text_rounding},
     LayerFormat{.name = "slc",
@@ -74,7 +74,7 @@ constexpr std::array formats{
                 .extension = ".dxf",
                 .summary = "DXF of AutoCAD Release 12, polylines; coordinates to 0.001 mm",
                 .open = open_dxf,
-                .pieces = true,
+                .chunks = true,
                 .one_way = true,
                 .cuts = true,
                 .rounding = text_rounding},
@@ -82,7 +82,7 @@ constexpr std::array formats{
                 .extension = ".geojson",
                 .summary = "GeoJSON, one feature per layer; coordinates to 0.001 mm",
                 .open = open_geojson,
-                .pieces = true,
+                .chunks = true,
                 .one_way = true,
                 .cuts = true,
                 .rounding = text_rounding},
@@ -90,7 +90,7 @@ constexpr std::array formats{
                 .extension = ".json",
                 .summary = "all that layers have as JSON; exact",
                 .open = open_layers_json,
-                .pieces = true,
+                .chunks = true,
                 .cuts = true,
                 .rounding = unrounded},
     LayerFormat{.name = "npz",
@@ -130,7 +130,7 @@ constexpr std::array formats{
                 .cuts = true},
     LayerFormat{.name = "svg-layers",
                 .extension = "",
-                .summary = "a folder with one SVG picture per layer; coordinates to 0.001 mm",
+                .summary = "a folder with one SVG image per layer; coordinates to 0.001 mm",
                 .open = open_svg_layers,
                 .directory = true,
                 .one_way = true,
@@ -138,32 +138,32 @@ constexpr std::array formats{
                 .rounding = text_rounding},
     LayerFormat{.name = "png",
                 .extension = "",
-                .summary = "a folder with one PNG picture per layer; as fine as its pixels",
-                .open = open_picture_folder,
+                .summary = "a folder with one PNG image per layer; as fine as its pixels",
+                .open = open_image_folder,
                 .directory = true,
                 .one_way = true,
                 .cuts = true,
-                .picture = true},
+                .image = true},
     LayerFormat{.name = "png-zip",
                 .extension = ".zip",
-                .summary = "the same pictures in a zip archive",
-                .open = open_picture_archive,
+                .summary = "the same images in a zip archive",
+                .open = open_image_archive,
                 .one_way = true,
                 .cuts = true,
-                .picture = true},
+                .image = true},
     LayerFormat{.name = "sl1",
                 .extension = ".sl1",
                 .summary = "a job for the resin printer Original Prusa SL1; as fine as its pixels",
                 .open = open_sl1,
                 .one_way = true,
-                .picture = true,
+                .image = true,
                 .exposure = true},
     LayerFormat{.name = "sl1s",
                 .extension = ".sl1s",
                 .summary = "the same for the SL1S",
                 .open = open_sl1s,
                 .one_way = true,
-                .picture = true,
+                .image = true,
                 .exposure = true},
 };
 
@@ -198,7 +198,7 @@ void check_info(const LayerFileInfo& info) {
 /// Counts layers that were not cut at mid-height.
 class MovedCuts {
   public:
-    void note(const PlanePlace& layer) {
+    void note(const PlanePosition& layer) {
         const auto is_at = [&](double z) {
             return std::abs(layer.z - z) <= same_height_mm;
         };
@@ -213,14 +213,14 @@ class MovedCuts {
     [[nodiscard]] std::vector<std::string> warnings() const {
         if (all_ == 0)
             return {};
-        return {fmt::format(
-            "{} cut {}, the lowest at z = {:.6g} mm: the format has no place for that, and readers "
-            "take the middle; {} have",
-            counted(all_, "layer was", "layers were"),
-            tops_ == all_      ? "at the top"
-            : bottoms_ == all_ ? "at the bottom"
-                               : "elsewhere than in the middle",
-            lowest_, names_of_exact())};
+        return {
+            fmt::format("{} cut {}, the lowest at z = {:.6g} mm: the format cannot hold that, and readers "
+                        "take the middle; {} have",
+                        counted(all_, "layer was", "layers were"),
+                        tops_ == all_      ? "at the top"
+                        : bottoms_ == all_ ? "at the bottom"
+                                           : "elsewhere than in the middle",
+                        lowest_, names_of_exact())};
     }
 
   private:
@@ -233,19 +233,19 @@ class MovedCuts {
 /// Enforces LayerWriteOptions::most_bytes and `strict` on another writer: throws after the layer that exceeds
 /// the limit, and instead of ending a file with warnings. Adds the warnings that follow from the table of
 /// formats.
-class HeldWriter final : public LayerWriter {
+class LimitedWriter final : public LayerWriter {
   public:
-    HeldWriter(std::unique_ptr<LayerWriter> writer, std::string path, const LayerFormat& format,
-               const LayerWriteOptions& options)
+    LimitedWriter(std::unique_ptr<LayerWriter> writer, std::string path, const LayerFormat& format,
+                  const LayerWriteOptions& options)
         : writer_(std::move(writer)), path_(std::move(path)), keeps_cuts_(format.cuts),
           most_bytes_(options.most_bytes), strict_(options.strict) {}
 
     std::function<void()> prepare(std::span<const Layer> parts) override {
         std::function<void()> write = writer_->prepare(parts);
-        return [this, write = std::move(write), place = plane_place(parts)] {
+        return [this, write = std::move(write), position = plane_position(parts)] {
             write();
             if (!keeps_cuts_)
-                moved_cuts_.note(place);
+                moved_cuts_.note(position);
             check_bytes(path_, bytes(), most_bytes_);
         };
     }
@@ -315,7 +315,7 @@ const LayerFormat& layer_format(std::string_view name, const std::string& path) 
                     fmt::format("there is no format '{}'; choose from {}", excerpt(name), names()));
     if (path == "-")
         throw Error(ErrorKind::usage,
-                    fmt::format("standard output has no extension to tell the format; choose a `format`: {}",
+                    fmt::format("standard output has no extension to name the format; choose a `format`: {}",
                                 names()));
     for (const std::string_view machine_code : {".gcode", ".gco", ".g", ".bgcode", ".nc"})
         if (extension == machine_code)
@@ -325,7 +325,7 @@ const LayerFormat& layer_format(std::string_view name, const std::string& path) 
                             "PrusaSlicer and Cura do",
                             path));
     throw Error(ErrorKind::usage,
-                fmt::format("the extension of '{}' tells no format; choose another, or a `format`: {}", path,
+                fmt::format("the extension of '{}' names no format; choose another, or a `format`: {}", path,
                             names()));
 }
 
@@ -340,7 +340,7 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
     std::unique_ptr<LayerWriter> writer = format.open(path, info, options);
     if (options.most_bytes == 0 && !options.strict && format.cuts)
         return writer;
-    return std::make_unique<HeldWriter>(std::move(writer), path, format, options);
+    return std::make_unique<LimitedWriter>(std::move(writer), path, format, options);
 }
 
 void write_planes(LayerWriter& writer, std::size_t planes,

@@ -36,9 +36,9 @@ OpenLayerWriter open_npz;
 OpenLayerWriter open_ovf;
 /// A folder with a PNG image for each layer, `00000.png` and so on, numbered by Layer::index, and
 /// `manifest.json`.
-OpenLayerWriter open_picture_folder;
+OpenLayerWriter open_image_folder;
 /// The same in a zip archive.
-OpenLayerWriter open_picture_archive;
+OpenLayerWriter open_image_archive;
 /// The print jobs of Original Prusa SL1 and SL1S.
 OpenLayerWriter open_sl1;
 OpenLayerWriter open_sl1s;

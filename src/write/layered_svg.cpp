@@ -69,7 +69,7 @@ constexpr std::string_view screen_style =
 class LayeredSvgWriter final : public SequentialWriter {
   public:
     LayeredSvgWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, head(info), {.written_label = quotable}),
+        : SequentialWriter(path, info, header(info), {.written_label = quotable}),
           origin_(steps_below(info.box.min)) {
         for (const PartInfo& part : info.parts)
             exposed_.push_back(part.exposure.has_value());
@@ -83,7 +83,7 @@ class LayeredSvgWriter final : public SequentialWriter {
   private:
     // Importers that know Slic3r's files take coordinates as millimetres and ignore title and style. Browsers
     // apply the style: they show one layer, which the address can name, with y upwards.
-    static std::string head(const LayerFileInfo& info) {
+    static std::string header(const LayerFileInfo& info) {
         const Box3& box = info.box;
         const auto mm = [](std::int64_t steps) {
             return decimal_text(static_cast<double>(steps) * text_step_mm, 3, 0);
@@ -107,7 +107,7 @@ class LayeredSvgWriter final : public SequentialWriter {
             counted(info.layers, "layer"), screen_style);
     }
 
-    std::string layer_head(const PlanePlace& place) override {
+    std::string layer_header(const PlanePosition& place) override {
         return fmt::format(
             "  <g id=\"layer{}\" slic3r:z=\"{}\" slic3r:slice-z=\"{}\" slic3r:layer-height=\"{}\">\n",
             place.position, height_text(place.top), height_text(place.z),
@@ -171,19 +171,19 @@ class LayeredSvgWriter final : public SequentialWriter {
 };
 
 // First bytes of each image. They identify a folder of images that may be replaced.
-constexpr std::string_view picture_mark =
+constexpr std::string_view image_magic =
     "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- A layer cut by Lamella -->\n";
 
-bool is_our_picture(const fs::path& path) {
+bool is_our_image(const fs::path& path) {
     const std::string name = path.filename().string();
-    return name.starts_with("layer_") && name.ends_with(".svg") && begins_with_mark(path, picture_mark);
+    return name.starts_with("layer_") && name.ends_with(".svg") && begins_with_magic(path, image_magic);
 }
 
 class SvgLayersWriter final : public OrderedWriter {
   public:
     SvgLayersWriter(const std::string& path, const LayerFileInfo& info)
-        : OrderedWriter(info, {.supports = true}, Ascending::z_and_index), directory_(path, is_our_picture),
-          head_(head(info)) {}
+        : OrderedWriter(info, {.supports = true}, Ascending::z_and_index), directory_(path, is_our_image),
+          header_(header(info)) {}
 
     std::uint64_t bytes() const noexcept override { return directory_.bytes(); }
 
@@ -193,14 +193,14 @@ class SvgLayersWriter final : public OrderedWriter {
         const std::shared_ptr<ByteBuffer> text = buffer();
         format(parts, *text);
         directory_.write(fmt::format("layer_{:05}.svg", parts.front().index), text->view());
-        return [](const PlanePlace&) {
+        return [](const PlanePosition&) {
         };
     }
 
     void end_file() override { directory_.commit(); }
 
     // Millimetres, with y upwards and a margin around the part, so that all images have the same frame.
-    static std::string head(const LayerFileInfo& info) {
+    static std::string header(const LayerFileInfo& info) {
         const Box3& box = info.box;
         const double margin = 0.03 * std::max(box.max.x - box.min.x, box.max.y - box.min.y) + 0.1;
         const double width = box.max.x - box.min.x + 2 * margin;
@@ -211,12 +211,12 @@ class SvgLayersWriter final : public OrderedWriter {
         return fmt::format("{0}<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{1}mm\" height=\"{2}mm\" "
                            "viewBox=\"{3} {4} {1} {2}\">\n"
                            "<rect x=\"{3}\" y=\"{4}\" width=\"{1}\" height=\"{2}\" fill=\"#fdfdfb\"/>\n",
-                           picture_mark, mm(width), mm(height), mm(box.min.x - margin),
+                           image_magic, mm(width), mm(height), mm(box.min.x - margin),
                            mm(-box.max.y - margin));
     }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const {
-        out.append(head_);
+        out.append(header_);
         out.append(fmt::format("<title>Layer {}, z = {} mm</title>\n", parts.front().index,
                                height_text(parts.front().z)));
         out.append("<g transform=\"scale(1,-1)\" stroke-width=\"1\" stroke-linejoin=\"round\">\n");
@@ -249,7 +249,7 @@ class SvgLayersWriter final : public OrderedWriter {
     }
 
     AtomicDirectory directory_;
-    std::string head_;
+    std::string header_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
 };
 

@@ -28,10 +28,10 @@ void put_numbers(std::span<const Point2> points, ByteBuffer& out) {
 class LayersJsonWriter final : public SequentialWriter {
   public:
     LayersJsonWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, head(info), {.hatches = true, .written_label = quotable}) {}
+        : SequentialWriter(path, info, header(info), {.hatches = true, .written_label = quotable}) {}
 
   private:
-    static std::string head(const LayerFileInfo& info) {
+    static std::string header(const LayerFileInfo& info) {
         std::string text = "{\"format\":\"lamella layers\",\"version\":1,\"units\":\"mm\",\"parts\":[";
         for (const PartInfo& part : info.parts) {
             text += fmt::format("{{\"label\":{}}},", json_quoted(part.label));
@@ -42,7 +42,7 @@ class LayersJsonWriter final : public SequentialWriter {
         return text + ",\"layers\":[";
     }
 
-    std::string layer_head(const PlanePlace& place) override {
+    std::string layer_header(const PlanePosition& place) override {
         return fmt::format("{}{{\"index\":{},\"z\":{},\"bottom\":{},\"top\":{},\"parts\":[",
                            place.position == 0 ? "\n" : ",\n", place.index, shortest_text(place.z),
                            shortest_text(place.bottom), shortest_text(place.top));

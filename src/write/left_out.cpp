@@ -1,6 +1,6 @@
 #include "write/left_out.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 #include "core/counted.hpp"
 
 #include <fmt/format.h>
@@ -86,11 +86,11 @@ std::vector<std::string> LeftOut::warnings() const {
                         counted(changed_labels_, "label was", "labels were"),
                         printable(first_label_, longest_label), printable(first_written_, longest_label)));
     if (!holds_.labels && labelled_ != 0)
-        lines.push_back(fmt::format("{} not written, the first \"{}\": the format has no place for labels",
+        lines.push_back(fmt::format("{} not written, the first \"{}\": the format cannot hold labels",
                                     counted(labelled_, "label was", "labels were"),
                                     printable(first_labelled_, longest_label)));
     if (!holds_.supports && supports_ != 0)
-        lines.push_back(fmt::format("{}: the format has no place for that; 3mf has",
+        lines.push_back(fmt::format("{}: the format cannot hold that; 3mf has",
                                     counted(supports_, "part is a support", "parts are supports")));
     if (!holds_.parameters && known_ != 0)
         lines.push_back(fmt::format(

@@ -153,7 +153,7 @@ void write_mesh_page(const std::string& path, const IndexedMesh& mesh, const Dia
     executor.check_cancelled();
 
     AtomicFile file(path);
-    file.append(frame.head);
+    file.append(frame.header);
     file.append(json_element(
         "head",
         fmt::format(R"({{"kind":"mesh","version":1,"title":{},"box":{},"step_mm":{},"triangles":{},)"

@@ -134,12 +134,12 @@ StlWriter::StlWriter(const std::string& path, std::uint64_t triangles) : announc
             ErrorKind::limit,
             fmt::format("{} triangles are more than a binary STL file can count (2^32 - 1)", triangles));
     file_ = std::make_unique<AtomicFile>(path);
-    std::array<char, 84> head{};
+    std::array<char, 84> header{};
     // The text must not begin with "solid": readers take such a file for ASCII STL.
-    put_text(head.data(), "Binary STL written by Lamella, millimetres");
+    put_text(header.data(), "Binary STL written by Lamella, millimetres");
     const auto count = static_cast<std::uint32_t>(triangles);
-    std::memcpy(head.data() + 80, &count, sizeof count);
-    file_->append({head.data(), head.size()});
+    std::memcpy(header.data() + 80, &count, sizeof count);
+    file_->append({header.data(), header.size()});
 }
 
 StlWriter::~StlWriter() = default;

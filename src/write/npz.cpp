@@ -25,18 +25,18 @@ static_assert(std::endian::native == std::endian::little, "numbers are written a
 
 // Returns the header of an array: magic, version 1.0, the length of the rest, and a Python dictionary. Its
 // length is that of NumPy's headers, so that the numbers begin at a multiple of 64.
-std::string npy_head(std::string_view type, const std::string& shape, std::size_t size) {
+std::string npy_header(std::string_view type, const std::string& shape, std::size_t size) {
     std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
     constexpr std::size_t before = 10;
     text.resize(size - before - 1, ' ');
     text += '\n';
-    std::string head("\x93NUMPY\x01\x00", 8);
-    head += static_cast<char>(text.size() & 0xFF);
-    head += static_cast<char>(text.size() >> 8);
-    return head + text;
+    std::string header("\x93NUMPY\x01\x00", 8);
+    header += static_cast<char>(text.size() & 0xFF);
+    header += static_cast<char>(text.size() >> 8);
+    return header + text;
 }
 
-constexpr std::size_t head_size = 128;
+constexpr std::size_t header_size = 128;
 
 template <class T>
 std::string_view bytes_in(std::span<const T> values) {
@@ -69,7 +69,7 @@ class NpzWriter final : public OrderedWriter {
     NpzWriter(const std::string& path, const LayerFileInfo& info)
         : OrderedWriter(info, {.hatches = true, .written_label = printable_label}), labels_(info.parts),
           rule_(info.rule), zip_(path, Overwriting::yes) {
-        zip_.begin("points.npy", ZipMethod::stored, head_size);
+        zip_.begin("points.npy", ZipMethod::stored, header_size);
     }
 
     std::uint64_t bytes() const noexcept override { return zip_.bytes() + waiting_; }
@@ -79,7 +79,7 @@ class NpzWriter final : public OrderedWriter {
         std::vector<std::pair<Layer, std::uint32_t>> layers; // each with the checksum of its points
         for (const Layer& layer : parts)
             layers.emplace_back(layer, crc32_of(bytes_in(layer.points.span())));
-        return [this, layers = std::move(layers)](const PlanePlace& place) {
+        return [this, layers = std::move(layers)](const PlanePosition& place) {
             planes_.push_back(place);
             for (const auto& [layer, crc] : layers) {
                 const std::string_view bytes = bytes_in(layer.points.span());
@@ -97,16 +97,16 @@ class NpzWriter final : public OrderedWriter {
 
     void end_file() override {
         waiting_ = 0;
-        zip_.end(npy_head("<f8", fmt::format("{}, 2", points_), head_size));
+        zip_.end(npy_header("<f8", fmt::format("{}, 2", points_), header_size));
         add_numbers<std::int64_t>("offsets", "<i8", offsets_);
         add_contour_numbers<char>("closed", "|b1", [](const Contour& c) -> char { return c.closed ? 1 : 0; });
         add_contour_numbers<std::int64_t>("layer", "<i8", [](const Contour& c) { return c.layer; });
         add_contour_numbers<std::int64_t>("part", "<i8", [](const Contour& c) { return c.part; });
         add_plane_numbers<std::int64_t>(
-            "index", "<i8", [](const PlanePlace& p) { return static_cast<std::int64_t>(p.index); });
-        add_plane_numbers<double>("z", "<f8", [](const PlanePlace& p) { return p.z; });
-        add_plane_numbers<double>("bottom", "<f8", [](const PlanePlace& p) { return p.bottom; });
-        add_plane_numbers<double>("top", "<f8", [](const PlanePlace& p) { return p.top; });
+            "index", "<i8", [](const PlanePosition& p) { return static_cast<std::int64_t>(p.index); });
+        add_plane_numbers<double>("z", "<f8", [](const PlanePosition& p) { return p.z; });
+        add_plane_numbers<double>("bottom", "<f8", [](const PlanePosition& p) { return p.bottom; });
+        add_plane_numbers<double>("top", "<f8", [](const PlanePosition& p) { return p.top; });
         add_labels();
         if (rule_ != PlaneRule::section_above)
             add_texts("rule", {characters(plane_rule_name(rule_))});
@@ -131,7 +131,7 @@ class NpzWriter final : public OrderedWriter {
         Array(ZipWriter& zip, std::string_view name, std::string_view type, const std::string& shape)
             : zip_(zip) {
             zip_.begin(fmt::format("{}.npy", name), ZipMethod::stored);
-            waiting_ = npy_head(type, shape, head_size);
+            waiting_ = npy_header(type, shape, header_size);
         }
 
         void add(std::string_view bytes) {
@@ -164,7 +164,7 @@ class NpzWriter final : public OrderedWriter {
     template <class T, class Value>
     void add_plane_numbers(std::string_view name, std::string_view type, const Value& value) {
         std::vector<T> values;
-        for (const PlanePlace& plane : planes_)
+        for (const PlanePosition& plane : planes_)
             values.push_back(value(plane));
         add_numbers<T>(name, type, values);
     }
@@ -240,7 +240,7 @@ class NpzWriter final : public OrderedWriter {
     std::vector<PartInfo> labels_;
     PlaneRule rule_;
     ZipWriter zip_;
-    std::vector<PlanePlace> planes_;
+    std::vector<PlanePosition> planes_;
     std::vector<PartPlane> counts_; ///< all parts of the first plane, then of the second ...
     ByteStore hatches_;
     std::vector<std::int64_t> offsets_{0};

@@ -11,7 +11,7 @@
 
 namespace lamella {
 
-PlanePlace plane_place(std::span<const Layer> parts) {
+PlanePosition plane_position(std::span<const Layer> parts) {
     const Layer& layer = parts.front();
     return {0, layer.index, layer.z, layer.bottom, layer.top};
 }
@@ -44,9 +44,9 @@ void check_same_planes(std::span<const LayerStack> parts, const LayerFileInfo& i
 }
 
 PlaneOrder::PlaneOrder(const LayerFileInfo& info, Ascending ascending)
-    : is_piece_(info.piece != nullptr), known_finite_(info.known_finite),
-      before_(info.piece != nullptr ? info.piece->before : 0),
-      announced_(info.piece != nullptr ? info.piece->layers : info.layers), parts_(info.parts.size()),
+    : is_chunk_(info.chunk != nullptr), known_finite_(info.known_finite),
+      before_(info.chunk != nullptr ? info.chunk->before : 0),
+      announced_(info.chunk != nullptr ? info.chunk->layers : info.layers), parts_(info.parts.size()),
       ascending_(ascending) {}
 
 void PlaneOrder::check_parts(std::span<const Layer> parts) const {
@@ -63,7 +63,7 @@ void PlaneOrder::check_parts(std::span<const Layer> parts) const {
     }
 }
 
-void PlaneOrder::next(PlanePlace& plane) {
+void PlaneOrder::next(PlanePosition& plane) {
     if (count_ > 0 && !(plane.z > last_.z))
         throw Error(
             ErrorKind::usage,
@@ -83,11 +83,12 @@ void PlaneOrder::end() const {
 
 std::function<void()> OrderedWriter::prepare(std::span<const Layer> parts) {
     order_.check_parts(parts);
-    return [this, write = formatted(parts), extras = extras_of(parts), place = plane_place(parts)]() mutable {
-        extras.gaps.count = order_.adjoins(place) ? 0 : 1;
-        order_.next(place);
+    return [this, write = formatted(parts), extras = extras_of(parts),
+            offset = plane_position(parts)]() mutable {
+        extras.gaps.count = order_.adjoins(offset) ? 0 : 1;
+        order_.next(offset);
         left_out_.note(extras);
-        write(place);
+        write(offset);
     };
 }
 

@@ -19,7 +19,7 @@
 namespace lamella {
 
 /// Heights and index of a plane, and its position in the file, which is known when it is written.
-struct PlanePlace {
+struct PlanePosition {
     std::uint64_t position = 0; ///< 0 for the first of the file
     std::uint64_t index = 0;
     double z = 0;
@@ -28,7 +28,7 @@ struct PlanePlace {
 };
 
 /// Returns the values that the layers of a plane have in common.
-[[nodiscard]] PlanePlace plane_place(std::span<const Layer> parts);
+[[nodiscard]] PlanePosition plane_position(std::span<const Layer> parts);
 
 /// Throws Error{usage} for the first layer of a part whose heights differ from those of the first part, by
 /// which a plane is written.
@@ -50,25 +50,25 @@ class PlaneOrder {
     /// of a hatch line is missing.
     void check_parts(std::span<const Layer> parts) const;
     /// Sets the position of the plane. Throws Error{usage} if it does not follow the one before.
-    void next(PlanePlace& plane);
+    void next(PlanePosition& plane);
     /// Throws Error{usage} if there were more or fewer planes than announced.
     void end() const;
     /// Returns whether a plane's layer begins at the top of the last one. For a range of a file the writer of
     /// the whole file checks this.
-    [[nodiscard]] bool adjoins(const PlanePlace& plane) const noexcept {
-        return is_piece_ || count_ == 0 || std::abs(plane.bottom - last_.top) <= same_height_mm;
+    [[nodiscard]] bool adjoins(const PlanePosition& plane) const noexcept {
+        return is_chunk_ || count_ == 0 || std::abs(plane.bottom - last_.top) <= same_height_mm;
     }
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
   private:
-    bool is_piece_;
+    bool is_chunk_;
     bool known_finite_;
     std::uint64_t before_; ///< number of planes of the file below this range
     std::uint64_t announced_;
     std::size_t parts_;
     Ascending ascending_;
     std::uint64_t count_ = 0;
-    PlanePlace last_;
+    PlanePosition last_;
 };
 
 /// Base of writers that check the order of planes and report what they leave out.
@@ -80,11 +80,11 @@ class OrderedWriter : public LayerWriter {
 
   protected:
     /// Writes a formatted plane; called in order.
-    using Write = std::function<void(const PlanePlace& place)>;
+    using Write = std::function<void(const PlanePosition& offset)>;
 
     OrderedWriter(const LayerFileInfo& info, Holds holds, Ascending ascending = Ascending::z)
         : order_(info, ascending),
-          left_out_(holds, tells_of_parts(info) ? std::span(info.parts) : std::span<const PartInfo>()) {}
+          left_out_(holds, names_parts(info) ? std::span(info.parts) : std::span<const PartInfo>()) {}
 
     /// Formats a plane. Called from any threads.
     [[nodiscard]] virtual Write formatted(std::span<const Layer> parts) = 0;
@@ -97,8 +97,8 @@ class OrderedWriter : public LayerWriter {
 
   private:
     /// Returns whether this writer warns about parts: among several ranges of a file only the first one does.
-    static bool tells_of_parts(const LayerFileInfo& info) noexcept {
-        return info.piece == nullptr || info.piece->before == 0;
+    static bool names_parts(const LayerFileInfo& info) noexcept {
+        return info.chunk == nullptr || info.chunk->before == 0;
     }
 
     PlaneOrder order_;

@@ -121,13 +121,13 @@ class BlockWriter {
     void put_contour(std::span<const Point2> contour, bool closed, std::string_view of_block) {
         const std::size_t expected = contour.size() + (closed ? 1 : 0);
         char* const begin = room(expected, of_block);
-        char* const points = put_head(begin, ovf::block::line_sequence, expected, of_block);
+        char* const points = put_header(begin, ovf::block::line_sequence, expected, of_block);
         const std::size_t listed = floats_.put(contour, closed, layer_, points).points;
         if (listed == 0)
             return;
         if (!closed)
             keep_open(points, listed);
-        put_head_again(begin, ovf::block::line_sequence, points, listed, of_block);
+        put_header_again(begin, ovf::block::line_sequence, points, listed, of_block);
         end(begin, ovf::block::line_sequence, listed, of_block);
     }
 
@@ -135,11 +135,11 @@ class BlockWriter {
         if (hatches.empty())
             return;
         char* const begin = room(hatches.size(), of_block);
-        char* const points = put_head(begin, ovf::block::hatches, hatches.size(), of_block);
+        char* const points = put_header(begin, ovf::block::hatches, hatches.size(), of_block);
         const std::size_t listed = floats_.put_lines(hatches, layer_, points);
         if (listed == 0)
             return;
-        put_head_again(begin, ovf::block::hatches, points, listed, of_block);
+        put_header_again(begin, ovf::block::hatches, points, listed, of_block);
         end(begin, ovf::block::hatches, listed, of_block);
     }
 
@@ -157,12 +157,12 @@ class BlockWriter {
     }
 
     char* room(std::size_t points, std::string_view of_block) {
-        constexpr std::size_t most_head = 5 * most_varint;
-        return blocks_.bytes->room(most_head + (points + 1) * float_point_size + of_block.size());
+        constexpr std::size_t most_header = 5 * most_varint;
+        return blocks_.bytes->room(most_header + (points + 1) * float_point_size + of_block.size());
     }
 
     /// Writes the header of the points: the lengths of the block, of its vectors and of their list.
-    static char* put_head(char* out, std::uint32_t kind, std::size_t points, std::string_view of_block) {
+    static char* put_header(char* out, std::uint32_t kind, std::size_t points, std::string_view of_block) {
         constexpr auto bytes = ProtobufType::bytes;
         char text[most_varint];
         const auto size = [&](std::uint64_t value) {
@@ -178,22 +178,22 @@ class BlockWriter {
     }
 
     /// Rewrites the header for fewer points than announced, and moves the points to its new end.
-    static void put_head_again(char* begin, std::uint32_t kind, const char* points, std::size_t count,
-                               std::string_view of_block) {
-        char* const moved = begin + head_size(kind, count, of_block);
+    static void put_header_again(char* begin, std::uint32_t kind, const char* points, std::size_t count,
+                                 std::string_view of_block) {
+        char* const moved = begin + header_size(kind, count, of_block);
         if (moved != points)
             std::memmove(moved, points, count * float_point_size);
-        put_head(begin, kind, count, of_block);
+        put_header(begin, kind, count, of_block);
     }
 
-    static std::size_t head_size(std::uint32_t kind, std::size_t points, std::string_view of_block) {
+    static std::size_t header_size(std::uint32_t kind, std::size_t points, std::string_view of_block) {
         char text[5 * most_varint];
-        return static_cast<std::size_t>(put_head(text, kind, points, of_block) - text);
+        return static_cast<std::size_t>(put_header(text, kind, points, of_block) - text);
     }
 
     void end(char* begin, std::uint32_t kind, std::size_t points, std::string_view of_block) {
         blocks_.begins.push_back(blocks_.bytes->view().size());
-        char* const behind = begin + head_size(kind, points, of_block) + points * float_point_size;
+        char* const behind = begin + header_size(kind, points, of_block) + points * float_point_size;
         blocks_.bytes->end_at(put_text(behind, of_block));
     }
 
@@ -234,13 +234,13 @@ class OvfWriter final : public OrderedWriter {
                 writer.put_contour(layer.contour(i), layer.closed(i), ends_of_blocks_[part]);
             writer.put_hatches(layer.hatches.span(), ends_of_blocks_[part]);
         }
-        return [this, blocks](const PlanePlace& place) {
-            if (place.position == 0) {
-                heights_.add(static_cast<float>(place.bottom), place.bottom, "bottom", place.index);
-                layer_thickness_ = place.top - place.bottom;
+        return [this, blocks](const PlanePosition& offset) {
+            if (offset.position == 0) {
+                heights_.add(static_cast<float>(offset.bottom), offset.bottom, "bottom", offset.index);
+                layer_thickness_ = offset.top - offset.bottom;
             }
-            heights_.add(static_cast<float>(place.top), place.top, "top", place.index);
-            append_plane(*blocks, place.top);
+            heights_.add(static_cast<float>(offset.top), offset.top, "top", offset.index);
+            append_plane(*blocks, offset.top);
         };
     }
 
@@ -261,9 +261,9 @@ class OvfWriter final : public OrderedWriter {
         table.integer(ovf::table::shell, static_cast<std::int64_t>(file_.bytes()));
         table.integers(ovf::table::positions, planes_);
         file_.append(job.delimited());
-        const std::uint64_t table_place = file_.bytes();
+        const std::uint64_t table_offset = file_.bytes();
         file_.append(table.delimited());
-        file_.overwrite(ovf::magic.size(), bytes_of(table_place));
+        file_.overwrite(ovf::magic.size(), bytes_of(table_offset));
         file_.commit();
     }
 
@@ -277,20 +277,20 @@ class OvfWriter final : public OrderedWriter {
         const std::string shell_bytes = shell.delimited();
         planes_.push_back(begin);
 
-        const std::uint64_t shell_place = begin + position_size + blocks.bytes->view().size();
-        const std::uint64_t table_place = shell_place + shell_bytes.size();
-        std::vector<std::uint64_t> places = blocks.begins;
-        for (std::uint64_t& place : places)
-            place += begin + position_size;
+        const std::uint64_t shell_offset = begin + position_size + blocks.bytes->view().size();
+        const std::uint64_t table_offset = shell_offset + shell_bytes.size();
+        std::vector<std::uint64_t> offsets = blocks.begins;
+        for (std::uint64_t& offset : offsets)
+            offset += begin + position_size;
         ProtobufMessage table;
-        table.integer(ovf::table::shell, static_cast<std::int64_t>(shell_place));
-        table.integers(ovf::table::positions, places);
+        table.integer(ovf::table::shell, static_cast<std::int64_t>(shell_offset));
+        table.integers(ovf::table::positions, offsets);
 
-        file_.append(bytes_of(table_place));
+        file_.append(bytes_of(table_offset));
         file_.append(blocks.bytes->view());
-        assert(file_.bytes() == shell_place);
+        assert(file_.bytes() == shell_offset);
         file_.append(shell_bytes);
-        assert(file_.bytes() == table_place);
+        assert(file_.bytes() == table_offset);
         file_.append(table.delimited());
     }
 

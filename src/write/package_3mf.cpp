@@ -31,7 +31,7 @@ PackageWriter::PackageWriter(const std::string& path, const LayerFileInfo& info,
              ZipMethod::deflated);
 }
 
-Piece PackageWriter::compressed(std::string_view text) {
+Chunk PackageWriter::compressed(std::string_view text) {
     std::unique_ptr<Deflater> deflater;
     {
         const std::lock_guard lock(mutex_);
@@ -42,12 +42,12 @@ Piece PackageWriter::compressed(std::string_view text) {
     }
     if (!deflater)
         deflater = std::make_unique<Deflater>();
-    Piece piece{{}, text.size(), crc32_of(text)};
-    deflater->append_piece(text, piece.bytes);
-    piece.bytes.shrink_to_fit();
+    Chunk chunk{{}, text.size(), crc32_of(text)};
+    deflater->append_chunk(text, chunk.bytes);
+    chunk.bytes.shrink_to_fit();
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(deflater));
-    return piece;
+    return chunk;
 }
 
 std::string box_mesh(const Box3& box) {

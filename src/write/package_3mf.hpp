@@ -17,12 +17,12 @@
 
 namespace lamella::package_3mf {
 
-struct Piece {
+struct Chunk {
     std::string bytes;
     std::uint64_t size = 0;
     std::uint32_t crc = 0;
 
-    [[nodiscard]] ZipPiece in_zip() const { return {bytes, size, crc}; }
+    [[nodiscard]] ZipChunk in_zip() const { return {bytes, size, crc}; }
 };
 
 class PackageWriter : public OrderedWriter {
@@ -37,7 +37,7 @@ class PackageWriter : public OrderedWriter {
 
     [[nodiscard]] ZipWriter& zip() noexcept { return zip_; }
     /// Compresses one of several chunks that make up a part. For any number of threads.
-    [[nodiscard]] Piece compressed(std::string_view text);
+    [[nodiscard]] Chunk compressed(std::string_view text);
 
   private:
     ZipWriter zip_;

@@ -15,7 +15,7 @@ namespace lamella {
 
 namespace {
 
-constexpr std::string_view place_of_data = "<!--lamella-data-->";
+constexpr std::string_view position_of_data = "<!--lamella-data-->";
 
 /// Names in the order of Tone.
 constexpr std::array<std::string_view, 4> tone_names{"plain", "good", "warning", "bad"};
@@ -34,10 +34,10 @@ std::string section_json(const PageSection& section) {
                        json_list(section.facts, fact_json));
 }
 
-std::string place_json(const PagePlace& place) {
+std::string location_json(const PageLocation& position) {
     return fmt::format(R"({{"kind":{},"text":{},"closed":{},"found":{},"points":{}}})",
-                       page_quoted(place.kind), page_quoted(place.text), place.closed, place.found,
-                       json_list(place.points, point_json));
+                       page_quoted(position.kind), page_quoted(position.text), position.closed,
+                       position.found, json_list(position.points, point_json));
 }
 
 } // namespace
@@ -47,10 +47,10 @@ PageFrame page_frame(const PageOptions& options) {
     if (viewer.empty())
         throw Error(ErrorKind::usage,
                     fmt::format("there is no viewer, and pages need it: {}", options.no_viewer));
-    const std::size_t place = viewer.find(place_of_data);
-    if (place == std::string_view::npos)
-        throw Error(ErrorKind::internal, fmt::format("the viewer has no {}", place_of_data));
-    return {viewer.substr(0, place), viewer.substr(place + place_of_data.size())};
+    const std::size_t position = viewer.find(position_of_data);
+    if (position == std::string_view::npos)
+        throw Error(ErrorKind::internal, fmt::format("the viewer has no {}", position_of_data));
+    return {viewer.substr(0, position), viewer.substr(position + position_of_data.size())};
 }
 
 std::string page_number(double value) {
@@ -74,7 +74,7 @@ std::string exposure_json(const Exposure& exposure) {
 
 std::string notes_json(const PageNotes& notes) {
     return fmt::format(R"({{"sections":{},"places":{}}})", json_list(notes.sections, section_json),
-                       json_list(notes.places, place_json));
+                       json_list(notes.locations, location_json));
 }
 
 std::string json_element(std::string_view id, std::string_view json) {

@@ -16,19 +16,19 @@ namespace lamella {
 /// Text of the viewer before and after the data. page_frame throws Error{usage} if there is no viewer, and
 /// Error{internal} if it has no placeholder for data.
 struct PageFrame {
-    std::string_view head;
+    std::string_view header;
     std::string_view tail;
 };
 [[nodiscard]] PageFrame page_frame(const PageOptions& options);
 
 /// Returns [a,b,c] of the texts that `tell` makes of each item.
-template <class Range, class Tell>
-std::string json_list(const Range& range, const Tell& tell) {
+template <class Range, class Describe>
+std::string json_list(const Range& range, const Describe& describe) {
     std::string text = "[";
     for (const auto& item : range) {
         if (text.size() > 1)
             text += ',';
-        text += tell(item);
+        text += describe(item);
     }
     return text + ']';
 }

@@ -39,16 +39,16 @@ void append_chunk(std::string_view name, std::string_view content, ByteBuffer& o
 constexpr std::uint8_t grey = 0;
 constexpr std::uint8_t colour_and_alpha = 6;
 
-void append_head(std::uint32_t width, std::uint32_t height, std::uint8_t colours, ByteBuffer& out) {
+void append_header(std::uint32_t width, std::uint32_t height, std::uint8_t colours, ByteBuffer& out) {
     out.append(std::string_view("\x89PNG\r\n\x1a\n", 8));
     const std::array<char, 4> w = big_endian(width);
     const std::array<char, 4> h = big_endian(height);
-    std::array<char, 13> head{};
-    std::copy(w.begin(), w.end(), head.begin());
-    std::copy(h.begin(), h.end(), head.begin() + 4);
-    head[8] = 8;                          // bits
-    head[9] = static_cast<char>(colours); // the rest is 0: Deflate, the usual filters, not interlaced
-    append_chunk("IHDR", {head.data(), head.size()}, out);
+    std::array<char, 13> header{};
+    std::copy(w.begin(), w.end(), header.begin());
+    std::copy(h.begin(), h.end(), header.begin() + 4);
+    header[8] = 8;                          // bits
+    header[9] = static_cast<char>(colours); // the rest is 0: Deflate, the usual filters, not interlaced
+    append_chunk("IHDR", {header.data(), header.size()}, out);
 }
 
 } // namespace
@@ -97,19 +97,19 @@ void PngEncoder::add(std::span<const PixelRun> row, std::uint32_t times) {
 }
 
 void PngEncoder::finish(ByteBuffer& out) {
-    append_head(width_, height_, grey, out);
+    append_header(width_, height_, grey, out);
     append_chunk("IDAT", deflater_.finish(), out);
     append_chunk("IEND", {}, out);
     above_.clear();
 }
 
-void append_png(const ColourPicture& picture, ByteBuffer& out) {
-    const std::size_t row_size = std::size_t{4} * picture.width;
-    std::string rows((row_size + 1) * picture.height, '\0');
+void append_png(const ColourImage& image, ByteBuffer& out) {
+    const std::size_t row_size = std::size_t{4} * image.width;
+    std::string rows((row_size + 1) * image.height, '\0');
     const std::vector<std::uint8_t> none(row_size);
     const std::uint8_t* above = none.data();
-    for (std::size_t row = 0; row < picture.height; ++row) {
-        const std::uint8_t* const here = picture.values.data() + row * row_size;
+    for (std::size_t row = 0; row < image.height; ++row) {
+        const std::uint8_t* const here = image.values.data() + row * row_size;
         char* const to = rows.data() + row * (row_size + 1);
         to[0] = static_cast<char>(more_than_above);
         for (std::size_t i = 0; i < row_size; ++i)
@@ -120,7 +120,7 @@ void append_png(const ColourPicture& picture, ByteBuffer& out) {
     stream += deflated(rows);
     const std::array<char, 4> checksum = big_endian(adler32_of(rows));
     stream.append(checksum.data(), checksum.size());
-    append_head(picture.width, picture.height, colour_and_alpha, out);
+    append_header(image.width, image.height, colour_and_alpha, out);
     append_chunk("IDAT", stream, out);
     append_chunk("IEND", {}, out);
 }

@@ -2,7 +2,7 @@
 
 // Images as PNG files.
 
-#include "lamella/raster/picture.hpp"
+#include "lamella/raster/image.hpp"
 
 #include "raster/relief.hpp"
 #include "write/byte_buffer.hpp"
@@ -42,6 +42,6 @@ class PngEncoder {
 };
 
 /// Appends an image in colours as a PNG file.
-void append_png(const ColourPicture& picture, ByteBuffer& out);
+void append_png(const ColourImage& image, ByteBuffer& out);
 
 } // namespace lamella

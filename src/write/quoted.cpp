@@ -1,6 +1,6 @@
 #include "write/quoted.hpp"
 
-#include "container/text_place.hpp"
+#include "container/text_position.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -234,7 +234,7 @@ void put_lengths(const std::array<Code, symbols>& codes, BitWriter& out) {
 }
 
 // 3 + 14 bits, 19 lengths, 287 lengths of at most 7 + 7 bits, and the spare bytes of a BitWriter.
-constexpr std::size_t most_head_bytes = 600;
+constexpr std::size_t most_header_bytes = 600;
 
 /// Bits after the first literal of a short run: a copy, if the run is long enough for one.
 struct CopyBits {
@@ -346,7 +346,7 @@ void RunDeflater::write_block(bool last) {
     for (std::size_t i = 0; i < symbols; ++i)
         bits += frequencies[i] *
                 (codes[i].length + (i < literals ? 0U : 6U)); // up to 5 extra bits, and a distance
-    char* const room = stream_.room(bits / 8 + most_head_bytes);
+    char* const room = stream_.room(bits / 8 + most_header_bytes);
     BitWriter out(room, bits_, bit_count_);
     out.put(last ? 1 : 0, 1);
     out.put(2, 2); // dynamic Huffman codes

@@ -2,7 +2,7 @@
 
 // Compression of bytes that come as runs of equal ones.
 
-#include "lamella/raster/picture.hpp"
+#include "lamella/raster/image.hpp"
 
 #include "write/byte_buffer.hpp"
 

@@ -15,14 +15,15 @@ namespace lamella {
 
 class SequentialWriter : public OrderedWriter {
   public:
-    [[nodiscard]] std::uint64_t bytes() const noexcept final { return file_ ? file_->bytes() : piece_bytes_; }
+    [[nodiscard]] std::uint64_t bytes() const noexcept final { return file_ ? file_->bytes() : chunk_bytes_; }
 
   protected:
     /// Creates the file and writes `head`.
-    SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view head, Holds holds);
+    SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view header,
+                     Holds holds);
 
     /// Returns the text before the contours of a layer. Called in order.
-    [[nodiscard]] virtual std::string layer_head(const PlanePlace& place) = 0;
+    [[nodiscard]] virtual std::string layer_header(const PlanePosition& place) = 0;
     /// Appends the contours of a layer, part by part, and the text after them. Called from any threads.
     virtual void format(std::span<const Layer> parts, ByteBuffer& out) const = 0;
     /// Returns the end of the file. Called once, after the last layer.
@@ -33,9 +34,9 @@ class SequentialWriter : public OrderedWriter {
     void end_file() final;
     void append_bytes(std::string_view bytes);
 
-    std::optional<AtomicFile> file_; ///< unset if piece_ is set
-    const LayerFilePiece* piece_;    ///< a range of its layers
-    std::uint64_t piece_bytes_ = 0;
+    std::optional<AtomicFile> file_; ///< unset if chunk_ is set
+    const LayerFileChunk* chunk_;    ///< a range of its layers
+    std::uint64_t chunk_bytes_ = 0;
     std::uint64_t file_layers_;
 };
 

@@ -4,7 +4,7 @@
 #include "contour/same_height.hpp"
 #include "raster/relief.hpp"
 #include "write/display.hpp"
-#include "write/layer_pictures.hpp"
+#include "write/layer_images.hpp"
 #include "write/layer_writers.hpp"
 #include "write/ordered_writer.hpp"
 #include "write/png.hpp"
@@ -27,26 +27,26 @@ namespace {
 
 // The displays are those of Prusa's printers; the exposures are Prusa's values for its Orange Tough resin in
 // layers of 0.05 mm.
-constexpr PicturePrinter original_sl1{.name = "SL1",
-                                      .pixels = {2560, 1440},
-                                      .display_mm = {120.96, 68.04},
-                                      .portrait = true,
-                                      .mirror_x = true,
-                                      .normal_s = 7.5,
-                                      .first_s = 35,
-                                      .large_area = 0.5,
-                                      .small_pause_s = 5,
-                                      .large_pause_s = 8};
-constexpr PicturePrinter speed_sl1s{.name = "SL1S",
-                                    .pixels = {2560, 1620},
-                                    .display_mm = {128, 81},
+constexpr ImagePrinter original_sl1{.name = "SL1",
+                                    .pixels = {2560, 1440},
+                                    .display_mm = {120.96, 68.04},
                                     .portrait = true,
                                     .mirror_x = true,
-                                    .normal_s = 2,
-                                    .first_s = 25,
-                                    .large_area = 0.45,
-                                    .small_pause_s = 2.5,
-                                    .large_pause_s = 5};
+                                    .normal_s = 7.5,
+                                    .first_s = 35,
+                                    .large_area = 0.5,
+                                    .small_pause_s = 5,
+                                    .large_pause_s = 8};
+constexpr ImagePrinter speed_sl1s{.name = "SL1S",
+                                  .pixels = {2560, 1620},
+                                  .display_mm = {128, 81},
+                                  .portrait = true,
+                                  .mirror_x = true,
+                                  .normal_s = 2,
+                                  .first_s = 25,
+                                  .large_area = 0.45,
+                                  .small_pause_s = 2.5,
+                                  .large_pause_s = 5};
 
 constexpr std::uint64_t first_layers = 3;
 
@@ -103,11 +103,10 @@ double exposure(const std::optional<double>& given, double common, std::string_v
 class Sl1Writer final : public OrderedWriter {
   public:
     Sl1Writer(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options,
-              const PicturePrinter& printer)
+              const ImagePrinter& printer)
         : OrderedWriter(info, {.open_chains = false, .supports = true}), printer_(printer),
-          display_(display_for(info.box, options.picture, printer)),
-          pictures_(display_.grid(info.box), options.picture.raster),
-          relief_(info.box, relief_side, relief_side),
+          display_(display_for(info.box, options.image, printer)),
+          images_(display_.grid(info.box), options.image.raster), relief_(info.box, relief_side, relief_side),
           normal_s_(exposure(options.exposure.normal_s, printer.normal_s, "an exposure")),
           first_s_(exposure(options.exposure.first_s, printer.first_s, "a first exposure")),
           fade_layers_(options.exposure.fade_layers), created_(time_text(options.exposure.created_s)),
@@ -118,11 +117,11 @@ class Sl1Writer final : public OrderedWriter {
   private:
     Write formatted(std::span<const Layer> parts) override {
         return
-            [this, picture = pictures_.picture(parts), seen = relief_.spans(parts)](const PlanePlace& place) {
+            [this, image = images_.image(parts), seen = relief_.spans(parts)](const PlanePosition& offset) {
                 relief_.add(seen);
-                count(place, picture.covered * display_.pixel_mm2());
-                archive_.add_ready(fmt::format("{}{:05}.png", job_, place.position), ZipMethod::stored,
-                                   picture.in_zip());
+                count(offset, image.covered * display_.pixel_mm2());
+                archive_.add_ready(fmt::format("{}{:05}.png", job_, offset.position), ZipMethod::stored,
+                                   image.in_zip());
             };
     }
 
@@ -134,7 +133,7 @@ class Sl1Writer final : public OrderedWriter {
     }
 
     void add_thumbnails() {
-        const ColourPicture whole = relief_.picture();
+        const ColourImage whole = relief_.image();
         for (const auto& [width, height] : thumbnail_sizes) {
             ByteBuffer file;
             append_png(fitted(whole, width, height), file);
@@ -144,11 +143,11 @@ class Sl1Writer final : public OrderedWriter {
 
     /// Counts a layer. The printer has a single layer height except for the first layer, and puts each layer
     /// on the one before it.
-    void count(const PlanePlace& place, double area_mm2) {
-        const double thickness = place.top - place.bottom;
-        if (place.position == 0)
+    void count(const PlanePosition& offset, double area_mm2) {
+        const double thickness = offset.top - offset.bottom;
+        if (offset.position == 0)
             first_thickness_ = thickness;
-        if (place.position <= 1)
+        if (offset.position <= 1)
             thickness_ = thickness;
         const double slack = thickness_ / 100 + same_height_mm; // heights may have been rounded before
         if (std::abs(thickness - thickness_) > slack)
@@ -156,18 +155,18 @@ class Sl1Writer final : public OrderedWriter {
                 ErrorKind::usage,
                 fmt::format("an SL1 job has one layer height, but for the first layer: layer {} is {:.6g} "
                             "mm thick, the one before {:.6g} mm",
-                            place.index, thickness, thickness_));
-        if (place.position > 0 && std::abs(place.bottom - top_) > slack)
+                            offset.index, thickness, thickness_));
+        if (offset.position > 0 && std::abs(offset.bottom - top_) > slack)
             throw Error(ErrorKind::usage,
                         fmt::format("layers of an SL1 job lie on one another: layer {} begins at {:.6g} mm, "
                                     "the one before ends at {:.6g} mm",
-                                    place.index, place.bottom, top_));
-        top_ = place.top;
+                                    offset.index, offset.bottom, top_));
+        top_ = offset.top;
         volume_mm3_ += area_mm2 * thickness;
         const bool large = area_mm2 > printer_.large_area * display_.width_mm() * display_.height_mm();
         ++(large ? large_layers_ : small_layers_);
         const double faded =
-            place.position < first_layers ? 0 : static_cast<double>(place.position - first_layers + 1);
+            offset.position < first_layers ? 0 : static_cast<double>(offset.position - first_layers + 1);
         const double to_normal = std::min(1.0, faded / (fade_layers_ + 1.0));
         time_s_ += first_s_ + to_normal * (normal_s_ - first_s_) +
                    (large ? printer_.large_pause_s : printer_.small_pause_s);
@@ -215,7 +214,7 @@ class Sl1Writer final : public OrderedWriter {
                 {"exposure_time", number(normal_s_)},
                 {"faded_layers", fmt::to_string(fade_layers_)},
                 {"fast_tilt_time", number(printer_.small_pause_s)},
-                {"gamma_correction", number(pictures_.options().gamma)},
+                {"gamma_correction", number(images_.options().gamma)},
                 {"initial_exposure_time", number(first_s_)},
                 {"initial_layer_height", number(first_thickness_)},
                 {"layer_height", number(thickness_)},
@@ -225,9 +224,9 @@ class Sl1Writer final : public OrderedWriter {
                 {"slow_tilt_time", number(printer_.large_pause_s)}};
     }
 
-    PicturePrinter printer_;
+    ImagePrinter printer_;
     Display display_;
-    LayerPictures pictures_;
+    LayerImages images_;
     Relief relief_;
     double normal_s_;
     double first_s_;

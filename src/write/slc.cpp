@@ -53,32 +53,33 @@ class SlcWriter final : public SequentialWriter {
         return table;
     }
 
-    std::string layer_head(const PlanePlace& place) override {
+    std::string layer_header(const PlanePosition& offset) override {
         std::string bytes;
-        if (place.position == 0)
-            bytes = sampling_table(place.bottom, place.top - place.bottom);
-        heights_.add(single(place.bottom), place.bottom, "bottom", place.index);
-        bytes += bytes_of(single(place.bottom));
-        last_ = place;
+        if (offset.position == 0)
+            bytes = sampling_table(offset.bottom, offset.top - offset.bottom);
+        heights_.add(single(offset.bottom), offset.bottom, "bottom", offset.index);
+        bytes += bytes_of(single(offset.bottom));
+        last_ = offset;
         return bytes;
     }
 
     void format(std::span<const Layer> parts, ByteBuffer& out) const override {
         std::size_t room = sizeof(std::uint32_t);
         for (const Layer& layer : parts)
-            room += layer.rings * (boundary_head + float_point_size) + layer.points.size() * float_point_size;
+            room +=
+                layer.rings * (boundary_header + float_point_size) + layer.points.size() * float_point_size;
         char* const begin = out.room(room);
         char* at = begin + sizeof(std::uint32_t);
         std::size_t boundaries = 0;
         for (const Layer& layer : parts) {
             for (std::size_t i = 0; i < layer.rings; ++i) {
                 const FloatContour listed =
-                    floats_.put(layer.contour(i), true, layer.index, at + boundary_head);
+                    floats_.put(layer.contour(i), true, layer.index, at + boundary_header);
                 if (listed.points == 0)
                     continue;
                 put_count(at, listed.points, layer.index);
                 put_count(at + sizeof(std::uint32_t), 0, layer.index); // gaps
-                at += boundary_head + listed.points * float_point_size;
+                at += boundary_header + listed.points * float_point_size;
                 ++boundaries;
             }
         }
@@ -104,11 +105,11 @@ class SlcWriter final : public SequentialWriter {
         put_value(out, static_cast<std::uint32_t>(count));
     }
 
-    static constexpr std::size_t boundary_head = 2 * sizeof(std::uint32_t);
+    static constexpr std::size_t boundary_header = 2 * sizeof(std::uint32_t);
 
     FloatContours floats_{1.0, &rounding_loss()};
     double bottom_;
-    PlanePlace last_;
+    PlanePosition last_;
     WrittenHeights heights_{"single precision", 1, rounding_loss()};
 };
 

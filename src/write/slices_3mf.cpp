@@ -97,7 +97,7 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
   private:
     /// A chunk of a stack in store_.
     struct Later {
-        std::uint64_t place;
+        std::uint64_t position;
         std::size_t bytes;
         std::uint64_t size; ///< as text
         std::uint32_t crc;
@@ -110,20 +110,20 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
 
     Write formatted(std::span<const Layer> parts) override {
         const std::shared_ptr<ByteBuffer> text = buffer();
-        auto pieces = std::make_shared<std::vector<package_3mf::Piece>>();
+        auto chunks = std::make_shared<std::vector<package_3mf::Chunk>>();
         for (const Layer& layer : parts) {
             text->clear();
             put_slice(layer, grid_, *text);
-            pieces->push_back(compressed(text->view()));
+            chunks->push_back(compressed(text->view()));
         }
-        return [this, pieces](const PlanePlace& place) {
-            heights_.add(in_text(place.top), place.top, "top", place.index);
-            zip().append(pieces->front().in_zip());
-            for (std::size_t part = 1; part < pieces->size(); ++part) {
-                const package_3mf::Piece& piece = (*pieces)[part];
-                later_[part - 1].push_back({store_.size(), piece.bytes.size(), piece.size, piece.crc});
-                store_.add(piece.bytes);
-                waiting_ += piece.bytes.size();
+        return [this, chunks](const PlanePosition& position) {
+            heights_.add(in_text(position.top), position.top, "top", position.index);
+            zip().append(chunks->front().in_zip());
+            for (std::size_t part = 1; part < chunks->size(); ++part) {
+                const package_3mf::Chunk& chunk = (*chunks)[part];
+                later_[part - 1].push_back({store_.size(), chunk.bytes.size(), chunk.size, chunk.crc});
+                store_.add(chunk.bytes);
+                waiting_ += chunk.bytes.size();
             }
         };
     }
@@ -134,10 +134,10 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
         std::string bytes;
         for (std::size_t part = 1; part <= later_.size(); ++part) {
             append(stack_begin(part));
-            for (const Later& piece : later_[part - 1]) {
-                bytes.resize(piece.bytes);
-                store_.read(piece.place, bytes);
-                zip().append({bytes, piece.size, piece.crc});
+            for (const Later& chunk : later_[part - 1]) {
+                bytes.resize(chunk.bytes);
+                store_.read(chunk.position, bytes);
+                zip().append({bytes, chunk.size, chunk.crc});
             }
             append(stack_end);
         }

@@ -1,6 +1,6 @@
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
-#include "lamella/write/picture_options.hpp"
+#include "lamella/write/image_options.hpp"
 
 #include <fmt/format.h>
 

@@ -73,7 +73,7 @@ std::string profile_text(const std::string& uuid, const std::string& name, const
 }
 
 /// Returns the whole content of the header of a file, for identifiers that should be unique to the file.
-std::string head_text(const LayerFileInfo& info) {
+std::string header_text(const LayerFileInfo& info) {
     std::string text = fmt::format("{} {}", info.layers, info.bottom);
     const auto add_box = [&](const Box3& box) {
         for (const Point3& p : {box.min, box.max})
@@ -100,7 +100,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
           heights_(fmt::format("units of {} mm; use smaller ones", options.units_mm), options.units_mm,
                    rounding_loss()) {
         heights_.add(static_cast<double>(bottom_), info.bottom, "bottom", 0);
-        uuid_ = uuid_of("toolpath " + head_text(info));
+        uuid_ = uuid_of("toolpath " + header_text(info));
         for (std::size_t part = 0; part < keys_.parts.size(); ++part)
             item_uuids_.push_back(uuid_of(fmt::format("item {} {}", part, uuid_)));
         const bool any_bare = std::any_of(info.parts.begin(), info.parts.end(),
@@ -113,17 +113,17 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     Write formatted(std::span<const Layer> parts) override {
         const std::shared_ptr<ByteBuffer> text = buffer();
         put_layer(parts, *text);
-        auto piece = std::make_shared<package_3mf::Piece>(compressed(text->view()));
-        piece->bytes += deflate_end;
-        return [this, piece](const PlanePlace& place) {
-            const std::int64_t height = whole_height(place.top);
-            heights_.add(static_cast<double>(height), place.top, "top", place.index);
-            const std::string name = fmt::format("Toolpath/Layers/layer{:05}.xml", place.position + 1);
-            zip().add_ready(name, ZipMethod::deflated, piece->in_zip());
-            content_ += fmt::format(" {:08x}", piece->crc);
+        auto chunk = std::make_shared<package_3mf::Chunk>(compressed(text->view()));
+        chunk->bytes += deflate_end;
+        return [this, chunk](const PlanePosition& offset) {
+            const std::int64_t height = whole_height(offset.top);
+            heights_.add(static_cast<double>(height), offset.top, "top", offset.index);
+            const std::string name = fmt::format("Toolpath/Layers/layer{:05}.xml", offset.position + 1);
+            zip().add_ready(name, ZipMethod::deflated, chunk->in_zip());
+            content_ += fmt::format(" {:08x}", chunk->crc);
             layers_ += fmt::format("<tp:toolpathlayer ztop=\"{}\" path=\"/{}\"/>\n", height, name);
             relations_ += fmt::format("<Relationship Id=\"layer{}\" Target=\"/{}\" Type=\"{}\"/>\n",
-                                      place.position + 1, name, toolpath_3mf::layer_type);
+                                      offset.position + 1, name, toolpath_3mf::layer_type);
         };
     }
 
@@ -154,7 +154,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     }
 
     /// Writes the parts and profiles of vectors on a layer, which counts them from 1.
-    void put_head(std::span<const Layer> parts, ByteBuffer& out) const {
+    void put_header(std::span<const Layer> parts, ByteBuffer& out) const {
         std::set<std::size_t> of_parts;
         std::set<std::size_t> profiles;
         for (std::size_t part = 0; part < parts.size(); ++part)
@@ -172,7 +172,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     }
 
     void put_layer(std::span<const Layer> parts, ByteBuffer& out) const {
-        put_head(parts, out);
+        put_header(parts, out);
         out.append("<segments>\n");
         std::vector<GridPoint> scratch;
         for (std::size_t part = 0; part < parts.size(); ++part) {

@@ -227,7 +227,7 @@ int winding(const Layer& layer, const Point2& at) {
 }
 
 /// Anywhere around the solids, and a millionth of a millimetre beside contours.
-std::vector<Point2> random_places(const Layer& layer, Random& random) {
+std::vector<Point2> random_points(const Layer& layer, Random& random) {
     std::vector<Point2> places;
     for (int k = 0; k < 20; ++k)
         places.push_back({random.real(-4, 8), random.real(-4, 8)});
@@ -247,7 +247,7 @@ std::vector<Point2> random_places(const Layer& layer, Random& random) {
     return places;
 }
 
-TEST(ExactRays, WindAsOftenAsLayersAndTellWhatIsMaterial) {
+TEST(ExactRays, WindAsOftenAsLayersAndGiveTheMaterial) {
     Random random(202);
     std::array<std::size_t, 4> seen{};
     for (int round = 0; round < 300; ++round) {
@@ -263,7 +263,7 @@ TEST(ExactRays, WindAsOftenAsLayersAndTellWhatIsMaterial) {
             const Layer nonzero = fill(layer, FillRule::nonzero).layer;
             const Layer evenodd = fill(layer, FillRule::evenodd).layer;
             const Layer positive = fill(layer, FillRule::positive).layer;
-            for (const Point2& p : random_places(layer, random)) {
+            for (const Point2& p : random_points(layer, random)) {
                 const int expected = winding(triangles, Point3{p.x, p.y, layer.z}, random);
                 ASSERT_EQ(winding(layer, p), expected);
                 ASSERT_EQ(winding(nonzero, p), expected != 0 ? 1 : 0);

@@ -72,14 +72,14 @@ class CliAndSlc(ProgramTest):
         """`rounding`: how far, in mm, the form may move a coordinate. Heights have their own."""
         labels, exact = self.exact(name)
         file = self.decoded(name, format, *options)
-        unit = file.head["units"]
-        self.assertEqual(list(file.head["labels"].items()), list(enumerate(labels, 1)))
-        self.assertEqual(file.head["layers"], len(file.layers))
+        unit = file.header["units"]
+        self.assertEqual(list(file.header["labels"].items()), list(enumerate(labels, 1)))
+        self.assertEqual(file.header["layers"], len(file.layers))
         self.assertEqual(len(file.layers), len(exact) + 1)
         bottom = file.layers[0]
         self.assertFalse(bottom.contours or bottom.hatches)
         self.assertAlmostEqual(bottom.z * unit, exact[0]["bottom"], delta=rounding)
-        box = file.head["dimension"]
+        box = file.header["dimension"]
         every = [(x * unit, y * unit) for layer in file.layers for c in layer.contours for x, y in c.points]
         every += [(x * unit, y * unit) for layer in file.layers for _, a, b in layer.hatches for x, y in (a, b)]
         for axis in range(2):
@@ -145,22 +145,22 @@ class CliAndSlc(ProgramTest):
             with self.subTest(name):
                 _, exact = self.exact(name)
                 file = self.decoded(name, "slc")
-                self.assertEqual(file.head["-SLCVER"], ["2.0"])
-                self.assertEqual(file.head["-UNIT"], ["MM"])
-                self.assertEqual(file.head["-TYPE"], ["PART"])
-                self.assertLessEqual(len(" ".join(file.head["-PACKAGE"])), 32)
+                self.assertEqual(file.header["-SLCVER"], ["2.0"])
+                self.assertEqual(file.header["-UNIT"], ["MM"])
+                self.assertEqual(file.header["-TYPE"], ["PART"])
+                self.assertLessEqual(len(" ".join(file.header["-PACKAGE"])), 32)
                 self.assertEqual(len(file.layers), len(exact))
-                lowest, thickness, compensation, _ = file.head["table"][0]
+                lowest, thickness, compensation, _ = file.header["table"][0]
                 self.assertEqual(lowest, file.layers[0].z)
                 self.assertAlmostEqual(thickness, exact[0]["top"] - exact[0]["bottom"], delta=rounding)
                 self.assertEqual(compensation, 0)
-                self.assertAlmostEqual(file.head["top"], exact[-1]["top"], delta=rounding)
+                self.assertAlmostEqual(file.header["top"], exact[-1]["top"], delta=rounding)
                 for layer, truth in zip(file.layers, exact):
                     self.assertAlmostEqual(layer.z, truth["bottom"], delta=rounding)
                     self.assertTrue(all(c.points[0] == c.points[-1] for c in layer.contours))
                     self.assert_rings([c.points[:-1] for c in layer.contours],
                                       [pairs(ring) for part in truth["parts"] for ring in part["rings"]], rounding)
-                extents = file.head["-EXTENTS"]
+                extents = file.header["-EXTENTS"]
                 rings = [p for layer in exact for part in layer["parts"] for ring in part["rings"] for p in pairs(ring)]
                 for axis in range(2):
                     self.assertLessEqual(extents[axis][0], min(p[axis] for p in rings) + rounding)

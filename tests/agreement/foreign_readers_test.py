@@ -197,8 +197,8 @@ class ForeignReaders(ProgramTest):
             found.append(sum(area(ring) for ring in rings))
         self.assert_areas(found)
 
-    def test_svgelements_finds_a_layer_in_each_svg_picture(self):
-        folder = Path(self.slice_pictures())
+    def test_svgelements_finds_a_layer_in_each_svg_image(self):
+        folder = Path(self.slice_images())
         found = []
         for layer in self.layers:
             document = svgelements.SVG.parse(folder / f"layer_{layer['index']:05}.svg", ppi=25.4)
@@ -215,15 +215,15 @@ class ForeignReaders(ProgramTest):
             found.append(sum(area(ring) for ring in rings))
         self.assert_areas(found)
 
-    def slice_pictures(self):
+    def slice_images(self):
         self.succeed("slice", "part.stl", "-o", "pictures", "--format", "svg-layers", "--layer-height", "1")
         return str(self.path("pictures"))
 
     def painted(self, source, *options):
         """Rows and columns of red, green, blue and alpha, from 0 to 1."""
-        picture = str(self.path("picture.png"))
-        subprocess.run(["rsvg-convert", source, *options, "-o", picture], check=True)
-        return matplotlib.image.imread(picture)
+        image = str(self.path("picture.png"))
+        subprocess.run(["rsvg-convert", source, *options, "-o", image], check=True)
+        return matplotlib.image.imread(image)
 
     def some_layers(self):
         """Those with holes, and a few others."""
@@ -239,8 +239,8 @@ class ForeignReaders(ProgramTest):
             white = (pixels[..., 0] * pixels[..., 3]).sum() / scale**2
             self.assertAlmostEqual(white, self.areas[i], delta=self.tolerances[i])
 
-    def test_librsvg_paints_svg_pictures(self):
-        folder = Path(self.slice_pictures())
+    def test_librsvg_paints_svg_images(self):
+        folder = Path(self.slice_images())
         dots_per_mm = 20
         resolution = str(25.4 * dots_per_mm)
         self.write("fill.css", "path { stroke: none; fill: #000000 } rect { fill: #ffffff }")

@@ -358,7 +358,7 @@ TEST(RepairedMeshes, SeveralFaultsAtOnceMoveTheUnionByNoMoreThanTheirWidth) {
         const OrientedMesh repaired =
             orient(drop_duplicates(weld_within(unwelded(broken), 4 * by).mesh).mesh);
         // Where one solid lies within another, or faults cut a piece off, its sense is anybody's guess.
-        if (repaired.patches != solids.size() || repaired.turned_inward > 0)
+        if (repaired.patches != solids.size() || repaired.flipped_inward > 0)
             continue;
         ++rounds;
         const Box3 box = inspect(welded(sound)).box;
@@ -427,7 +427,7 @@ INSTANTIATE_TEST_SUITE_P(Shared, DiagnosedMesh, testing::ValuesIn(test::shared_m
                          test::shared_mesh_name);
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(DiagnosedMesh);
 
-double distance_to(const EdgePlace& edge, const Point3& p) {
+double distance_to(const EdgeLocation& edge, const Point3& p) {
     const Point3 d{edge[1].x - edge[0].x, edge[1].y - edge[0].y, edge[1].z - edge[0].z};
     const Point3 w{p.x - edge[0].x, p.y - edge[0].y, p.z - edge[0].z};
     const double square = d.x * d.x + d.y * d.y + d.z * d.z;
@@ -435,7 +435,7 @@ double distance_to(const EdgePlace& edge, const Point3& p) {
     return std::hypot(w.x - s * d.x, w.y - s * d.y, w.z - s * d.z);
 }
 
-TEST_P(DiagnosedMesh, TellsOfEveryPlaceWhereAChainEnds) {
+TEST_P(DiagnosedMesh, ReportsEveryPlaceWhereAChainEnds) {
     IndexedMesh mesh;
     try {
         const std::array inputs{PlateInput{.path = GetParam().path}};
@@ -445,7 +445,7 @@ TEST_P(DiagnosedMesh, TellsOfEveryPlaceWhereAChainEnds) {
     }
     const Diagnosis found = diagnose(mesh, {.keep = DiagnosisOptions::keep_all, .self_intersections = true});
     EXPECT_EQ(found.shells.size(), found.counts.shells);
-    std::vector<EdgePlace> open = found.conflicting_edges;
+    std::vector<EdgeLocation> open = found.conflicting_edges;
     for (const BoundaryLoop& loop : found.loops)
         for (std::size_t i = 0; i < loop.edges(); ++i)
             open.push_back({loop.points[i], loop.points[(i + 1) % loop.points.size()]});
@@ -458,7 +458,7 @@ TEST_P(DiagnosedMesh, TellsOfEveryPlaceWhereAChainEnds) {
             for (const Point2& end : {layer.contour(c).front(), layer.contour(c).back()}) {
                 const Point3 p{end.x, end.y, layer.z};
                 double nearest = size;
-                for (const EdgePlace& edge : open)
+                for (const EdgeLocation& edge : open)
                     if (std::min(edge[0].z, edge[1].z) <= p.z && p.z <= std::max(edge[0].z, edge[1].z))
                         nearest = std::min(nearest, distance_to(edge, p));
                 ASSERT_LE(nearest, 1e-9 * size) << "z " << p.z;

@@ -21,7 +21,7 @@ class Layer(NamedTuple):
 
 
 class SliceFile(NamedTuple):
-    head: dict
+    header: dict
     layers: list
 
 
@@ -49,26 +49,26 @@ class Bytes:
 def cli(content):
     """Common Layer Interface 2.0: {'units', 'binary', 'labels', 'layers', 'dimension'} and the layers."""
     text, _, geometry = content.partition(b"$$HEADEREND")
-    head = {"labels": {}}
+    header = {"labels": {}}
     lines = text.decode("ascii").split("\n")
     assert lines[0] == "$$HEADERSTART" and lines[-1] == "", lines
     for line in lines[1:-1]:
         key, _, value = line.partition("/")
         if key in ("$$BINARY", "$$ASCII"):
-            assert "binary" not in head
-            head["binary"] = key == "$$BINARY"
+            assert "binary" not in header
+            header["binary"] = key == "$$BINARY"
         elif key == "$$LABEL":
             number, label = value.split(",", 1)
-            head["labels"][int(number)] = label.strip('"')
+            header["labels"][int(number)] = label.strip('"')
         elif key == "$$UNITS":
-            head["units"] = float(value)
+            header["units"] = float(value)
         elif key == "$$LAYERS":
-            head["layers"] = int(value)
+            header["layers"] = int(value)
         elif key == "$$DIMENSION":
-            head["dimension"] = [float(v) for v in value.split(",")]
+            header["dimension"] = [float(v) for v in value.split(",")]
         else:
             assert key in ("$$VERSION", "$$DATE"), line
-    return SliceFile(head, cli_binary(geometry) if head["binary"] else cli_ascii(geometry.decode("ascii")))
+    return SliceFile(header, cli_binary(geometry) if header["binary"] else cli_ascii(geometry.decode("ascii")))
 
 
 def cli_ascii(text):
@@ -117,30 +117,30 @@ def cli_binary(geometry):
 
 def slc(content):
     """SLC 2.0 of 3D Systems: keywords such as '-UNIT', 'table' and 'top', and the layers, whose z are bottoms."""
-    head_text, end, _ = content.partition(b"\r\n\x1a")
-    assert end and len(head_text) + len(end) <= 2048
+    header_text, end, _ = content.partition(b"\r\n\x1a")
+    assert end and len(header_text) + len(end) <= 2048
     # Keywords and what stands between them, split at blanks as readers do.
-    head = {}
+    header = {}
     key = None
-    for word in head_text.decode("ascii").split(" "):
+    for word in header_text.decode("ascii").split(" "):
         if re.match("-[A-Z]", word):
             key = word
-            head[key] = []
+            header[key] = []
         elif word:
-            head[key].append(word)
-    head["-EXTENTS"] = [tuple(float(v) for v in pair.split(",")) for pair in head["-EXTENTS"]]
-    source = Bytes(content, len(head_text) + len(end))
+            header[key].append(word)
+    header["-EXTENTS"] = [tuple(float(v) for v in pair.split(",")) for pair in header["-EXTENTS"]]
+    source = Bytes(content, len(header_text) + len(end))
     assert source.take("256s") == (bytes(256),)
     entries, = source.take("B")
     assert entries >= 1
-    head["table"] = [source.take("4f") for _ in range(entries)]  # lowest z, thickness, width compensation, nothing
+    header["table"] = [source.take("4f") for _ in range(entries)]  # lowest z, thickness, width compensation, nothing
     layers = []
     while True:
         z, boundaries = source.take("fI")
         if boundaries == 0xFFFFFFFF:
-            head["top"] = z
+            header["top"] = z
             assert source.done
-            return SliceFile(head, layers)
+            return SliceFile(header, layers)
         layers.append(Layer(z, [], []))
         for _ in range(boundaries):
             count, gaps = source.take("II")

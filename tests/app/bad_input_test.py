@@ -24,7 +24,7 @@ class BadInput(ProgramTest):
         self.refuse(3, r"empty\.stl.*empty", "empty.stl")
         self.refuse(3, "empty", "-", stdin=b"")
 
-    def test_a_file_cut_off_in_its_head(self):
+    def test_a_file_cut_off_in_its_header(self):
         self.write("cut.stl", binary_stl(box_triangles(1, 1, 1))[:60])
         self.refuse(3, r"cut\.stl", "cut.stl")
 

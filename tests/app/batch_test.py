@@ -57,7 +57,7 @@ class Batch(ProgramTest):
         self.assertEqual(outcomes[0], outcomes[1])
         self.assertEqual(outcomes[0], outcomes[2])
 
-    def test_warnings_name_the_file_and_tell_of_steps_that_leave_nothing(self):
+    def test_warnings_name_the_file_and_report_steps_that_leave_nothing(self):
         self.boxes("parts", 2)
         self.write("parts/box01.stl", binary_stl(box_triangles(9, 9, 9)) + b"more")
         records = self.batch(0, "parts", "-o", "out", "--format", "cli", "--min-area", "20")
@@ -178,7 +178,7 @@ class Batch(ProgramTest):
                        "cli", "--stats", "linked/{name}")
         self.batch(0, "parts", "-o", "out", "--format", "cli", "--stats", "linked")
 
-    def test_a_working_folder_that_is_gone_is_told(self):
+    def test_a_working_folder_that_is_gone_is_reported(self):
         self.boxes("parts", 2)
         self.write("list", "box00.stl\n")
         self.path("gone").mkdir()
@@ -329,7 +329,7 @@ class Workers(ProgramTest):
             self.doCleanups()
             self.setUp()
 
-    def test_small_files_that_go_together_are_told_apart(self):
+    def test_small_files_that_go_together_are_distinguished(self):
         names = [f"box{i:02}" for i in range(50)]
         self.path("in").mkdir()
         for name in names:
@@ -357,7 +357,7 @@ class Workers(ProgramTest):
             self.assertEqual(record["error"]["kind"], "limit")
             self.assertIn("--timeout", record["error"]["text"])
 
-    def test_progress_is_told_where_there_is_any(self):
+    def test_progress_is_reported_where_there_is_any(self):
         process = self.start(["box1", "pipe", "box2"], "--jobs", "2", "--progress", "json", "--timeout", "1")
         _, err = self.end_of(process)
         done = [line["done"] for line in map(json.loads, err.splitlines()) if "done" in line]
@@ -379,7 +379,7 @@ class Workers(ProgramTest):
             self.doCleanups()
             self.setUp()
 
-    def test_what_was_done_is_told_of_a_batch_that_is_stopped(self):
+    def test_what_was_done_is_reported_of_a_batch_that_is_stopped(self):
         self.path("in").mkdir()
         names = [f"box{i:02}" for i in range(50)]
         for name in names:
@@ -403,7 +403,7 @@ class Workers(ProgramTest):
             self.setUp()
         self.fail("results were lost each time")
 
-    def test_results_behind_one_that_never_comes_are_told_of_a_batch_that_is_stopped(self):
+    def test_results_behind_one_that_never_comes_are_reported_of_a_batch_that_is_stopped(self):
         def attempt():
             process = self.start(["pipe", "box1", "box2"], "--jobs", "2")
             while not self.path("out/box2.cli").exists():
@@ -445,7 +445,7 @@ class Workers(ProgramTest):
             self.doCleanups()
             self.setUp()
 
-    def test_a_batch_that_is_stopped_while_workers_are_started_tells_its_results(self):
+    def test_a_batch_that_is_stopped_while_workers_are_started_reports_its_results(self):
         def attempt():
             names = [f"box{i:03}" for i in range(400)]
             self.path("in").mkdir()
@@ -483,7 +483,7 @@ class Workers(ProgramTest):
         records = [json.loads(line) for line in result.out.splitlines()]
         self.assertEqual([r["ok"] for r in records], [True, False], result.err)
         self.assertEqual([r["path"] for r in records], [f"{deep}/open.stl", f"{deep}/wrong.stl"])
-        self.assertEqual(records[0]["warnings"], ["there are warnings, too long to be told here"])
+        self.assertEqual(records[0]["warnings"], ["the warnings are too long to be listed here"])
 
     def test_workers_end_with_a_program_that_is_killed(self):
         process = self.start(["pipe1", "pipe2"], "--jobs", "2")

@@ -40,7 +40,7 @@ class Compare(ProgramTest):
             self.succeed("convert", "small.json", name)
             self.succeed("compare", "small.json", name)
 
-    def test_a_part_that_was_moved_is_told_with_how_far_and_where(self):
+    def test_a_part_that_was_moved_is_reported_with_how_far_and_where(self):
         self.slice("moved.json", "--translate", "0.25,0,0")
         found = self.differ("torus.json", "moved.json", "--json").json()
         self.assertEqual(found["differing"], found["layers"])
@@ -83,7 +83,7 @@ class Compare(ProgramTest):
         self.assertEqual((first["contours"][1], first["area_mm2"][1]), (0, 0))
         self.assertIn("only torus.json has contours", self.differ("torus.json", "part.json").text)
 
-    def test_the_same_layers_cut_at_other_heights_are_told(self):
+    def test_the_same_layers_cut_at_other_heights_are_reported(self):
         self.slice("low.json", "--slice-at", "bottom")
         self.slice("low.cli", "--slice-at", "bottom")
         result = self.differ("low.json", "low.cli")

@@ -41,7 +41,7 @@ class Convert(ProgramTest):
         for name in ["dxf", "geojson"]:
             self.succeed("convert", "torus.cli", "out." + name)
 
-    def test_what_a_format_has_no_place_for_is_told(self):
+    def test_what_a_format_has_no_place_for_is_reported(self):
         self.write("open.json", """{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}],
             "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[0, 0, 4, 0, 0, 4]],
                         "chains": [[5, 5, 6, 6]], "hatches": [0, 0, 1, 1]}]}]}""")
@@ -54,7 +54,7 @@ class Convert(ProgramTest):
         "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[0, 0, 4, 0, 0, 4]],
                     "hatches": [0, 0, 1, 1, 0, 1, 1, 2]}]}]}"""
 
-    def test_steps_that_change_contours_tell_of_their_hatches(self):
+    def test_steps_that_change_contours_report_their_hatches(self):
         self.write("hatched.json", self.HATCHED)
         told = self.succeed("convert", "hatched.json", "out.json", "--offset", "0.1").err
         self.assertRegex(told, r"warning: hatched\.json: 2 hatch lines left out")
@@ -73,7 +73,7 @@ class Convert(ProgramTest):
         text = self.succeed("convert", "torus.cli", "out.cli", "--offset=-100").text
         self.assertIn(f"; {layers['contours']} rings lost", text)
 
-    def test_what_rounding_loses_is_told(self):
+    def test_what_rounding_loses_is_reported(self):
         self.succeed("convert", "torus.cli", "exact.json")
         self.assertEqual(self.succeed("convert", "exact.json", "near.cli", "--strict").err, "")
         told = self.succeed("convert", "exact.json", "coarse.cli", "--format", "cli-ascii", "--units-mm", "1").err
@@ -86,7 +86,7 @@ class Convert(ProgramTest):
         self.write("open.json", self.HATCHED.replace('"hatches"', '"chains": [[5, 5, 6, 6]], "hatches"'))
         return "open.json"
 
-    def test_heights_that_rounding_moves_are_told(self):
+    def test_heights_that_rounding_moves_are_reported(self):
         self.box()
         coarse = ["--translate", "1,1,0", "--short", "--units-mm", "0.05", "--layer-height"]
         moved = r"rounding moved heights of layers by up to 0\.02 mm, first in layer 0"
@@ -97,7 +97,7 @@ class Convert(ProgramTest):
         self.assertEqual(told.count("moved heights"), 1)
         self.assertIn("(and in 1 more of its files)", told)
 
-    def test_what_is_made_of_the_layers_is_told(self):
+    def test_what_is_made_of_the_layers_is_reported(self):
         self.write("two.json", """{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}, {"label": "b"}],
             "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [
                 {"rings": [[0, 0, 4, 0, 4, 4, 0, 4], [2, 2, 6, 2, 6, 6, 2, 6]]},

@@ -62,7 +62,7 @@ class Info(ProgramTest):
         self.assertRegex(text, "4 boundary edges: .*hole")
         self.assertIn("not closed", text)
 
-    def test_a_cavity_is_told_and_is_no_defect(self):
+    def test_a_cavity_is_reported_and_is_no_defect(self):
         hollow = [tuple((x + 5, y + 5, z + 2) for x, y, z in t[::-1]) for t in box_triangles(3, 4, 5)]
         self.write("hollow.stl", binary_stl(box_triangles(20, 30, 10) + hollow))
         found = self.info("hollow.stl")
@@ -85,7 +85,7 @@ class Info(ProgramTest):
         self.assertEqual((shell["kind"], shell["inside"], shell["depth"]), ("open", None, 0))
         self.assertRegex(self.succeed("info", "open.stl").text, r"a rim of 4 edges, 80 mm long")
 
-    def test_shells_tell_what_they_lie_in(self):
+    def test_shells_report_what_they_lie_in(self):
         hollow = [tuple((x + 5, y + 5, z + 2) for x, y, z in t[::-1]) for t in box_triangles(3, 4, 5)]
         self.write("hollow.stl", binary_stl(hollow + box_triangles(20, 30, 10)))
         shells = self.info("hollow.stl")["shell_list"]
@@ -133,7 +133,7 @@ class Info(ProgramTest):
         found = self.info("-", stdin=self.bytes_of("box.stl"))
         self.assertEqual((found["path"], found["format"], found["triangles"]), ("-", "stl-ascii", 12))
 
-    def test_lines_of_no_exposure_are_told(self):
+    def test_lines_of_no_exposure_are_reported(self):
         self.write("lines.cli", "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$LAYERS/2\n$$HEADEREND\n$$GEOMETRYSTART\n"
                    "$$LAYER/0.0\n$$LAYER/1.0\n$$POLYLINE/1,1,4,0,0,9,0,9,9,0,0\n$$HATCHES/1,2,1,1,8,1,2,2,8,2\n$$GEOMETRYEND\n")
         self.assertEqual(self.succeed("info", "lines.cli", "--json").json()["hatches"], 2)
@@ -152,7 +152,7 @@ class Info(ProgramTest):
                 self.assertIn("slice file", self.succeed("info", name).text)
                 self.assertEqual(self.info("-", stdin=self.bytes_of(name))["layers"], 10)
 
-    def test_regions_of_scan_vectors_are_told(self):
+    def test_regions_of_scan_vectors_are_reported(self):
         def vectors(command):
             return f"$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/0\n$$LAYER/1\n{command}\n" \
                    "$$GEOMETRYEND\n"

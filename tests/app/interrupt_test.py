@@ -100,7 +100,7 @@ class Interrupt(ProgramTest):
         self.assertEqual(process.wait(timeout=60), 130)
         self.assertEqual(self.listing(), ["rook.stl"])
 
-    def test_whoever_does_not_read_what_is_told_keeps_no_run_from_ending(self):
+    def test_whoever_does_not_read_what_is_reported_keeps_no_run_from_ending(self):
         self.box()
         reading, writing = os.pipe()
         self.addCleanup(os.close, reading)

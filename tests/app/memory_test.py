@@ -38,14 +38,14 @@ class Memory(ProgramTest):
         self.assertEqual(list(self.spill.iterdir()), [])
         return json.loads(self.bytes_of("stats.json"))
 
-    def check(self, *arguments, name="cli", least_slabs=2, stdin=b"", threads=(1, 2, 7)):
+    def check(self, *arguments, name="cli", least_ranges=2, stdin=b"", threads=(1, 2, 7)):
         """The bytes and hashes of a run in memory, for all numbers of threads."""
         whole = self.slice(*arguments, "-o", f"whole.{name}", stdin=stdin)
         self.assertNotIn("slabs", whole)
         for n in threads:
             stats = self.slice(*arguments, "-o", f"slabs.{name}", "--threads", n, "--max-memory", TIGHT[n],
                                stdin=stdin)
-            self.assertGreaterEqual(stats["slabs"], least_slabs)
+            self.assertGreaterEqual(stats["slabs"], least_ranges)
             self.assertEqual(self.bytes_of(f"slabs.{name}"), self.bytes_of(f"whole.{name}"))
             self.assertEqual(stats["layers"], whole["layers"])
             for key in ["points", "contours", "open_chains", "volume_mm3"]:
@@ -175,8 +175,8 @@ class Memory(ProgramTest):
         file = self.path("layers.cli").stat().st_size  # of which there is a copy
         self.assertLess(self.peak("info", "layers.cli") - self.peak("info", "few.cli"), file + 1.7 * 16 * points)
 
-    def test_slabs_give_the_same_bytes(self):
-        self.check(self.lattice(), least_slabs=3)
+    def test_ranges_give_the_same_bytes(self):
+        self.check(self.lattice(), least_ranges=3)
 
     def test_in_any_order_of_triangles(self):
         ordered = self.check(self.lattice(), threads=[2])
@@ -323,10 +323,10 @@ class Memory(ProgramTest):
             self.environment["TMPDIR"] = str(self.spill)
             whole = self.slice(name, *options, "-o", "whole.cli")
             self.environment["TMPDIR"] = "/nowhere"
-            slabs = self.slice(name, *options, "-o", "slabs.cli", "--max-memory", "120M", "--threads", 2)
-            self.assertGreater(slabs["slabs"], 1)
+            ranges = self.slice(name, *options, "-o", "slabs.cli", "--max-memory", "120M", "--threads", 2)
+            self.assertGreater(ranges["slabs"], 1)
             self.assertEqual(self.bytes_of("slabs.cli"), self.bytes_of("whole.cli"))
-            self.assertEqual(slabs["volume_mm3"], whole["volume_mm3"])
+            self.assertEqual(ranges["volume_mm3"], whole["volume_mm3"])
 
     def test_a_run_that_is_stopped_leaves_nothing(self):
         self.lattice("shuffled.stl", "--shuffle", 5)
@@ -352,9 +352,9 @@ class Memory(ProgramTest):
     def test_open_contours_are_counted_as_ever(self):
         self.write("open.stl", binary_stl(open_box(20, 30, 10) * 30000))
         whole = self.slice("open.stl", "--layer-height", "2")
-        slabs = self.slice("open.stl", "--layer-height", "2", "--max-memory", "160M", "--threads", 2)
-        self.assertIn("slabs", slabs)
-        self.assertEqual(whole["layers"], slabs["layers"])
+        ranges = self.slice("open.stl", "--layer-height", "2", "--max-memory", "160M", "--threads", 2)
+        self.assertIn("slabs", ranges)
+        self.assertEqual(whole["layers"], ranges["layers"])
 
 
 if __name__ == "__main__":

@@ -74,7 +74,7 @@ class Plate(ProgramTest):
         self.assertEqual(len({part["points"] for part in stats["parts"]}), 1)
         self.assertAlmostEqual(stats["volume_mm3"], 3 * self.stats("box.stl")["volume_mm3"], places=6)
 
-    def test_triangles_and_options_are_told_as_they_were_given(self):
+    def test_triangles_and_options_are_reported_as_they_were_given(self):
         self.write("twice.stl", binary_stl(2 * box_triangles(1, 2, 3)))
         result = self.succeed("slice", "twice.stl", "--drop-duplicates", "--copies", "3", "-o", "boxes.cli")
         self.assertIn("twice.stl: 24 triangles", result.text)
@@ -98,7 +98,7 @@ class Plate(ProgramTest):
         labels = re.findall(rb'\$\$LABEL/(\d),"(.*?)"', self.path("a.cli").read_bytes())
         self.assertEqual(labels, [(b"1", b"crate"), (b"2", b"ball"), (b"3", b"ball 2")])
 
-    def test_a_label_that_the_format_has_no_place_for_is_told(self):
+    def test_a_label_that_the_format_has_no_place_for_is_reported(self):
         words = ["slice", "box.stl", "--label", "crate, small", "ball.stl", "--label", "b\u00e4ll"]
         result = self.succeed(*words, "-o", "a.cli")
         self.assertIn('a.cli: 2 labels were changed, the first from "crate, small" to "crate_ small"', result.err)

@@ -62,11 +62,11 @@ class Window:
         self.test.addCleanup(process.wait)
         self.test.addCleanup(process.kill)
 
-    def tell(self, *words):
+    def send(self, *words):
         return subprocess.run(["xdotool", *words], env=self.environment, capture_output=True, timeout=60).returncode == 0
 
     def shows(self, title):
-        return self.tell("search", "--onlyvisible", "--name", title)
+        return self.send("search", "--onlyvisible", "--name", title)
 
     def wait(self, what, until, again=lambda: None, seconds=120):
         """Until it is so; `again` is done every few seconds, as a window may not listen yet."""
@@ -81,28 +81,28 @@ class Window:
         self.test.fail(f"PrusaSlicer: {what} in {seconds} s")
 
     def open_import(self):
-        self.tell("key", "Escape", "key", "Escape", "key", "alt+f", "sleep", "1", "key", "i", "sleep", "1", "key", "Down", "key",
+        self.send("key", "Escape", "key", "Escape", "key", "alt+f", "sleep", "1", "key", "i", "sleep", "1", "key", "Down", "key",
                   "Down", "key", "Return")
 
     def open_save(self):
         # A plate on which nothing has arrived yet makes it ask whether to save that.
-        self.tell("key", "Escape", "mousemove", "700", "900", "sleep", "0.5", "click", "1", "sleep", "0.5", "key", "ctrl+s")
+        self.send("key", "Escape", "mousemove", "700", "900", "sleep", "0.5", "click", "1", "sleep", "0.5", "key", "ctrl+s")
 
     def import_archive(self, path):
         self.wait("no main window", lambda: self.shows("PrusaSlicer-2"))
         self.wait("no way to import", lambda: self.shows("Import SLA archive"), self.open_import)
-        self.wait("no choice of a file", lambda: self.shows("Choose SLA archive"), lambda: self.tell("key", "space"))
-        self.tell("type", "--delay", "30", str(path))
-        self.tell("sleep", "1", "key", "Return")
+        self.wait("no choice of a file", lambda: self.shows("Choose SLA archive"), lambda: self.send("key", "space"))
+        self.send("type", "--delay", "30", str(path))
+        self.send("sleep", "1", "key", "Return")
         self.wait("the choice stays", lambda: not self.shows("Choose SLA archive"))
-        self.tell("key", "shift+Tab", "sleep", "0.5", "key", "space")
+        self.send("key", "shift+Tab", "sleep", "0.5", "key", "space")
         self.wait("the import does not begin", lambda: not self.shows("Import SLA archive"))
 
     def save(self, path):
         self.wait("no way to save", lambda: self.shows("Save file as"), self.open_save)
-        self.tell("key", "ctrl+a")
-        self.tell("type", "--delay", "30", str(path))
-        self.tell("sleep", "1", "key", "Return")
+        self.send("key", "ctrl+a")
+        self.send("type", "--delay", "30", str(path))
+        self.send("sleep", "1", "key", "Return")
         self.wait("nothing is saved", path.exists)
 
 

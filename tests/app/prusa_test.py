@@ -8,7 +8,7 @@ import subprocess
 import unittest
 import zipfile
 
-from png_picture import Picture
+from png_image import Image
 from program import ProgramTest, binary_stl, box_triangles, main
 
 
@@ -46,15 +46,15 @@ class Prusa(ProgramTest):
                 theirs = zipfile.ZipFile(self.path("theirs.sl1"))
                 ours = zipfile.ZipFile(self.path("ours.sl1"))
                 for layer in range(4):
-                    their_picture = Picture(theirs.read(f"theirs{layer:05}.png"))
-                    our_picture = Picture(ours.read(f"ours{layer:05}.png"))
-                    self.assertEqual((our_picture.width, our_picture.height),
-                                     (their_picture.width, their_picture.height))
-                    differences = [abs(a - b) for mine, other in zip(our_picture.rows, their_picture.rows)
+                    their_image = Image(theirs.read(f"theirs{layer:05}.png"))
+                    our_image = Image(ours.read(f"ours{layer:05}.png"))
+                    self.assertEqual((our_image.width, our_image.height),
+                                     (their_image.width, their_image.height))
+                    differences = [abs(a - b) for mine, other in zip(our_image.rows, their_image.rows)
                                    for a, b in zip(mine, other)]
                     # Theirs rounds to 256ths of a pixel, ours decides corners in eighths of a row.
                     self.assertLess(max(differences), 16)
-                    self.assertLess(sum(differences) / 255, 0.002 * our_picture.covered())
+                    self.assertLess(sum(differences) / 255, 0.002 * our_image.covered())
 
     def test_a_job_says_what_theirs_says(self):
         self.write("part.stl", binary_stl(slanted_part()))

@@ -26,8 +26,8 @@ def zipped(entries):
 
 
 def array_of_zeros(length):
-    head = f"{{'descr': '<f8', 'fortran_order': False, 'shape': ({length // 16}, 2), }}".ljust(117) + "\n"
-    return b"\x93NUMPY\x01\x00v\x00" + head.encode() + bytes(length)
+    header = f"{{'descr': '<f8', 'fortran_order': False, 'shape': ({length // 16}, 2), }}".ljust(117) + "\n"
+    return b"\x93NUMPY\x01\x00v\x00" + header.encode() + bytes(length)
 
 
 SLICES = ('<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02" '
@@ -39,7 +39,7 @@ def slice_files():
     """Of each format that is read: the name of one that takes far more memory than its bytes, how to make it, and the
     text of its refusal."""
     cli = "$$HEADERSTART\n$$UNITS/1\n{}\n$$HEADEREND"
-    head = '{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}'
+    header = '{"format": "lamella layers", "version": 1, "parts": [{"label": "a"}'
 
     def slices():
         stack = "".join(f'<t:slice ztop="{i}"/>' for i in range(1, 400_000))
@@ -55,7 +55,7 @@ def slice_files():
         ("layers.slc", lambda: b"-SLCVER 2.0 -UNIT MM -TYPE PART \r\n\x1a" + bytes(256) + b"\x01" + bytes(16)
          + bytes(8 * 2_000_000), "byte "),
         ("layers.svg", lambda: "<svg>" + "<g slic3r:z='1'/>\n" * 1_000_000 + "</svg>", "line "),
-        ("parts.json", lambda: head + ",{}" * 3_000_000 + "]}", "byte "),
+        ("parts.json", lambda: header + ",{}" * 3_000_000 + "]}", "byte "),
     ]
 
 

@@ -14,7 +14,7 @@ class Repair(ProgramTest):
         self.assertNotIn("repairs", stats)
         self.assertNotIn("gaps", stats)
 
-    def test_what_is_missing_is_told(self):
+    def test_what_is_missing_is_reported(self):
         self.write("open.stl", binary_stl(open_box(20, 30, 10)))
         stats = self.stats("open.stl", "--layer-height", "1")
         for of in [stats["layers"][0], stats["layers"][9]]:
@@ -35,7 +35,7 @@ class Repair(ProgramTest):
         self.assertNotIn("open_gaps", mended)
         self.assertNotIn("open_gaps", mended["layers"][0])
 
-    def test_closing_gaps_tells_every_join(self):
+    def test_closing_gaps_reports_every_join(self):
         self.write("open.stl", binary_stl(open_box(20, 30, 10)))
         stats = self.stats("open.stl", "--layer-height", "1", "--close-gaps", "30.5")
         self.assertEqual(stats["open_chains"], 0)
@@ -94,7 +94,7 @@ class Repair(ProgramTest):
         self.assertEqual([layer["hash"] for layer in stats["layers"]], [layer["hash"] for layer in sound["layers"]])
         [repair] = stats["repairs"]
         self.assertEqual(repair["drop_duplicates"]["repeated_triangles"], 3)
-        self.assertEqual(repair["orient"]["turned_triangles"], 3)
+        self.assertEqual(repair["orient"]["flipped_triangles"], 3)
         text = self.succeed("slice", "broken.stl", "--orient", "--drop-duplicates", "-o", "x.cli").text
         self.assertRegex(text, r"dropped +3 triangles repeated")
         self.assertRegex(text, r"oriented +3 triangles turned")

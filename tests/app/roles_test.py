@@ -117,7 +117,7 @@ class Roles(ProgramTest):
         self.succeed("verify", "lines.ovf", "--mesh", "part.3mf", "--scan")
         self.succeed("view", "part.3mf", "-o", "part.html")
 
-    def test_doubts_about_negative_volumes_are_told(self):
+    def test_doubts_about_negative_volumes_are_reported(self):
         self.file("part.3mf", "NegativeVolume", BODY, ABOVE, flipped=(1,))
         areas, warnings = self.areas("part.3mf", strict=False)
         self.assertEqual(areas, 30 * [900])

@@ -50,7 +50,7 @@ class Strategy(ProgramTest):
         self.assertEqual(text.count("[parameters.fast]"), 1)
         self.assertRegex(text, r"\[parameters.contour\]\npower_w = 120 .*\nspeed_mm_s = 7 ")
 
-    def test_what_is_wrong_is_told_with_its_line(self):
+    def test_what_is_wrong_is_reported_with_its_line(self):
         self.box()
         self.check("[hatch]\ndistanze = 1\n", r's\.toml:2: \[hatch\] has no "distanze"; did you mean distance\?')
         self.check("[hatches]\n", r's\.toml:1: a strategy has no "hatches"; did you mean hatch\?')
@@ -390,7 +390,7 @@ class Scan(ProgramTest):
         for name in ("x.cli", "x.json", "x.npz"):
             self.fail_with(4, "power and speed, were left out", *slicing, "--scan", "-o", name)
 
-    def test_rings_that_bound_no_material_are_told(self):
+    def test_rings_that_bound_no_material_are_reported(self):
         self.write("inverted.stl", binary_stl([t[::-1] for t in box_triangles(5, 5, 3)]))
         self.succeed("slice", "inverted.stl", "-o", "layers.npz", "--layer-height", "1")
         lost = r"3 rings bound no material in 3 of 3 layers, first at z = 0\.5 mm \(75 mm3 lost\): .*; converting them with --fill nonzero "
@@ -402,7 +402,7 @@ class Scan(ProgramTest):
         self.succeed("convert", "layers.npz", "turned.npz", "--fill", "nonzero")
         self.assertNotIn("turned.npz", self.succeed("scan", "turned.npz", "-o", "job.json").err)
 
-    def test_halves_of_rings_that_cross_themselves_are_told(self):
+    def test_halves_of_rings_that_cross_themselves_are_reported(self):
         self.write("bow_tie.json", '{"format":"lamella layers","version":1,"units":"mm","parts":[{"label":"part"}],"layers":'
                                    '[{"index":0,"z":0.05,"bottom":0,"top":0.1,"parts":[{"rings":[[0,0,10,10,10,0,0,10]]}]}]}')
         lost = r"bow_tie\.json: 1 ring bounds no material in 1 of 1 layer, first at z = 0\.05 mm \(2\.5 mm3 lost\)"
@@ -424,7 +424,7 @@ class Scan(ProgramTest):
             self.succeed("slice", "two.stl", "-o", job, "--layer-height", "1", "--scan", "--fill", "nonzero")
             self.succeed("verify", job, "--mesh", "two.stl", "--fill", "nonzero")
 
-    def test_what_a_file_of_vectors_holds_is_told(self):
+    def test_what_a_file_of_vectors_holds_is_reported(self):
         stats = self.stats("--scan", *HATCHED)["scan"]
         for name in ("job.ovf", "job.json"):
             self.succeed("slice", "part.stl", "-o", name, "--layer-height", "1", "--scan", *HATCHED)

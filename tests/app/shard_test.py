@@ -161,7 +161,7 @@ class Shard(ProgramTest):
         self.fail_with(6, "cannot write 'c.cli.shard': it is a folder", *shard, "c.cli")
         self.fail_with(6, r"cannot write '.*\.cli\.shard': the name is too long", *shard, "d" * 247 + ".cli")
 
-    def test_merge_tells_what_is_missing_or_cannot_be_read(self):
+    def test_merge_reports_what_is_missing_or_cannot_be_read(self):
         self.lattice()
         a, b = self.slice_all(2, "cli")
         layers, whole = self.stamp(b), self.bytes_of(b)
@@ -261,7 +261,7 @@ class Shard(ProgramTest):
         self.succeed("slice", "part.stl", "-o", "named.cli", "--layers", "50:90", "--label", "other")
         self.fail_with(3, "different parts", "merge", "m.cli", "a.cli", "named.cli", "c.cli")
         self.succeed("slice", "part.stl", "-o", "moved.cli", "--layers", "50:90", "--translate", "1,0,0")
-        self.fail_with(3, r"their heads differ: found \$\$DIMENSION", "merge", "m.cli", "a.cli", "moved.cli", "c.cli")
+        self.fail_with(3, r"their headers differ: found \$\$DIMENSION", "merge", "m.cli", "a.cli", "moved.cli", "c.cli")
         self.succeed("slice", "part.stl", "-o", "text.cli", "--layers", "50:90", "--format", "cli-ascii")
         self.fail_with(3, "one is cli, the other cli-ascii", "merge", "m.cli", "a.cli", "text.cli", "c.cli")
         self.fail_with(3, "no such file", "merge", "m.cli", "a.cli", "nowhere.cli")
@@ -272,7 +272,7 @@ class Shard(ProgramTest):
             self.succeed("slice", "part.stl", "-o", f"{name}.cli", "--layers", layers)
             self.succeed("slice", "part.stl", "-o", f"{name}-text.cli", "--layers", layers, "--format", "cli-ascii")
         binary, text = self.bytes_of("b.cli"), self.bytes_of("b-text.cli")
-        head = text[:text.index(b"$$LAYERS/")]
+        header = text[:text.index(b"$$LAYERS/")]
         count = int(text[text.index(b"$$LAYERS/") + 9:].split(b"\n")[0])
         without_zero = text.replace(b"$$LAYERS/%d" % count, b"$$LAYERS/%d" % (count - 1))
         zero = without_zero.index(b"$$LAYER/")
@@ -281,7 +281,7 @@ class Shard(ProgramTest):
                   "binary user data": binary.replace(b"$$LAYERS/", b"$$USERDATA/x,1,$$HEADEREND\n$$LAYERS/", 1),
                   "no layer below": without_zero,
                   "comment": text.replace(b"$$GEOMETRYSTART\n", b"$$GEOMETRYSTART\n// $$LAYER/7 //\n"),
-                  "comment in the head": head + b"// $$LAYERS/9 //\n" + text[len(head):]}
+                  "comment in the head": header + b"// $$LAYERS/9 //\n" + text[len(header):]}
         for name, content in others.items():
             with self.subTest(name):
                 self.write("b-other.cli", content)

@@ -137,7 +137,7 @@ class Slice(ProgramTest):
         self.assertEqual(self.bytes_of("sweep.cli"), self.bytes_of("eecc.cli"))
         self.fail_with(2, "eecc", "slice", "torus.stl", "-o", "a.cli", "--engine", "eec")
 
-    def test_the_engines_of_the_paper_tell_what_they_counted(self):
+    def test_the_engines_of_the_paper_report_what_they_counted(self):
         self.succeed("make", "sheet", "-o", "sheet.stl", "--holes", "9", "--segments", "16", "--order", "split")
         self.assertNotIn("matching", self.stats("sheet.stl"))
         walls, layers, contours = 2 * 9 * 16 + 8, 30, 10
@@ -242,7 +242,7 @@ class Slice(ProgramTest):
                     self.assertAlmostEqual(layer["bottom"], bottom, delta=1e-6)
                     self.assertAlmostEqual(layer["top"], bottom + 0.1, delta=1e-6)
 
-    def test_what_single_precision_loses_far_from_the_origin_is_told(self):
+    def test_what_single_precision_loses_far_from_the_origin_is_reported(self):
         self.succeed("make", "sphere", "-o", "ball.stl")
         far = ["slice", "ball.stl", "--layer-height", "1", "--translate", "1e7,0,0"]
         for name in ["ball.cli", "ball.slc"]:
@@ -253,7 +253,7 @@ class Slice(ProgramTest):
                 self.assertEqual(self.succeed("slice", "ball.stl", "-o", name, "--strict").err, "")
         self.succeed(*far, "-o", "ball.svg", "--strict")
 
-    def test_layers_that_single_precision_cannot_tell_apart_are_refused(self):
+    def test_layers_that_single_precision_cannot_distinguish_are_refused(self):
         self.succeed("make", "sphere", "-o", "ball.stl")
         self.fail_with(2, "its top, z = .* mm, is not above the height before it", "slice", "ball.stl", "-o", "x.cli", "--layer-height", "0.1",
                        "--translate", "0,0,1e7")
@@ -381,7 +381,7 @@ class Slice(ProgramTest):
         self.fail_with(6, "it is a folder", "slice", "box.stl", "-o", "box.cli", "--stats", str(self.folder))
         self.assertEqual(self.bytes_of("box.cli"), b"old")
 
-    def test_statistics_that_fail_at_the_end_leave_a_slice_file_that_is_told_to_be_complete(self):
+    def test_statistics_that_fail_at_the_end_leave_a_complete_slice_file_and_say_so(self):
         self.box()
         self.box("page.stl")
         self.fail_after_output("box.cli", "slice", "box.stl", "-o", "box.cli", "--stats", "/dev/full")
@@ -406,7 +406,7 @@ class Slice(ProgramTest):
             self.fail_with(2, f"'{name}': Lamella writes layers and scan vectors, and no G-code; programs such as PrusaSlicer and Cura do$",
                            "slice", "box.stl", "-o", name)
 
-    def test_layers_beyond_the_part_are_told_beside_those_that_there_are(self):
+    def test_layers_beyond_the_part_are_reported_beside_those_that_there_are(self):
         self.box()
         self.fail_with(2, "this part has layers 0 to 99; 1000:2000 is beyond them$", "slice", "box.stl", "-o", "a.cli", "--layers", "1000:2000")
 

@@ -165,7 +165,7 @@ class Vectors(ProgramTest):
         self.succeed("slice", "rook.stl", "--scan", "--layers", "40:60", "-o", "part.cli")
         self.verify("part.cli", "--mesh", "rook.stl", "--scan")
 
-    def test_only_what_was_checked_is_told(self):
+    def test_only_what_was_checked_is_reported(self):
         self.succeed("slice", "rook.stl", "--layer-height", "1", "--scan", "--contours", "0", "-o", "job.cli")
         text = self.succeed("verify", "job.cli").text
         self.assertIn("nothing tells where the material is", text)
@@ -229,7 +229,7 @@ class Verify(ProgramTest):
                 self.verify("ball.cli", "--mesh", "ball.stl", "--slice-at", at)
         self.verify("ball.cli", "--mesh", "ball.stl", "--slice-at", "bottom", code=4)
 
-    def test_cuts_that_a_format_does_not_keep_are_told_and_their_cure_is_named(self):
+    def test_cuts_that_a_format_does_not_keep_are_reported_and_their_cure_is_named(self):
         self.succeed("make", "rook", "-o", "rook.stl")
         for where in ["top", "bottom"]:
             for name in ["a.cli", "a.slc", "a.3mf"]:
@@ -250,7 +250,7 @@ class Verify(ProgramTest):
         for name in ["a.json", "a.npz", "a.svg"]:
             self.assertEqual(self.succeed("slice", "rook.stl", "--slice-at", "top", "--snap", "1e-6", "--strict", "-o", name).err, "")
 
-    def test_listed_cuts_that_a_format_does_not_keep_are_told(self):
+    def test_listed_cuts_that_a_format_does_not_keep_are_reported(self):
         self.succeed("make", "rook", "-o", "rook.stl")
         self.write("z.txt", "1\n2\n4\n5\n9\n")
         result = self.succeed("slice", "rook.stl", "--z-list", "z.txt", "-o", "a.cli")
@@ -294,7 +294,7 @@ class Verify(ProgramTest):
         found = self.verify("box.cli", "--mesh", "wider.stl", code=4)
         self.assertGreater(found["max_area_error_mm2"], 20)
 
-    def test_layers_that_are_missing_are_told(self):
+    def test_layers_that_are_missing_are_reported(self):
         self.box(size="20,30,2")
         self.succeed("slice", "box.stl", "-o", "low.json", "--layer-height", "0.1", "--layers", ":5")
         self.assertEqual(self.verify("low.json", "--mesh", "box.stl")["heights"]["layers"], [0, 0.5])
@@ -307,7 +307,7 @@ class Verify(ProgramTest):
         self.assertEqual(self.verify("gap.json", "--mesh", "box.stl", code=4)["heights"]["gaps"], 1)
         self.assertIn("a gap between layers", self.run_program("verify", "gap.json", "--mesh", "box.stl").text)
 
-    def test_layers_beyond_the_mesh_are_told(self):
+    def test_layers_beyond_the_mesh_are_reported(self):
         self.succeed("make", "box", "--size", "20,20,53.15", "-o", "high.stl")
         self.succeed("make", "box", "--size", "20,20,20", "-o", "low.stl")
         self.succeed("slice", "high.stl", "-o", "high.cli")
@@ -351,7 +351,7 @@ class Verify(ProgramTest):
             self.run_program("verify", "ball.json", "--mesh", "larger.stl", "--tolerance", "0.0005").code, 4)
         self.fail_with(2, "negative", "verify", "ball.json", "--tolerance=-1")
 
-    def test_what_was_warned_of_is_told_and_counts_if_asked(self):
+    def test_what_was_warned_of_is_reported_and_counts_if_asked(self):
         text = ascii_cli((1, SQUARE)).replace("$$LAYERS/000002", "$$LAYERS/000003")
         self.write("odd.cli", text)
         found = self.run_program("verify", "--json", "odd.cli")
@@ -363,7 +363,7 @@ class Verify(ProgramTest):
         self.write("even.cli", ascii_cli((1, SQUARE)))
         self.succeed("verify", "--strict", "even.cli")
 
-    def test_lines_that_no_exposure_has_are_told(self):
+    def test_lines_that_no_exposure_has_are_reported(self):
         text = ascii_cli((1, SQUARE)).replace("$$GEOMETRYEND", "$$HATCHES/1,1,1.0,1.0,90.0,1.0\n$$GEOMETRYEND")
         self.write("lines.cli", text)
         result = self.succeed("verify", "lines.cli")
@@ -380,7 +380,7 @@ class Verify(ProgramTest):
         self.write("a.cli", ascii_cli((0, SQUARE[::-1])))
         self.assertEqual(self.verify("a.cli", code=4)["misoriented"], 1)
 
-    def test_a_body_within_another_is_told_and_is_no_error(self):
+    def test_a_body_within_another_is_reported_and_is_no_error(self):
         inner = [(2, 2), (8, 2), (8, 8), (2, 8), (2, 2)]
         self.write("a.cli", ascii_cli((1, SQUARE), (1, inner)))
         found = self.verify("a.cli")

@@ -77,7 +77,7 @@ class View(ProgramTest):
         for name in ("converted.html", "viewed.html", "reported.html"):
             self.assertEqual(data(name), expected, name)
 
-    def test_steps_that_change_contours_tell_of_their_hatches(self):
+    def test_steps_that_change_contours_report_their_hatches(self):
         self.need_viewer()
         part = '{"rings": [[0, 0, 9, 0, 9, 9, 0, 9]], "hatches": [0, 1, 9, 1]}'
         self.write("hatched.json", f"""{{"format": "lamella layers", "version": 1, "units": "mm", "parts": [{{"label": "a"}}, {{"label": "b"}}],
@@ -86,7 +86,7 @@ class View(ProgramTest):
         self.assertRegex(told, r"warning: hatched\.json: 2 hatch lines left out: the contours that they fill were changed")
         self.assertEqual(self.succeed("view", "hatched.json", "-o", "page.html").err, "")
 
-    def test_what_is_odd_or_lost_is_told(self):
+    def test_what_is_odd_or_lost_is_reported(self):
         self.need_viewer()
         self.write("cut.stl", binary_stl(box_triangles(10, 20, 30))[:-7])
         self.assertIn("warning: cut.stl: ", self.succeed("view", "cut.stl").err)
@@ -125,7 +125,7 @@ class View(ProgramTest):
             self.succeed("slice", "rook.stl", "-o", threads + ".html", "--threads", threads)
         self.assertEqual(self.bytes_of("1.html"), self.bytes_of("3.html"))
 
-    def test_a_report_beside_a_slice_file_tells_the_run(self):
+    def test_a_report_beside_a_slice_file_reports_the_run(self):
         self.need_viewer()
         self.succeed("slice", "box.stl", "-o", "box.cli", "--report", "report.html", "--inspect")
         sections = {s["title"]: {f["name"]: f["value"] for f in s["facts"]} for s in element(self.page("report.html"), "notes")["sections"]}
@@ -134,7 +134,7 @@ class View(ProgramTest):
         self.assertRegex(sections["The run"]["Slicing"], r"^\d+\.\d{3} s$")
         self.succeed("verify", "box.cli", "--mesh", "box.stl")
 
-    def test_a_page_of_scan_vectors_tells_what_is_exposed_and_how_long(self):
+    def test_a_page_of_scan_vectors_reports_what_is_exposed_and_how_long(self):
         self.need_viewer()
         options = ["--layer-height", "2.5", "--scan", "--hatch-distance", "0.5", "--skin-layers", "1", "--label", "bracket"]
         self.succeed("slice", "box.stl", "-o", "job.ovf", "--report", "report.html", "--stats", "stats.json", *options)
@@ -160,7 +160,7 @@ class View(ProgramTest):
                 self.assertEqual(table[key], [0] * 4, key)
         self.assertIn("Scan vectors", [section["title"] for section in element(self.page("report.html"), "notes")["sections"]])
 
-    def test_jobs_that_tell_no_speed_of_jumps_have_a_time_without_them(self):
+    def test_jobs_that_report_no_speed_of_jumps_have_a_time_without_them(self):
         self.need_viewer()
         self.succeed("slice", "box.stl", "-o", "job.ilt", "--layer-height", "2.5", "--scan", "--hatch-distance", "0.5")
         self.succeed("view", "job.ilt", "-o", "job.html")
@@ -187,8 +187,8 @@ class View(ProgramTest):
             self.assertEqual([(place["kind"], place["found"]) for place in places], [("boundary loop", 1)])
             self.assertEqual(sorted(places[0]["points"]), [[20, y, z] for y in (0, 30) for z in (0, 10)])
         self.assertEqual(element(self.page("open.html"), "table")["open_chains"], [1] * 100)
-        head = element(self.page("mesh.html"), "head")
-        self.assertEqual((head["triangles"], head["shown"], head["shells"][0]["kind"]), (10, 10, "open"))
+        header = element(self.page("mesh.html"), "head")
+        self.assertEqual((header["triangles"], header["shown"], header["shells"][0]["kind"]), (10, 10, "open"))
 
     def test_a_surface_whose_triangles_cross_is_not_called_one_without_defects(self):
         self.need_viewer()

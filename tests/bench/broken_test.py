@@ -11,7 +11,7 @@ from pathlib import Path
 from bench.broken import report
 from bench.broken.__main__ import RING
 from bench.broken.cases import LAYER_HEIGHT_MM, Case, cases
-from bench.broken.picture import picture
+from bench.broken.image import image
 from bench.broken.study import Study
 from bench.broken.triangles import bounds, box, gem, read_stl, section_areas, turned, write_stl
 from bench.broken.views import Drawing, View, difference
@@ -86,7 +86,7 @@ class Lamella(Folder):
         finding = Study(LAMELLA, self.folder / "work", [], 60, 2).case(case(triangles=BLOCK[:-1]))
         self.assertEqual(finding.rows[0][0].open_chains, 8, "one in every layer")
         self.assertEqual([len(drawing.chains) for drawing in finding.drawings], [1])
-        self.assertIn("1 open", report.layer_picture(finding))
+        self.assertIn("1 open", report.layer_image(finding))
 
 
 class Others(Folder):
@@ -101,12 +101,12 @@ class Others(Folder):
         page = report.build_page([finding], [], [], [], machine)
         return page.markdown()
 
-    def test_a_crash_stays_in_the_tables_and_in_the_picture(self):
+    def test_a_crash_stays_in_the_tables_and_in_the_image(self):
         finding = self.finding("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)")
         self.assertEqual(self.table(finding).count("killed by SIGSEGV"), 2)
-        self.assertIn("killed by SIGSEGV", report.layer_picture(finding))
+        self.assertIn("killed by SIGSEGV", report.layer_image(finding))
 
-    def test_output_that_is_not_there_is_told(self):
+    def test_output_that_is_not_there_is_reported(self):
         self.assertIn("no layers", self.table(self.finding("", lambda job: open(job.file("slic3r.svg"), encoding="utf-8"))))
 
     def test_rings_are_drawn_where_the_mesh_is(self):
@@ -123,10 +123,10 @@ def json_slicer(finding):
     return report.as_json([finding], [], [])["broken"][0]["slicers"][-1]
 
 
-class Pictures(unittest.TestCase):
+class Images(unittest.TestCase):
     def test_contours_are_filled_paths_are_wide_and_open_ends_are_dots(self):
         square = [(0, 0), (10, 0), (10, 10), (0, 10)]
-        text = picture("p", [("ours", Drawing([square], [square[:3]]), ""), ("path", Drawing([square], width=0.5), ""),
+        text = image("p", [("ours", Drawing([square], [square[:3]]), ""), ("path", Drawing([square], width=0.5), ""),
                              ("none", None, "gone")], ((0, 0, 0), (10, 10, 1)))
         self.assertEqual(len(re.findall("<circle", text)), 2)
         self.assertEqual(text.count('fill-rule="nonzero"'), 1)

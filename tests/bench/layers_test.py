@@ -15,7 +15,7 @@ class Agreement(unittest.TestCase):
         self.assertTrue(found.exact)
         self.assertEqual(found.text(), "equal")
 
-    def test_a_slicer_that_tells_lengths_only_is_compared_by_these(self):
+    def test_a_slicer_that_reports_lengths_only_is_compared_by_these(self):
         found = agreement([Layer(layer.z, 2, perimeter_mm=20.0) for layer in stack(5)], stack(5))
         self.assertTrue(found.exact)
         self.assertIsNone(found.area_off)
@@ -26,7 +26,7 @@ class Agreement(unittest.TestCase):
         self.assertTrue(found.near)
         self.assertIn("one layer more or less", found.text())
 
-    def test_a_stack_that_stands_one_layer_lower_is_told(self):
+    def test_a_stack_that_stands_one_layer_lower_is_reported(self):
         uneven = [Layer(0.05 + 0.1 * i, 2, 10.0 + 5 * (i % 3), 20.0) for i in range(200)]
         sunk = [Layer(layer.z - 0.1, 2, layer.area_mm2) for layer in uneven[1:]]
         self.assertFalse(agreement(sunk, uneven).near)

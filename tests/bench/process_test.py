@@ -19,10 +19,10 @@ class Process(unittest.TestCase):
         self.assertEqual(outcome.text, "out\nerr")
         self.assertGreater(outcome.seconds, 0)
 
-    def test_an_exit_code_is_told(self):
+    def test_an_exit_code_is_reported(self):
         self.assertEqual(self.run_python("raise SystemExit(3)").ended, "exit code 3")
 
-    def test_a_crash_is_told_by_its_signal(self):
+    def test_a_crash_is_reported_by_its_signal(self):
         self.assertEqual(self.run_python("import os, signal; os.kill(os.getpid(), signal.SIGSEGV)").ended,
                          "killed by SIGSEGV")
 
@@ -43,7 +43,7 @@ class Process(unittest.TestCase):
         self.assertLess(self.run_python("pass").peak_rss_bytes, 2**27)
         self.assertGreater(self.run_python("len(bytes([1]) * 2**28)").peak_rss_bytes, 2**28)
 
-    def test_a_program_that_is_not_there_is_told(self):
+    def test_a_program_that_is_not_there_is_reported(self):
         with tempfile.TemporaryDirectory() as folder:
             outcome = process.run([str(Path(folder) / "nothing")], 10, Path(folder) / "log")
         self.assertEqual(outcome.ended, "exit code 127")

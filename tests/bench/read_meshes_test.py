@@ -20,7 +20,7 @@ class Options(unittest.TestCase):
 
 
 class Versions(unittest.TestCase):
-    def test_the_program_tells_more_than_its_version(self):
+    def test_the_program_reports_more_than_its_version(self):
         with tempfile.TemporaryDirectory() as folder:
             program = Path(folder, "lamella")
             program.write_text("#!/bin/sh\necho lamella 1.2.3\necho MIT licence\n", encoding="utf-8")

@@ -80,14 +80,14 @@ class Readers(unittest.TestCase):
         layers = toolpath.read_layers(self.write(text), lambda line: line.startswith(";LAYER:"), cura.is_wall, 0.4, 0.1)
         self.assertEqual(layers[0].contours, 1)
 
-    def test_prusa_slicer_tells_when_its_first_stage_begins_and_ends(self):
+    def test_prusa_slicer_reports_when_its_first_stage_begins_and_ends(self):
         text = ("[2026-01-01 23:59:59.500000] [0x1] [info]    Slicing volumes... Resident memory: 74MB\n"
                 "20 => Generating perimeters\n"
                 "[2026-01-02 00:00:01.250000] [0x1] [info]    Generating perimeters... Resident memory: 75MB\n")
         self.assertAlmostEqual(prusa_slicer.slicing_seconds(None, text), 1.75)
         self.assertIsNone(prusa_slicer.slicing_seconds(None, "nothing of the kind"))
 
-    def test_cura_tells_the_time_of_its_first_stage(self):
+    def test_cura_reports_the_time_of_its_first_stage(self):
         text = "slice of mesh took 0.070 seconds\nProgress: slice accomplished in 0.105s\n"
         self.assertAlmostEqual(cura.slicing_seconds(None, text), 0.105)
         self.assertIsNone(cura.slicing_seconds(None, ""))

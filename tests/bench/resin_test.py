@@ -9,7 +9,7 @@ from pathlib import Path
 
 from bench.harness import parts
 from bench.resin import __main__ as program
-from bench.resin import pictures, slicers
+from bench.resin import images, slicers
 
 LAMELLA = Path(os.environ["LAMELLA_PROGRAM"])
 
@@ -28,26 +28,26 @@ class Jobs(unittest.TestCase):
         return output
 
     def test_equal_jobs_agree(self):
-        agreement = pictures.compare(self.job(), self.job())
+        agreement = images.compare(self.job(), self.job())
         self.assertTrue(agreement.good)
-        self.assertEqual((agreement.pictures, agreement.largest, agreement.apart), (5, 0, 0))
+        self.assertEqual((agreement.images, agreement.largest, agreement.apart), (5, 0, 0))
 
     def test_a_part_that_lies_elsewhere_is_found(self):
         for options in (["--rotate-z", "2"], ["--scale", "1.01"]):
-            agreement = pictures.compare(self.job(), self.job(*options))
+            agreement = images.compare(self.job(), self.job(*options))
             self.assertFalse(agreement.good)
             self.assertIn("pixels differ", agreement.text())
 
-    def test_layers_that_are_missing_are_told(self):
-        agreement = pictures.compare(self.job(), self.job("--layers", "0:3"))
+    def test_layers_that_are_missing_are_reported(self):
+        agreement = images.compare(self.job(), self.job("--layers", "0:3"))
         self.assertFalse(agreement.good)
         self.assertEqual(agreement.text(), "3 pictures instead of 5")
 
     def test_a_thin_last_layer_may_be_missing(self):
-        self.assertTrue(pictures.compare(self.job(), self.job("--layers", "0:4")).good)
+        self.assertTrue(images.compare(self.job(), self.job("--layers", "0:4")).good)
 
-    def test_pictures_of_another_size_do_not_agree(self):
-        agreement = pictures.compare(self.job(), self.job("--resolution", "100x125"))
+    def test_images_of_another_size_do_not_agree(self):
+        agreement = images.compare(self.job(), self.job("--resolution", "100x125"))
         self.assertFalse(agreement.good)
         self.assertEqual(agreement.text(), "pictures of another size")
 
@@ -65,11 +65,11 @@ class Report(unittest.TestCase):
             self.assertTrue(Path(folder, "resin.html").exists())
             self.assertEqual(list(Path(folder).glob("*.sl1*")), [])
 
-    def test_a_time_for_other_pictures_stands_in_brackets(self):
+    def test_a_time_for_other_images_stands_in_brackets(self):
         ours = program.Cell("box", "lamella", "ok", 1, 1, 10**6, 10**6)
-        other = program.Cell("box", "prusa-slicer", "ok", 3, 3, 10**6, 10**6, pictures.Agreement(5, 5, 200, 0.1))
+        other = program.Cell("box", "prusa-slicer", "ok", 3, 3, 10**6, 10**6, images.Agreement(5, 5, 200, 0.1))
         self.assertEqual(program.row(other, ours)[:2], ("(3.000)", "(3.00)"))
-        other.agreement = pictures.Agreement(5, 5, 1, 1e-5)
+        other.agreement = images.Agreement(5, 5, 1, 1e-5)
         self.assertEqual(program.row(other, ours)[:2], ("3.000", "3.00"))
 
     def test_nor_does_one_with_nothing_to_compare_with(self):

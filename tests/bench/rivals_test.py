@@ -57,7 +57,7 @@ class Rivals(unittest.TestCase):
         self.assertIn("killed by SIGSEGV", report.time_chart(cells, {"lamella": "L", "lamella-1": "L1", "crash": "C"},
                                                              {"box": "box"}))
 
-    def test_a_failure_is_told_in_the_words_of_the_program(self):
+    def test_a_failure_is_reported_in_the_words_of_the_program(self):
         refusal = stand_in("refusal", "raise SystemExit('the first layer is empty')")
         cells = self.cells(refusal)
         self.assertEqual(cells[2].ended, "exit code 1")

@@ -16,9 +16,9 @@ std::string pattern(std::uint64_t from, std::size_t size) {
     return bytes;
 }
 
-std::string read(const ByteStore& store, std::uint64_t place, std::size_t size) {
+std::string read(const ByteStore& store, std::uint64_t position, std::size_t size) {
     std::string bytes(size, '\0');
-    store.read(place, bytes);
+    store.read(position, bytes);
     return bytes;
 }
 
@@ -35,8 +35,9 @@ TEST(ByteStore, GivesBackBytesFromMemoryAndFromItsFile) {
         }
         ASSERT_EQ(store.size(), size);
         EXPECT_EQ(read(store, 0, size), pattern(0, size)) << most;
-        for (const std::uint64_t place : {std::uint64_t{block} - 3, std::uint64_t{2 * block} - 1, size - 9})
-            EXPECT_EQ(read(store, place, 9), pattern(place, 9)) << most << ", from " << place;
+        for (const std::uint64_t position :
+             {std::uint64_t{block} - 3, std::uint64_t{2 * block} - 1, size - 9})
+            EXPECT_EQ(read(store, position, 9), pattern(position, 9)) << most << ", from " << position;
         EXPECT_EQ(read(store, size, 0), "");
     }
 }

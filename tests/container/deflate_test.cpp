@@ -41,10 +41,10 @@ TEST(Deflate, PiecesOfSeveralDeflatersJoinToOneStream) {
     Deflater even;
     Deflater odd;
     for (int i = 0; i < 40; ++i) {
-        const std::string piece =
+        const std::string chunk =
             i % 7 == 3 ? noise(100'000) : std::string(static_cast<std::size_t>(i * i), 'x');
-        (i % 2 == 0 ? even : odd).append_piece(piece, stream);
-        text += piece;
+        (i % 2 == 0 ? even : odd).append_chunk(chunk, stream);
+        text += chunk;
     }
     stream += deflate_end;
     EXPECT_EQ(inflated(stream, text.size()), text);
@@ -55,11 +55,11 @@ TEST(Deflate, AUsedDeflaterMakesTheSamePieceAsAFreshOne) {
     const std::string text = "<vertex x=\"1.250\" y=\"3.500\"/>";
     Deflater used;
     std::string first;
-    used.append_piece(noise(50'000), first);
+    used.append_chunk(noise(50'000), first);
     std::string second;
-    used.append_piece(text, second);
+    used.append_chunk(text, second);
     std::string fresh;
-    Deflater().append_piece(text, fresh);
+    Deflater().append_chunk(text, fresh);
     EXPECT_EQ(second, fresh);
 }
 

@@ -17,11 +17,11 @@ TEST(FileHash, IsThatOfTheBytesAlone) {
     write_file(folder.file("a"), bytes);
     write_file(folder.file("b"), bytes);
     EXPECT_EQ(file_hash(folder.file("a")), file_hash(folder.file("b")));
-    for (const std::size_t place : {std::size_t{0}, std::size_t{1} << 22, bytes.size() - 1}) {
+    for (const std::size_t position : {std::size_t{0}, std::size_t{1} << 22, bytes.size() - 1}) {
         std::string other = bytes;
-        other[place] = 'y';
+        other[position] = 'y';
         write_file(folder.file("c"), other);
-        EXPECT_NE(file_hash(folder.file("a")), file_hash(folder.file("c"))) << place;
+        EXPECT_NE(file_hash(folder.file("a")), file_hash(folder.file("c"))) << position;
     }
     write_file(folder.file("c"), bytes + "x");
     EXPECT_NE(file_hash(folder.file("a")), file_hash(folder.file("c")));

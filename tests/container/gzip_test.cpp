@@ -14,7 +14,7 @@ namespace lamella::gzip_cases {
 namespace {
 
 /// A member of a gzip file, as zlib makes it.
-std::string packed(std::string_view bytes) {
+std::string compressed(std::string_view bytes) {
     z_stream stream{};
     constexpr int gzip_window = 15 + 16;
     EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, gzip_window, 8, Z_DEFAULT_STRATEGY), Z_OK);
@@ -53,30 +53,30 @@ std::string some_text(std::size_t size) {
     return text;
 }
 
-TEST(Gzip, IsToldByItsFirstBytes) {
-    EXPECT_TRUE(is_gzip(source(packed("x")).bytes));
+TEST(Gzip, IsReportedByItsFirstBytes) {
+    EXPECT_TRUE(is_gzip(source(compressed("x")).bytes));
     EXPECT_FALSE(is_gzip(source("solid").bytes));
     EXPECT_FALSE(is_gzip(source("\x1f\x8b").bytes));
 }
 
 TEST(Gzip, UnpacksOneMemberOrSeveral) {
     const std::string text = some_text(18'000'000); // more than two steps of the reader
-    EXPECT_TRUE(content(packed(text)) == text);
-    EXPECT_EQ(content(packed("one ") + packed("") + packed("two")), "one two");
-    EXPECT_EQ(content(packed("one") + std::string(100, '\0')), "one");
+    EXPECT_TRUE(content(compressed(text)) == text);
+    EXPECT_EQ(content(compressed("one ") + compressed("") + compressed("two")), "one two");
+    EXPECT_EQ(content(compressed("one") + std::string(100, '\0')), "one");
 }
 
 TEST(Gzip, DoesNotBelieveTheSizeInTheFile) {
-    std::string small = packed("one");
+    std::string small = compressed("one");
     small.replace(small.size() - 4, 4, "\xff\xff\xff\xff");
     EXPECT_NE(error_of(small).find("is broken (incorrect length check)"), std::string::npos);
-    std::string wrong = packed("one");
+    std::string wrong = compressed("one");
     wrong[wrong.size() - 6] ^= 1;
     EXPECT_NE(error_of(wrong).find("is broken (incorrect data check)"), std::string::npos);
 }
 
 TEST(Gzip, StopsAtTheLimit) {
-    const std::string bomb = packed(std::string(8'000'000, '\0'));
+    const std::string bomb = compressed(std::string(8'000'000, '\0'));
     EXPECT_LT(bomb.size(), 80'000U);
     EXPECT_EQ(error_of(bomb, 1'000'000, ErrorKind::limit),
               "part.gz: unpacks to more than the 1000000 bytes of `max_memory`");
@@ -84,7 +84,7 @@ TEST(Gzip, StopsAtTheLimit) {
 }
 
 TEST(Gzip, UnpacksSmallFilesToNoMoreThanTheyAreMeantToUnlessAsked) {
-    const std::string bomb = packed(std::string(100'000'000, '\0'));
+    const std::string bomb = compressed(std::string(100'000'000, '\0'));
     EXPECT_LT(bomb.size(), 200'000U);
     EXPECT_NE(error_of(bomb, 0, ErrorKind::limit).find("unpacks to more than 67108864 bytes"),
               std::string::npos);
@@ -92,17 +92,17 @@ TEST(Gzip, UnpacksSmallFilesToNoMoreThanTheyAreMeantToUnlessAsked) {
 }
 
 TEST(Gzip, NamesTheByteOfADefect) {
-    const std::string whole = packed("a text");
+    const std::string whole = compressed("a text");
     for (std::size_t size = 3; size < whole.size(); ++size)
         EXPECT_NE(error_of(whole.substr(0, size)).find("cut off"), std::string::npos) << size;
     EXPECT_EQ(error_of(whole + "garbage"),
               "part.gz: byte " + std::to_string(whole.size()) +
-                  ": something else follows what is packed with gzip, expected the end of the file");
-    EXPECT_NE(error_of(packed("")).find("nothing is packed in it"), std::string::npos);
+                  ": something else follows the gzip data, expected the end of the file");
+    EXPECT_NE(error_of(compressed("")).find("nothing is packed in it"), std::string::npos);
 }
 
 TEST(Gzip, SurvivesMutations) {
-    const std::string whole = packed(some_text(300)) + packed("more");
+    const std::string whole = compressed(some_text(300)) + compressed("more");
     test::Random random(2);
     for (int round = 0; round < 3000; ++round) {
         std::string bytes = whole;
@@ -120,7 +120,8 @@ TEST(Gzip, SurvivesMutations) {
 TEST(Gzip, EndsWhenAskedTo) {
     CancelFlag stop;
     stop.request();
-    test::error_of(ErrorKind::cancelled, [&] { (void)unpacked(source(packed("x")), 0, {.cancel = &stop}); });
+    test::error_of(ErrorKind::cancelled,
+                   [&] { (void)unpacked(source(compressed("x")), 0, {.cancel = &stop}); });
 }
 
 } // namespace

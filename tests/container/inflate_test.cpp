@@ -9,9 +9,9 @@
 namespace lamella::inflate_cases {
 namespace {
 
-std::string packed(std::string_view text) {
+std::string compressed(std::string_view text) {
     std::string stream;
-    Deflater().append_piece(text, stream);
+    Deflater().append_chunk(text, stream);
     return stream.append(deflate_end);
 }
 
@@ -27,21 +27,21 @@ TEST(Inflate, GivesBackWhatWasPacked) {
         std::string text;
         for (std::size_t i = 0; i < size; ++i)
             text.push_back(static_cast<char>(i * i / 7));
-        EXPECT_EQ(unpacked(packed(text), size), std::pair(Inflated::whole, text));
+        EXPECT_EQ(unpacked(compressed(text), size), std::pair(Inflated::whole, text));
     }
-    EXPECT_EQ(unpacked(packed(""), 0).first, Inflated::whole);
+    EXPECT_EQ(unpacked(compressed(""), 0).first, Inflated::whole);
 }
 
 TEST(Inflate, SaysHowTheRoomIsWrong) {
-    const std::string stream = packed("some text");
+    const std::string stream = compressed("some text");
     EXPECT_EQ(unpacked(stream, 10).first, Inflated::too_short);
     EXPECT_EQ(unpacked(stream, 8).first, Inflated::too_long);
     EXPECT_EQ(unpacked(stream, 0).first, Inflated::too_long);
-    EXPECT_EQ(unpacked(packed(""), 1).first, Inflated::too_short);
+    EXPECT_EQ(unpacked(compressed(""), 1).first, Inflated::too_short);
 }
 
 TEST(Inflate, RefusesWhatIsBroken) {
-    const std::string stream = packed("some text that is long enough");
+    const std::string stream = compressed("some text that is long enough");
     EXPECT_EQ(unpacked(stream + "x", 29).first, Inflated::broken);
     EXPECT_EQ(unpacked("", 1).first, Inflated::broken);
     EXPECT_EQ(unpacked(std::string(50, '\xff'), 1).first, Inflated::broken);

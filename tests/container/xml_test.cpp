@@ -167,12 +167,12 @@ struct Skimmer : Told {
 
     Skimmer() {
         handlers.many = {"<v"};
-        handlers.skim = [this](std::string_view document, std::size_t place) -> std::size_t {
-            const std::size_t end = document.find("</", place);
+        handlers.skim = [this](std::string_view document, std::size_t position) -> std::size_t {
+            const std::size_t end = document.find("</", position);
             if (end == std::string_view::npos)
                 return 0;
-            skimmed += fmt::format("[{}]", document.substr(place, end - place));
-            return end - place;
+            skimmed += fmt::format("[{}]", document.substr(position, end - position));
+            return end - position;
         };
     }
 };

@@ -83,7 +83,7 @@ TEST(ZipReader, ReadsStoredAndDeflatedEntriesOfEveryForm) {
                 EXPECT_EQ(content(zip, "a/long"), long_text);
                 EXPECT_EQ(content(zip, "none"), "");
                 EXPECT_EQ(content(zip, "last"), "end");
-                EXPECT_TRUE(zip.oddities().empty());
+                EXPECT_TRUE(zip.counted_warnings().empty());
                 EXPECT_EQ(zip.unpacked(), long_text.size() + 3);
             }
 }
@@ -96,13 +96,13 @@ TEST(ZipReader, ReadsWhatOurWriterWrites) {
         zip.add("stored", "content");
         zip.add("d\xc3\xa9j\xc3\xa0", long_text, ZipMethod::deflated);
         zip.begin("stream", ZipMethod::deflated);
-        const std::string packed = [] {
-            std::string piece;
-            Deflater().append_piece(long_text, piece);
-            return piece;
+        const std::string compressed = [] {
+            std::string chunk;
+            Deflater().append_chunk(long_text, chunk);
+            return chunk;
         }();
-        zip.append({packed, long_text.size(), crc32_of(long_text)});
-        zip.append({packed, long_text.size(), crc32_of(long_text)});
+        zip.append({compressed, long_text.size(), crc32_of(long_text)});
+        zip.append({compressed, long_text.size(), crc32_of(long_text)});
         zip.end();
         zip.finish();
     }
@@ -136,7 +136,7 @@ TEST(ZipReader, ReadsWhatPythonWrites) {
         text += static_cast<char>(i);
     for (const char* name : {"method 0", "method 8", "large"})
         EXPECT_EQ(content(zip, name), text) << name;
-    EXPECT_TRUE(zip.oddities().empty());
+    EXPECT_TRUE(zip.counted_warnings().empty());
 }
 
 TEST(ZipReader, StoredEntriesAreViewsOfTheArchive) {
@@ -159,9 +159,9 @@ TEST(ZipReader, NamesHaveSlashesAndAreFoundInAnyCaseWhereNoOtherIs) {
     EXPECT_EQ(content(zip, "_rels/.rels"), "2");
     EXPECT_EQ(content(zip, "twice"), "4");
     EXPECT_EQ(content(zip, "TWICE"), "3");
-    ASSERT_EQ(zip.oddities().size(), 2U);
-    EXPECT_TRUE(says(zip.oddities()[0], "1 names in the zip archive have '\\'"));
-    EXPECT_TRUE(says(zip.oddities()[1], "begin with '/'"));
+    ASSERT_EQ(zip.counted_warnings().size(), 2U);
+    EXPECT_TRUE(says(zip.counted_warnings()[0], "1 names in the zip archive have '\\'"));
+    EXPECT_TRUE(says(zip.counted_warnings()[1], "begin with '/'"));
 }
 
 TEST(ZipReader, FindsEachNameAmongManyAlike) {
@@ -186,14 +186,15 @@ TEST(ZipReader, FindsEachNameAmongManyAlike) {
     }
 }
 
-TEST(ZipReader, TellsWhatFollowsTheArchive) {
+TEST(ZipReader, ReportsWhatFollowsTheArchive) {
     const std::string bytes = zip_bytes({{.name = "a", .content = "text"}});
     const ZipReader zip(source_of(std::string(bytes).append("appended")), 0);
     EXPECT_EQ(content(zip, "a"), "text");
-    ASSERT_EQ(zip.oddities().size(), 1U);
-    EXPECT_TRUE(says(zip.oddities()[0], "8 bytes follow"));
-    EXPECT_TRUE(
-        ZipReader(source_of(zip_bytes({}, {.comment = "PK\x05\x06 in a comment"})), 0).oddities().empty());
+    ASSERT_EQ(zip.counted_warnings().size(), 1U);
+    EXPECT_TRUE(says(zip.counted_warnings()[0], "8 bytes follow"));
+    EXPECT_TRUE(ZipReader(source_of(zip_bytes({}, {.comment = "PK\x05\x06 in a comment"})), 0)
+                    .counted_warnings()
+                    .empty());
 }
 
 TEST(ZipReader, RefusesLiars) {
@@ -215,20 +216,20 @@ TEST(ZipReader, RefusesLiars) {
                          p.size = ~std::uint64_t{0};
                      }),
                      "which is impossible"));
-    EXPECT_TRUE(says(lie([](ZipPart& p) { p.packed_size = 1'000'000; }), "reaches into the directory"));
+    EXPECT_TRUE(says(lie([](ZipPart& p) { p.compressed_size = 1'000'000; }), "reaches into the directory"));
     EXPECT_TRUE(says(lie([](ZipPart& p) {
                          p.zip64 = true;
-                         p.packed_size = ~std::uint64_t{0};
+                         p.compressed_size = ~std::uint64_t{0};
                      }),
                      "reaches into the directory"));
-    EXPECT_TRUE(says(lie([](ZipPart& p) { p.place = 3; }), "does not begin where the directory says"));
+    EXPECT_TRUE(says(lie([](ZipPart& p) { p.position = 3; }), "does not begin where the directory says"));
     EXPECT_TRUE(
-        says(lie([](ZipPart& p) { p.place = 0xFFFFFFFE; }), "does not begin where the directory says"));
-    EXPECT_TRUE(says(lie([](ZipPart& p) { p.method = 12; }), "is packed by method 12, expected 0"));
+        says(lie([](ZipPart& p) { p.position = 0xFFFFFFFE; }), "does not begin where the directory says"));
+    EXPECT_TRUE(says(lie([](ZipPart& p) { p.method = 12; }), "is compressed by method 12, expected 0"));
     EXPECT_TRUE(says(lie([](ZipPart& p) { p.flags = 1; }), "is encrypted"));
     EXPECT_TRUE(says(lie([](ZipPart& p) { p.disc = 2; }), "is on disc 2"));
-    EXPECT_TRUE(says(lie([](ZipPart& p) { p.packed = std::string(1000, '\xff'); }), "make no sense"));
-    EXPECT_TRUE(says(lie([](ZipPart& p) { p.packed = zip_test::deflated(p.content).append("more"); }),
+    EXPECT_TRUE(says(lie([](ZipPart& p) { p.compressed = std::string(1000, '\xff'); }), "make no sense"));
+    EXPECT_TRUE(says(lie([](ZipPart& p) { p.compressed = zip_test::deflated(p.content).append("more"); }),
                      "make no sense"));
     EXPECT_TRUE(says(lie([](ZipPart& p) {
                          p.deflated = false;
@@ -242,7 +243,7 @@ TEST(ZipReader, RefusesLiars) {
     same_bytes.name = "b";
     same_bytes.content = zip_bytes({{.name = "c", .content = "text"}});
     same_bytes.deflated = false;
-    EXPECT_TRUE(says(error_of(zip_bytes({same_bytes, {.name = "c", .content = "text", .place = 31}})),
+    EXPECT_TRUE(says(error_of(zip_bytes({same_bytes, {.name = "c", .content = "text", .position = 31}})),
                      "lies upon entry"));
 }
 
@@ -251,12 +252,12 @@ TEST(ZipReader, RefusesDirectoriesThatAreNotThere) {
     EXPECT_TRUE(says(error_of("PK\x03\x04 and nothing"), "the end of the zip archive is missing"));
     EXPECT_TRUE(
         says(error_of(std::string("junk").append(zip_bytes(parts))), "or something is in front of it"));
-    EXPECT_TRUE(says(error_of(zip_bytes(parts, {.directory_place = 0})), "should take"));
+    EXPECT_TRUE(says(error_of(zip_bytes(parts, {.directory_offset = 0})), "should take"));
     EXPECT_TRUE(says(error_of(zip_bytes(parts, {.directory_size = 0xFFFFFFF0})), "should take"));
     EXPECT_TRUE(says(error_of(zip_bytes(parts, {.entries = 2})), "claims 2 entries"));
     EXPECT_TRUE(
         says(error_of(zip_bytes(parts, {.zip64 = true, .entries = ~std::uint64_t{0}})), "claims 18446744"));
-    EXPECT_TRUE(says(error_of(zip_bytes(parts, {.zip64 = true, .directory_place = ~std::uint64_t{0}})),
+    EXPECT_TRUE(says(error_of(zip_bytes(parts, {.zip64 = true, .directory_offset = ~std::uint64_t{0}})),
                      "should take"));
     EXPECT_TRUE(says(error_of(zip_bytes(parts, {.zip64 = true, .directory_size = ~std::uint64_t{0}})),
                      "should take"));
@@ -288,7 +289,7 @@ TEST(ZipReader, RefusesEntriesThatShareBytes) {
     const std::string zeros(1'000'000, '\0');
     std::vector<ZipPart> parts = {{.name = "0", .content = zeros}};
     for (int i = 1; i < 50; ++i)
-        parts.push_back({.name = "0", .content = "", .size = zeros.size(), .place = 0});
+        parts.push_back({.name = "0", .content = "", .size = zeros.size(), .position = 0});
     EXPECT_NE(error_of(zip_bytes(parts)), "");
 }
 

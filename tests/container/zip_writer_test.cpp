@@ -59,9 +59,9 @@ void write_sample(const std::string& path) {
     Deflater deflater;
     for (int i = 0; i < 10; ++i) {
         const std::string text(static_cast<std::size_t>(i) * 1000, static_cast<char>('a' + i));
-        std::string piece;
-        deflater.append_piece(text, piece);
-        zip.append({piece, text.size(), crc32_of(text)});
+        std::string chunk;
+        deflater.append_chunk(text, chunk);
+        zip.append({chunk, text.size(), crc32_of(text)});
     }
     zip.end();
     zip.begin("stored stream", ZipMethod::stored);
@@ -87,7 +87,7 @@ TEST(ZipWriter, IsReadByAnotherProgram) {
         "b'in two pieces' b'ij'\n");
 }
 
-TEST(ZipWriter, TheHeadOfAnEntryMayBeKnownAtItsEnd) {
+TEST(ZipWriter, TheHeaderOfAnEntryMayBeKnownAtItsEnd) {
     const TemporaryFolder folder;
     ZipWriter zip(folder.file("a.zip"), Overwriting::yes);
     zip.begin("headed", ZipMethod::stored, 4);
@@ -167,12 +167,12 @@ TEST(ZipWriter, EntriesBeyond4GiBAreWrittenInTheLargeForm) {
     const TemporaryFolder folder;
     const std::string zeros(std::size_t{1} << 26, '\0');
     std::string stream;
-    Deflater().append_piece(zeros, stream);
-    const ZipPiece piece{stream, zeros.size(), crc32_of(zeros)};
+    Deflater().append_chunk(zeros, stream);
+    const ZipChunk chunk{stream, zeros.size(), crc32_of(zeros)};
     ZipWriter zip(folder.file("a.zip"));
     zip.begin("zeros", ZipMethod::deflated);
     for (int i = 0; i < 65; ++i)
-        zip.append(piece);
+        zip.append(chunk);
     zip.end();
     zip.add("after", "content");
     zip.finish();
@@ -202,12 +202,12 @@ TEST(ZipWriter, ArchivesBeyond4GiBAreWrittenInTheLargeForm) {
         std::fclose(in);
     });
     const std::string zeros(std::size_t{1} << 26, '\0');
-    const ZipPiece piece{zeros, zeros.size(), crc32_of(zeros)};
+    const ZipChunk chunk{zeros, zeros.size(), crc32_of(zeros)};
     {
         ZipWriter zip(folder.file("pipe"));
         zip.begin("zeros", ZipMethod::deflated); // as if they were: nobody unpacks it
         for (int i = 0; i < 65; ++i)
-            zip.append(piece);
+            zip.append(chunk);
         zip.end();
         zip.add("after", "content");
         zip.finish();

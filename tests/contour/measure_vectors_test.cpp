@@ -32,7 +32,7 @@ TEST(MeasureVectors, AddsUpWhatTheBeamDoes) {
                      10);
 }
 
-TEST(MeasureVectors, CountsNoTimeForSpeedsThatNobodyTold) {
+TEST(MeasureVectors, CountsNoTimeForSpeedsThatNobodyReported) {
     const Layer vectors = test::layer_of({rectangle(0, 0, 10, 10), rectangle(20, 0, 30, 10)});
     std::optional<Point2> beam;
     ParameterSet parameters{

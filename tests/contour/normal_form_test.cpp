@@ -162,7 +162,7 @@ TEST(InNormalForm, SeesEachKindOfDisorder) {
     EXPECT_FALSE(in_normal_form(raw_layer({{b, false}, {a, false}})));
 }
 
-TEST(SameContours, TellsEveryDifferenceApart) {
+TEST(SameContours, DistinguishesEveryDifference) {
     const Ring a{{0, 0}, {1, 0}, {0, 1}};
     const Layer layer = raw_layer({{a}});
     Layer elsewhere = raw_layer({{a}});

@@ -5,7 +5,7 @@
 namespace lamella {
 namespace {
 
-TEST(ByteAmount, IsToldInTheLargestUnitThatThereIsOneOf) {
+TEST(ByteAmount, IsReportedInTheLargestUnitThatThereIsOneOf) {
     EXPECT_EQ(byte_amount(0), "0 bytes");
     EXPECT_EQ(byte_amount(1), "1 byte");
     EXPECT_EQ(byte_amount(999), "999 bytes");

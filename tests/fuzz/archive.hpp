@@ -21,17 +21,17 @@ class Archive {
   public:
     void add(std::string_view name, std::string_view content) {
         const std::size_t place = file_.size();
-        const auto head = [&](std::string& out) {
+        const auto header = [&](std::string& out) {
             put(out, {20, 0, 0, 0, 33}, 2);
             put(out, {checksum(content), content.size(), content.size()}, 4);
             put(out, {name.size(), 0}, 2);
         };
         put(file_, {0x04034b50}, 4);
-        head(file_);
+        header(file_);
         file_.append(name).append(content);
         put(directory_, {0x02014b50}, 4);
         put(directory_, {20}, 2);
-        head(directory_);
+        header(directory_);
         put(directory_, {0, 0, 0}, 2);
         put(directory_, {0, place}, 4);
         directory_.append(name);

@@ -42,7 +42,7 @@ inline TriangleSoup assemble(std::initializer_list<TriangleSoup> parts) {
     return TriangleSoup(std::move(out));
 }
 
-inline TriangleSoup turned_inside_out(const TriangleSoup& soup) {
+inline TriangleSoup inside_out(const TriangleSoup& soup) {
     std::vector<Triangle3f> out = triangles_of(soup);
     for (Triangle3f& t : out)
         std::swap(t[1], t[2]);

@@ -29,7 +29,7 @@ TriangleSoup without(const TriangleSoup& soup, const LeavesOut& leaves_out) {
     return TriangleSoup(std::move(kept));
 }
 
-TEST(Diagnose, ASoundSolidHasNothingToTellBesideItsShells) {
+TEST(Diagnose, ASoundSolidHasNothingToReportBesideItsShells) {
     const Diagnosis found = diagnosed(make_rook(), {.self_intersections = true});
     EXPECT_TRUE(found.counts.sound());
     EXPECT_EQ(found.boundary_loops + found.nonmanifold_vertices + found.opposite_pairs, 0U);
@@ -128,7 +128,7 @@ TEST(Diagnose, HolesThatTouchInAVertexHaveLoopsOfTheirOwn) {
     EXPECT_EQ(found.nonmanifold_vertices, 1U);
 }
 
-TEST(Diagnose, ALoopBrokenByAFlippedTriangleIsTold) {
+TEST(Diagnose, ALoopBrokenByAFlippedTriangleIsReported) {
     std::vector<Triangle3f> triangles = triangles_of(make_box(1, 1, 1));
     triangles.erase(triangles.begin());
     // A neighbour of the hole.
@@ -200,15 +200,15 @@ TEST(Diagnose, CubesThatTouchAtACornerTouchInAVertexThoseAtAnEdgeDoNot) {
     }
 }
 
-TEST(Diagnose, OppositeTrianglesAreToldFromRepeatedOnes) {
+TEST(Diagnose, OppositeTrianglesAreReportedFromRepeatedOnes) {
     const TriangleSoup cube = make_box(1, 1, 1);
     const Diagnosis twice = diagnosed(assemble({cube, cube}));
     EXPECT_EQ(twice.counts.duplicate_triangles, 12U);
     EXPECT_EQ(twice.opposite_pairs, 0U);
-    const Diagnosis opposite = diagnosed(assemble({cube, turned_inside_out(cube)}));
+    const Diagnosis opposite = diagnosed(assemble({cube, inside_out(cube)}));
     EXPECT_EQ(opposite.counts.duplicate_triangles, 12U);
     EXPECT_EQ(opposite.opposite_pairs, 12U);
-    EXPECT_EQ(diagnosed(assemble({cube, cube, turned_inside_out(cube)})).opposite_pairs, 12U);
+    EXPECT_EQ(diagnosed(assemble({cube, cube, inside_out(cube)})).opposite_pairs, 12U);
     std::vector<std::uint32_t> last(12);
     std::iota(last.begin(), last.end(), 12);
     EXPECT_EQ(opposite.duplicate_triangles, last);
@@ -217,9 +217,9 @@ TEST(Diagnose, OppositeTrianglesAreToldFromRepeatedOnes) {
 TEST(Diagnose, ShellsKnowWhatTheyLieIn) {
     // A box with a hollow with a ball, the ball with a hollow; beside it a box that is inside out.
     const Diagnosis found = diagnosed(assemble({moved(make_sphere(2, 2), 5, 5, 5), make_box(10, 10, 10),
-                                                moved(turned_inside_out(make_box(8, 8, 8)), 1, 1, 1),
-                                                moved(turned_inside_out(make_sphere(1, 2)), 5, 5, 5),
-                                                moved(turned_inside_out(make_box(1, 1, 1)), 20, 0, 0)}));
+                                                moved(inside_out(make_box(8, 8, 8)), 1, 1, 1),
+                                                moved(inside_out(make_sphere(1, 2)), 5, 5, 5),
+                                                moved(inside_out(make_box(1, 1, 1)), 20, 0, 0)}));
     ASSERT_EQ(found.shells.size(), 5U);
     const auto expect = [&](std::size_t s, ShellKind kind, std::uint32_t depth, int inside) {
         EXPECT_EQ(found.shells[s].kind, kind) << s;
@@ -237,7 +237,7 @@ TEST(Diagnose, ShellsKnowWhatTheyLieIn) {
     EXPECT_EQ(found.counts.inverted_shells, 1U);
 }
 
-TEST(Diagnose, OverlapsBetweenShellsAreToldByShells) {
+TEST(Diagnose, OverlapsBetweenShellsAreReportedByShells) {
     const Diagnosis found = diagnosed(
         assemble({make_box(4, 4, 4), moved(make_box(4, 2, 2), 2, 1, 1), moved(make_box(1, 1, 1), 20, 0, 0)}),
         {.self_intersections = true});
@@ -249,9 +249,8 @@ TEST(Diagnose, OverlapsBetweenShellsAreToldByShells) {
 }
 
 TEST(Diagnose, CountsAsInspectDoesForAnyNumberOfThreads) {
-    const IndexedMesh mesh =
-        weld(assemble({make_rook(), moved(turned_inside_out(make_sphere(2, 5)), 0, 0, 20),
-                       moved(make_torus(10, 2, 200, 90), 40, 0, 0)}));
+    const IndexedMesh mesh = weld(assemble({make_rook(), moved(inside_out(make_sphere(2, 5)), 0, 0, 20),
+                                            moved(make_torus(10, 2, 200, 90), 40, 0, 0)}));
     const Inspection expected = inspect(mesh, {.threads = 1});
     for (const unsigned threads : {1U, 2U, 7U}) {
         const Diagnosis found = diagnose(mesh, {}, {.threads = threads});
@@ -263,7 +262,7 @@ TEST(Diagnose, CountsAsInspectDoesForAnyNumberOfThreads) {
     }
 }
 
-TEST(Diagnose, OfNothingTellsNothing) {
+TEST(Diagnose, OfNothingReportsNothing) {
     const Diagnosis found = diagnose({});
     EXPECT_EQ(found.counts.triangles, 0U);
     EXPECT_TRUE(found.shells.empty());

@@ -58,7 +58,7 @@ TriangleSoup cubes_touching_at_a_corner() {
 }
 
 TriangleSoup box_with_a_cavity() {
-    return assemble({make_box(10, 10, 10), moved(turned_inside_out(cube()), 4, 4, 4)});
+    return assemble({make_box(10, 10, 10), moved(inside_out(cube()), 4, 4, 4)});
 }
 
 TriangleSoup cube_with_degenerate_triangles() {
@@ -141,7 +141,7 @@ TEST(Inspect, CountsDuplicateTrianglesWhicheverWayRound) {
         EXPECT_FALSE(found.sound());
     }
     EXPECT_EQ(inspected(assemble({cube(), cube(), cube()})).duplicate_triangles, 24U);
-    EXPECT_EQ(inspected(assemble({cube(), turned_inside_out(cube())})).duplicate_triangles, 12U);
+    EXPECT_EQ(inspected(assemble({cube(), inside_out(cube())})).duplicate_triangles, 12U);
 }
 
 TEST(Inspect, CubesThatTouchAtAnEdgeAreClosedButNotManifold) {
@@ -169,13 +169,13 @@ TEST(Inspect, ACavityIsNotInverted) {
 }
 
 TEST(Inspect, ASphereInsideOutIsInverted) {
-    const Inspection alone = inspected(turned_inside_out(make_sphere(1, 3)));
+    const Inspection alone = inspected(inside_out(make_sphere(1, 3)));
     EXPECT_EQ(alone.inverted_shells, 1U);
     EXPECT_EQ(alone.cavities, 0U);
     EXPECT_TRUE(alone.closed());
     EXPECT_FALSE(alone.sound());
     const Inspection beside =
-        inspected(assemble({make_box(1, 1, 1), moved(turned_inside_out(make_sphere(1, 3)), 5, 0, 0)}));
+        inspected(assemble({make_box(1, 1, 1), moved(inside_out(make_sphere(1, 3)), 5, 0, 0)}));
     EXPECT_EQ(beside.inverted_shells, 1U);
     EXPECT_EQ(beside.cavities, 0U);
 }
@@ -183,16 +183,15 @@ TEST(Inspect, ASphereInsideOutIsInverted) {
 TEST(Inspect, InwardShellsAreJudgedByTheMaterialAroundThem) {
     // A solid in a cavity in a solid, and the same all inside out.
     const TriangleSoup nested =
-        assemble({make_box(10, 10, 10), moved(turned_inside_out(make_box(8, 8, 8)), 1, 1, 1),
-                  moved(make_box(6, 6, 6), 2, 2, 2), moved(turned_inside_out(make_box(4, 4, 4)), 3, 3, 3)});
+        assemble({make_box(10, 10, 10), moved(inside_out(make_box(8, 8, 8)), 1, 1, 1),
+                  moved(make_box(6, 6, 6), 2, 2, 2), moved(inside_out(make_box(4, 4, 4)), 3, 3, 3)});
     EXPECT_EQ(inspected(nested).cavities, 2U);
     EXPECT_EQ(inspected(nested).inverted_shells, 0U);
-    EXPECT_EQ(inspected(turned_inside_out(nested)).cavities, 0U);
-    EXPECT_EQ(inspected(turned_inside_out(nested)).inverted_shells, 2U);
+    EXPECT_EQ(inspected(inside_out(nested)).cavities, 0U);
+    EXPECT_EQ(inspected(inside_out(nested)).inverted_shells, 2U);
     // A hollow within a hollow: no material there to be hollow in.
-    const TriangleSoup twice =
-        assemble({make_box(10, 10, 10), moved(turned_inside_out(make_box(8, 8, 8)), 1, 1, 1),
-                  moved(turned_inside_out(make_box(4, 4, 4)), 3, 3, 3)});
+    const TriangleSoup twice = assemble({make_box(10, 10, 10), moved(inside_out(make_box(8, 8, 8)), 1, 1, 1),
+                                         moved(inside_out(make_box(4, 4, 4)), 3, 3, 3)});
     EXPECT_EQ(inspected(twice).cavities, 1U);
     EXPECT_EQ(inspected(twice).inverted_shells, 1U);
 }
@@ -211,7 +210,7 @@ TEST(Inspect, JudgesManyCavitiesOnAGridWithRaysThroughEdgesAndVertices) {
     std::uint64_t inverted = 0;
     for (int x = 0; x < n; ++x)
         for (int y = 0; y < n; ++y) {
-            const TriangleSoup hollow = turned_inside_out(make_sphere(0.25, 0));
+            const TriangleSoup hollow = inside_out(make_sphere(0.25, 0));
             add(moved(hollow, x + 0.5, y + 0.5, 1));
             add(moved(hollow, x + 0.5, y + 0.5, 3)); // between the two parts
             ++cavities;
@@ -296,9 +295,8 @@ TEST(Inspect, AgreesWithTheNaiveCountOnRandomMeshesForAnyNumberOfThreads) {
 }
 
 TEST(Inspect, IsTheSameForAnyNumberOfThreadsToTheLastBit) {
-    const IndexedMesh mesh =
-        weld(assemble({make_rook(), moved(turned_inside_out(make_sphere(2, 5)), 0, 0, 20),
-                       moved(make_torus(10, 2, 200, 90), 40, 0, 0)}));
+    const IndexedMesh mesh = weld(assemble({make_rook(), moved(inside_out(make_sphere(2, 5)), 0, 0, 20),
+                                            moved(make_torus(10, 2, 200, 90), 40, 0, 0)}));
     const Inspection one = inspect(mesh, {.threads = 1});
     EXPECT_EQ(one.cavities, 1U);
     for (const unsigned threads : {2U, 7U}) {

@@ -70,7 +70,7 @@ IndexedMesh repeating(const TriangleSoup& soup) {
     return mesh;
 }
 
-TEST(Mesh, TellsItsTrianglesInEitherKind) {
+TEST(Mesh, GivesItsTrianglesInEitherKind) {
     const TriangleSoup soup = make_box(1, 2, 3).transformed(scaling(-1, 1, 1));
     const Mesh indexed(repeating(soup));
     for (std::size_t i = 0; i < soup.size(); ++i) {

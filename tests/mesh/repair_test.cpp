@@ -76,7 +76,7 @@ TEST(WeldWithin, ClosesTheCracksOfAJitteredSolid) {
         EXPECT_EQ(welded.joined_vertices, torn.vertices.size() - found.vertices);
         EXPECT_GT(welded.longest_move_mm, 0);
         EXPECT_LE(welded.longest_move_mm, 0.01);
-        EXPECT_EQ(welded.places.size(), repair_places);
+        EXPECT_EQ(welded.locations.size(), repair_locations);
         EXPECT_EQ(welded.pairs_apart, 0U);
         EXPECT_NEAR(found.volume_mm3, inspect(weld(soup)).volume_mm3, 0.002 * found.area_mm2);
     }
@@ -102,7 +102,7 @@ TEST(WeldWithin, DoesNotDependOnTheOrderOfVerticesAndThreads) {
             ASSERT_EQ(other.joined_vertices, one.joined_vertices);
             ASSERT_EQ(other.pairs_apart, one.pairs_apart);
             ASSERT_EQ(other.longest_move_mm, one.longest_move_mm);
-            ASSERT_EQ(other.places, one.places);
+            ASSERT_EQ(other.locations, one.locations);
         }
         EXPECT_LE(one.longest_move_mm, tolerance);
     }
@@ -139,7 +139,7 @@ TEST(WeldWithin, EqualVerticesAreOneAndDegenerateTrianglesStay) {
     EXPECT_EQ(welded.mesh.triangles.size(), 3U);
     EXPECT_EQ(welded.joined_vertices, 1U);
     EXPECT_EQ(welded.longest_move_mm, 0);
-    EXPECT_TRUE(welded.places.empty());
+    EXPECT_TRUE(welded.locations.empty());
 }
 
 TEST(WeldWithin, RefusesTolerancesThatAreNone) {
@@ -243,7 +243,7 @@ TEST(DropDuplicates, ABodyStoredTwiceIsThereOnce) {
     EXPECT_EQ(coordinates(dropped.mesh), coordinates(weld(torus)));
     EXPECT_EQ(dropped.repeated_triangles, 2 * torus.size());
     EXPECT_EQ(dropped.opposite_triangles, 0U);
-    EXPECT_EQ(dropped.places.size(), repair_places);
+    EXPECT_EQ(dropped.locations.size(), repair_locations);
 }
 
 TEST(DropDuplicates, AWallBetweenTwoBodiesVanishes) {
@@ -261,18 +261,18 @@ TEST(DropDuplicates, AWallBetweenTwoBodiesVanishes) {
 
 TEST(DropDuplicates, CancelsOppositeOnesBeforeItKeepsTheRest) {
     const TriangleSoup box = make_box(1, 1, 1);
-    const DroppedDuplicates nothing = drop_duplicates(weld(assemble({box, turned_inside_out(box)})));
+    const DroppedDuplicates nothing = drop_duplicates(weld(assemble({box, inside_out(box)})));
     EXPECT_TRUE(nothing.mesh.triangles.empty());
     EXPECT_TRUE(nothing.mesh.vertices.empty());
-    const DroppedDuplicates inward = drop_duplicates(
-        weld(assemble({box, turned_inside_out(box), turned_inside_out(box), turned_inside_out(box)})));
+    const DroppedDuplicates inward =
+        drop_duplicates(weld(assemble({box, inside_out(box), inside_out(box), inside_out(box)})));
     EXPECT_EQ(inward.opposite_triangles, 24U);
     EXPECT_EQ(inward.repeated_triangles, 12U);
-    EXPECT_EQ(coordinates(inward.mesh), coordinates(weld(turned_inside_out(box))));
+    EXPECT_EQ(coordinates(inward.mesh), coordinates(weld(inside_out(box))));
 }
 
 /// With some of its triangles turned over.
-IndexedMesh with_turned(IndexedMesh mesh, double share, Random& random) {
+IndexedMesh with_flipped(IndexedMesh mesh, double share, Random& random) {
     for (auto& t : mesh.triangles)
         if (random.real(0, 1) < share)
             std::swap(t[1], t[2]);
@@ -284,7 +284,7 @@ TEST(Orient, LeavesSoundMeshesAsTheyAre) {
         const IndexedMesh mesh = weld(soup);
         const OrientedMesh oriented = orient(mesh, {.threads = 2});
         EXPECT_EQ(oriented.mesh.triangles, mesh.triangles);
-        EXPECT_EQ(oriented.turned_triangles + oriented.turned_inward + oriented.turned_outward, 0U);
+        EXPECT_EQ(oriented.flipped_triangles + oriented.flipped_inward + oriented.flipped_outward, 0U);
         EXPECT_EQ(oriented.patches, inspect(mesh).shells);
     }
 }
@@ -295,7 +295,7 @@ TEST(Orient, MendsFlippedTrianglesWhicheverAndHoweverMany) {
                                      assemble({make_box(4, 4, 4), moved(make_box(1, 1, 1), 9, 0, 0)})}) {
         const IndexedMesh sound = weld(soup);
         for (const double share : {0.05, 0.4, 0.8, 1.0}) {
-            const IndexedMesh broken = with_turned(sound, share, random);
+            const IndexedMesh broken = with_flipped(sound, share, random);
             const OrientedMesh oriented = orient(broken);
             const Inspection found = inspect(oriented.mesh);
             EXPECT_TRUE(found.sound());
@@ -303,8 +303,8 @@ TEST(Orient, MendsFlippedTrianglesWhicheverAndHoweverMany) {
             std::uint64_t turned = 0;
             for (std::size_t i = 0; i < sound.triangles.size(); ++i)
                 turned += oriented.mesh.triangles[i] != broken.triangles[i] ? 1 : 0;
-            EXPECT_EQ(oriented.turned_triangles, turned);
-            EXPECT_EQ(oriented.one_sided_patches, 0U);
+            EXPECT_EQ(oriented.flipped_triangles, turned);
+            EXPECT_EQ(oriented.non_orientable_patches, 0U);
         }
     }
 }
@@ -314,17 +314,17 @@ TEST(Orient, TurnsVoidsInwardAndWhatLiesInThemOutward) {
     const IndexedMesh nested = weld(assemble(
         {moved(make_sphere(1, 2), 5, 5, 5), moved(make_box(8, 8, 8), 1, 1, 1), make_box(10, 10, 10)}));
     const OrientedMesh oriented = orient(nested);
-    EXPECT_EQ(oriented.turned_inward, 1U);
-    EXPECT_EQ(oriented.turned_outward, 0U);
-    EXPECT_EQ(oriented.turned_triangles, 12U);
-    EXPECT_EQ(oriented.places.size(), 12U);
+    EXPECT_EQ(oriented.flipped_inward, 1U);
+    EXPECT_EQ(oriented.flipped_outward, 0U);
+    EXPECT_EQ(oriented.flipped_triangles, 12U);
+    EXPECT_EQ(oriented.locations.size(), 12U);
     const Inspection found = inspect(oriented.mesh);
     EXPECT_EQ(found.cavities, 1U);
     EXPECT_EQ(found.inverted_shells, 0U);
     // Bodies that only partly lie in one another are no voids.
     const OrientedMesh crossing =
         orient(weld(assemble({make_box(10, 10, 2), moved(make_box(1, 1, 20), 5, 5, -1)})));
-    EXPECT_EQ(crossing.turned_triangles, 0U);
+    EXPECT_EQ(crossing.flipped_triangles, 0U);
 }
 
 /// Boxes on a small grid, most of them larger than a cell: they share vertices, edges and sides, overlap, lie
@@ -361,7 +361,7 @@ TEST(Orient, MakesNoConflictsWhereThereAreNone) {
                                    test::flipped(test::box_triangles({5, 0, 0}, {9, 9, 9}))})),
     };
     for (const TriangleSoup& soup : soups)
-        EXPECT_EQ(orient(weld(soup)).turned_triangles, 0U);
+        EXPECT_EQ(orient(weld(soup)).flipped_triangles, 0U);
     for (int round = 0; round < 500; ++round)
         soups.push_back(random_boxes(random));
     for (std::size_t i = 0; i < soups.size(); ++i) {
@@ -372,7 +372,7 @@ TEST(Orient, MakesNoConflictsWhereThereAreNone) {
             ASSERT_EQ(inspect(mesh).orientation_conflicts, 0U);
             const OrientedMesh oriented = orient(mesh);
             ASSERT_EQ(inspect(oriented.mesh).orientation_conflicts, 0U);
-            ASSERT_EQ(orient(oriented.mesh).turned_triangles, 0U);
+            ASSERT_EQ(orient(oriented.mesh).flipped_triangles, 0U);
         }
     }
 }
@@ -382,7 +382,7 @@ TEST(Orient, MakesNoMoreConflictsThanThereAre) {
     int fewer = 0;
     for (int round = 0; round < 500; ++round) {
         const IndexedMesh sound = weld(random_boxes(random));
-        const IndexedMesh broken = with_turned(sound, 0.1, random);
+        const IndexedMesh broken = with_flipped(sound, 0.1, random);
         const std::uint64_t before = inspect(broken).orientation_conflicts;
         const std::uint64_t after = inspect(orient(broken).mesh).orientation_conflicts;
         ASSERT_LE(after, before);
@@ -395,8 +395,8 @@ TEST(Orient, LeavesWhatIsTornAsItIs) {
     Random random(7);
     for (const TriangleSoup& soup : {make_sphere(10, 3), make_rook(), make_calibration()}) {
         const IndexedMesh torn = jittered(soup, 1e-4, random);
-        EXPECT_EQ(orient(torn).turned_triangles, 0U);
-        EXPECT_EQ(orient(with_turned(torn, 1, random)).turned_triangles, 0U);
+        EXPECT_EQ(orient(torn).flipped_triangles, 0U);
+        EXPECT_EQ(orient(with_flipped(torn, 1, random)).flipped_triangles, 0U);
     }
     // A disc of many triangles at an angle has no volume, whatever the sum of its triangles says.
     const TriangleSoup drum =
@@ -404,7 +404,7 @@ TEST(Orient, LeavesWhatIsTornAsItIs) {
     IndexedMesh disc = weld(drum);
     const Point3 top = disc.vertices[disc.triangles[0][0]];
     const double size = std::hypot(top.x, top.y, top.z);
-    for (IndexedMesh piece : {disc, with_turned(disc, 1, random)}) {
+    for (IndexedMesh piece : {disc, with_flipped(disc, 1, random)}) {
         std::erase_if(piece.triangles, [&](const auto& t) {
             const Triangle3 c{piece.vertices[t[0]], piece.vertices[t[1]], piece.vertices[t[2]]};
             const Transform back = compose(rotation('y', -77), rotation('x', -31));
@@ -412,7 +412,7 @@ TEST(Orient, LeavesWhatIsTornAsItIs) {
                                [&](const Point3& p) { return std::abs(back(p).z) > 1e-9 * size; });
         });
         ASSERT_GT(piece.triangles.size(), 30U);
-        EXPECT_EQ(orient(piece).turned_triangles, 0U);
+        EXPECT_EQ(orient(piece).flipped_triangles, 0U);
     }
 }
 
@@ -447,7 +447,7 @@ TEST(Orient, DoesNotDependOnTheOrderOfTrianglesAndCorners) {
             soup = soup.transformed(compose(rotation('x', 33), rotation('z', 10)));
         if (round % 5 == 0) // flat, tied
             soup = soup.transformed(scaling(1, 1, 0));
-        IndexedMesh mesh = with_turned(weld(soup), random.real(0, 0.6), random);
+        IndexedMesh mesh = with_flipped(weld(soup), random.real(0, 0.6), random);
         std::erase_if(mesh.triangles, [&](const auto&) { return random.real(0, 1) < 0.1; });
         for (std::int64_t again = random.integer(0, 3); again > 0 && !mesh.triangles.empty(); --again)
             mesh.triangles.push_back(mesh.triangles[static_cast<std::size_t>(
@@ -462,7 +462,7 @@ TEST(Orient, DoesNotDependOnTheOrderOfTrianglesAndCorners) {
     }
 }
 
-TEST(Orient, OfNeedlesNearlyTooThinToTellDoesNotDependOnTheOrderEither) {
+TEST(Orient, OfNeedlesNearlyTooThinToReportDoesNotDependOnTheOrderEither) {
     Random random(9);
     int turned = 0;
     int rounds = 0;
@@ -485,7 +485,7 @@ TEST(Orient, OfNeedlesNearlyTooThinToTellDoesNotDependOnTheOrderEither) {
                         other.triangles.end());
             ASSERT_EQ(as_a_set(orient(other, {.threads = 1}).mesh), as_a_set(one.mesh));
         }
-        turned += one.turned_triangles != 0 ? 1 : 0;
+        turned += one.flipped_triangles != 0 ? 1 : 0;
     }
     EXPECT_GT(turned, 0);          // some have a volume,
     EXPECT_LT(turned, rounds / 2); // and others have none, or were outward
@@ -510,9 +510,9 @@ TEST(Orient, WhatLiesInABodyOnlyInPartIsNoVoid) {
     const TriangleSoup angle(angle_triangles);
     ASSERT_TRUE(inspect(weld(angle)).sound());
     const TriangleSoup bar(test::box_triangles({3, 3, 4}, {13, 18, 16}));
-    for (const TriangleSoup& part : {bar, turned_inside_out(bar)}) {
+    for (const TriangleSoup& part : {bar, inside_out(bar)}) {
         const OrientedMesh oriented = orient(weld(assemble({angle, part})));
-        EXPECT_EQ(oriented.turned_inward, 0U);
+        EXPECT_EQ(oriented.flipped_inward, 0U);
         EXPECT_NEAR(inspect(oriented.mesh).volume_mm3, 6000 + 1800, 1e-6);
     }
 }
@@ -520,29 +520,28 @@ TEST(Orient, WhatLiesInABodyOnlyInPartIsNoVoid) {
 TEST(Orient, WhatTouchesTheBodyAroundItStays) {
     const TriangleSoup box = make_box(10, 10, 10);
     const TriangleSoup part = moved(make_box(4, 4, 4), 0, 3, 3);
-    for (const TriangleSoup& inner : {part, turned_inside_out(part)}) {
-        EXPECT_EQ(orient(weld(assemble({box, inner}))).turned_triangles, 0U);
-        EXPECT_EQ(orient(weld(assemble({inner, box}))).turned_triangles, 0U);
+    for (const TriangleSoup& inner : {part, inside_out(part)}) {
+        EXPECT_EQ(orient(weld(assemble({box, inner}))).flipped_triangles, 0U);
+        EXPECT_EQ(orient(weld(assemble({inner, box}))).flipped_triangles, 0U);
     }
 }
 
 TEST(Orient, BodiesThatTouchInAnEdgeAreJudgedOneByOne) {
     const TriangleSoup box = make_box(1, 1, 1);
-    const OrientedMesh oriented =
-        orient(weld(assemble({turned_inside_out(box), moved(turned_inside_out(box), 1, 1, 0)})));
+    const OrientedMesh oriented = orient(weld(assemble({inside_out(box), moved(inside_out(box), 1, 1, 0)})));
     EXPECT_EQ(oriented.patches, 2U);
-    EXPECT_EQ(oriented.turned_outward, 2U);
+    EXPECT_EQ(oriented.flipped_outward, 2U);
     EXPECT_NEAR(inspect(oriented.mesh).volume_mm3, 2, 1e-12);
 }
 
 TEST(Orient, AnOpenBodyIsTurnedOutwardWhereverItIs) {
-    std::vector<Triangle3f> triangles = triangles_of(turned_inside_out(make_box(3, 4, 5)));
+    std::vector<Triangle3f> triangles = triangles_of(inside_out(make_box(3, 4, 5)));
     std::erase_if(triangles, [](const Triangle3f& t) { return t[0].z == 5 && t[1].z == 5 && t[2].z == 5; });
     for (const double x : {0.0, 100.0, -100.0}) {
         const OrientedMesh oriented =
             orient(weld(TriangleSoup(triangles).transformed(translation(x, x / 2, -x))));
-        EXPECT_EQ(oriented.turned_outward, 1U);
-        EXPECT_EQ(oriented.turned_triangles, 10U);
+        EXPECT_EQ(oriented.flipped_outward, 1U);
+        EXPECT_EQ(oriented.flipped_triangles, 10U);
     }
 }
 
@@ -565,9 +564,9 @@ TEST(Orient, AMoebiusStripStays) {
         strip.triangles.push_back({vertex(i, 0), vertex(i + 1, 0), vertex(i + 1, 1)});
         strip.triangles.push_back({vertex(i, 0), vertex(i + 1, 1), vertex(i, 1)});
     }
-    for (const IndexedMesh& mesh : {strip, with_turned(strip, 0.3, random)}) {
+    for (const IndexedMesh& mesh : {strip, with_flipped(strip, 0.3, random)}) {
         const OrientedMesh oriented = orient(mesh);
-        EXPECT_EQ(oriented.one_sided_patches, 1U);
+        EXPECT_EQ(oriented.non_orientable_patches, 1U);
         EXPECT_EQ(oriented.mesh.triangles, mesh.triangles);
     }
 }
@@ -597,14 +596,14 @@ TEST(Orient, IsTheSameForAnyNumberOfThreadsOnRandomMeshes) {
         const OrientedMesh one = orient(mesh, {.threads = 1});
         const OrientedMesh many = orient(mesh, {.threads = 7});
         EXPECT_EQ(one.mesh.triangles, many.mesh.triangles);
-        EXPECT_EQ(one.turned_triangles, many.turned_triangles);
-        EXPECT_EQ(one.turned_outward, many.turned_outward);
-        EXPECT_EQ(one.turned_inward, many.turned_inward);
-        EXPECT_EQ(one.places, many.places);
-        EXPECT_LE(one.turned_outward + one.turned_inward, one.patches);
+        EXPECT_EQ(one.flipped_triangles, many.flipped_triangles);
+        EXPECT_EQ(one.flipped_outward, many.flipped_outward);
+        EXPECT_EQ(one.flipped_inward, many.flipped_inward);
+        EXPECT_EQ(one.locations, many.locations);
+        EXPECT_LE(one.flipped_outward + one.flipped_inward, one.patches);
         // Done once, there is nothing left to do.
-        if (one.one_sided_patches == 0) {
-            EXPECT_EQ(orient(one.mesh).turned_triangles, 0U);
+        if (one.non_orientable_patches == 0) {
+            EXPECT_EQ(orient(one.mesh).flipped_triangles, 0U);
         }
         const DroppedDuplicates dropped = drop_duplicates(mesh, {.threads = 7});
         EXPECT_EQ(dropped.mesh.triangles, drop_duplicates(mesh, {.threads = 1}).mesh.triangles);

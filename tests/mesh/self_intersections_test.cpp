@@ -34,10 +34,10 @@ SelfIntersections naive(const IndexedMesh& mesh) {
         for (std::uint32_t b = a + 1; b < mesh.triangles.size(); ++b) {
             if (left_out(a) || left_out(b))
                 continue;
-            const std::optional<MeetingKind> c = contact(named(a), named(b));
-            found.crossing += c == MeetingKind::crossing ? 1 : 0;
-            found.overlapping += c == MeetingKind::overlapping ? 1 : 0;
-            found.touching += c == MeetingKind::touching ? 1 : 0;
+            const std::optional<IntersectionKind> c = contact(named(a), named(b));
+            found.crossing += c == IntersectionKind::crossing ? 1 : 0;
+            found.overlapping += c == IntersectionKind::overlapping ? 1 : 0;
+            found.touching += c == IntersectionKind::touching ? 1 : 0;
         }
     }
     return found;
@@ -58,7 +58,7 @@ TEST(SelfIntersections, RefusesPartsOfOtherTrianglesThanThereAre) {
     const IndexedMesh mesh = weld(make_box(4, 4, 4));
     for (const std::size_t count : {1U, 11U, 13U}) {
         const std::vector<std::uint32_t> parts(count, 0);
-        test::expect_error(ErrorKind::usage, {"MeetingOptions::parts", "12"},
+        test::expect_error(ErrorKind::usage, {"IntersectionOptions::parts", "12"},
                            [&] { static_cast<void>(find_self_intersections(mesh, {.parts = parts})); });
     }
 }
@@ -77,12 +77,12 @@ TEST(SelfIntersections, BoxesThatOverlapCross) {
     EXPECT_EQ(found.parts[0].part_b, 1U);
     EXPECT_EQ(found.parts[0].crossing, found.crossing);
     ASSERT_EQ(found.first.size(), found.pairs());
-    for (const Meeting& meeting : found.first) {
-        EXPECT_LT(meeting.triangle_a, 12U);
-        EXPECT_GE(meeting.triangle_b, 12U);
-        EXPECT_NEAR(meeting.at.x, 4, 1e-9); // on the side that it sticks out of
-        EXPECT_GE(meeting.at.y, 1);
-        EXPECT_LE(meeting.at.y, 3);
+    for (const TriangleIntersection& intersection : found.first) {
+        EXPECT_LT(intersection.triangle_a, 12U);
+        EXPECT_GE(intersection.triangle_b, 12U);
+        EXPECT_NEAR(intersection.at.x, 4, 1e-9); // on the side that it sticks out of
+        EXPECT_GE(intersection.at.y, 1);
+        EXPECT_LE(intersection.at.y, 3);
     }
 }
 
@@ -128,7 +128,7 @@ TEST(SelfIntersections, AgreeWithAllPairsOnRandomMeshesForAnyNumberOfThreads) {
         std::vector<std::uint32_t> parts(mesh.triangles.size());
         for (std::size_t i = 0; i < parts.size(); ++i)
             parts[i] = static_cast<std::uint32_t>(i % 3);
-        std::vector<Meeting> first;
+        std::vector<TriangleIntersection> first;
         for (const unsigned threads : {1U, 2U, 7U}) {
             const SelfIntersections found =
                 find_self_intersections(mesh, {.keep = 5, .parts = parts}, {.threads = threads});
@@ -137,7 +137,7 @@ TEST(SelfIntersections, AgreeWithAllPairsOnRandomMeshesForAnyNumberOfThreads) {
             ASSERT_EQ(found.touching, expected.touching);
             ASSERT_EQ(found.flat_triangles, expected.flat_triangles);
             std::uint64_t in_parts = 0;
-            for (const PartMeetings& part : found.parts)
+            for (const PartIntersections& part : found.parts)
                 in_parts += part.crossing + part.overlapping + part.touching;
             ASSERT_EQ(in_parts, found.pairs());
             if (threads == 1)

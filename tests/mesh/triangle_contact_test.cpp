@@ -121,9 +121,10 @@ std::size_t dimension(const std::set<Fraction>& points) {
     return 2;
 }
 
-std::optional<MeetingKind> naive_contact(const WholeTriangle& p, const std::array<std::uint32_t, 3>& p_names,
-                                         const WholeTriangle& q,
-                                         const std::array<std::uint32_t, 3>& q_names) {
+std::optional<IntersectionKind> naive_contact(const WholeTriangle& p,
+                                              const std::array<std::uint32_t, 3>& p_names,
+                                              const WholeTriangle& q,
+                                              const std::array<std::uint32_t, 3>& q_names) {
     std::set<Fraction> common;
     add_common(p, q, common);
     add_common(q, p, common);
@@ -135,7 +136,7 @@ std::optional<MeetingKind> naive_contact(const WholeTriangle& p, const std::arra
     // What is common is convex: a point, a segment, an area. A shared vertex or edge is all of it or not.
     const std::size_t d = dimension(common);
     if (d == 3)
-        return MeetingKind::overlapping;
+        return IntersectionKind::overlapping;
     if (d == shared.size())
         return std::nullopt;
     const auto both_sides = [](const WholeTriangle& plane, const WholeTriangle& t) {
@@ -148,7 +149,8 @@ std::optional<MeetingKind> naive_contact(const WholeTriangle& p, const std::arra
         }
         return least < 0 && most > 0;
     };
-    return d == 2 && both_sides(p, q) && both_sides(q, p) ? MeetingKind::crossing : MeetingKind::touching;
+    return d == 2 && both_sides(p, q) && both_sides(q, p) ? IntersectionKind::crossing
+                                                          : IntersectionKind::touching;
 }
 
 Triangle3 real(const WholeTriangle& t) {
@@ -188,7 +190,7 @@ TEST(TriangleContact, AgreesWithExactFractionsOnSmallGridsHoweverTheCornersStand
         ASSERT_EQ(flat(real(p)), dot(normal(p), normal(p)) == 0);
         if (flat(real(p)) || flat(real(q)))
             continue;
-        const std::optional<MeetingKind> expected = naive_contact(p, p_names, q, q_names);
+        const std::optional<IntersectionKind> expected = naive_contact(p, p_names, q, q_names);
         ++seen[expected ? static_cast<std::size_t>(*expected) : 3];
         ASSERT_EQ(contact({real(p), p_names}, {real(q), q_names}), expected) << "round " << round;
         ASSERT_EQ(contact({real(q), q_names}, {real(p), p_names}), expected) << "round " << round;
@@ -219,8 +221,8 @@ TEST(TriangleContact, DoesNotChangeWhereCoordinatesAreHuge) {
 TEST(TriangleContact, ThePlaceOfACrossingIsOnBoth) {
     const Triangle3 floor{{{-4, -4, 0}, {4, -4, 0}, {0, 8, 0}}};
     const Triangle3 blade{{{-1, 0, -1}, {1, 0, -1}, {0, 0, 1}}};
-    ASSERT_EQ(contact({floor, {0, 1, 2}}, {blade, {3, 4, 5}}), MeetingKind::crossing);
-    const Point3 at = contact_place(floor, blade, MeetingKind::crossing);
+    ASSERT_EQ(contact({floor, {0, 1, 2}}, {blade, {3, 4, 5}}), IntersectionKind::crossing);
+    const Point3 at = contact_point(floor, blade, IntersectionKind::crossing);
     EXPECT_NEAR(at.x, 0, 1e-12);
     EXPECT_NEAR(at.y, 0, 1e-12);
     EXPECT_NEAR(at.z, 0, 1e-12);

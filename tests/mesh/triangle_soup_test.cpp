@@ -99,11 +99,11 @@ TEST(TriangleSoup, BoxHoldsExactlyTheCorners) {
     EXPECT_EQ(bounding_box(rook), expected);
     EXPECT_EQ(bounding_box(as_records(rook)), expected);
     const TriangleSoup turned = rook.transformed(upright({1, 2, 3}));
-    Box3 turned_box;
+    Box3 rotated_box;
     for (std::size_t i = 0; i < rook.size(); ++i)
         for (const Point3f& p : rook.stored(i))
-            turned_box.add(turned.placement()({p.x, p.y, p.z}));
-    EXPECT_EQ(bounding_box(turned), turned_box);
+            rotated_box.add(turned.placement()({p.x, p.y, p.z}));
+    EXPECT_EQ(bounding_box(turned), rotated_box);
 }
 
 TEST(TriangleSoup, BoxReachesTheLargestNumbers) {

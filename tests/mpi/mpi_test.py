@@ -73,7 +73,7 @@ class Results(MpiTest):
         self.assertEqual(result.code, 0, result.err)
         self.assertEqual(self.bytes_of("many.cli"), self.bytes_of("one.cli"))
 
-    def test_triangles_that_are_left_out_are_told_of_all_shares(self):
+    def test_triangles_that_are_left_out_are_reported_of_all_shares(self):
         triangles = box_triangles(10, 20, 30)
         self.write("holes.stl", binary_stl(triangles[:5] + [((math.nan, 0, 0), (1, 0, 0), (0, 1, 0))] + triangles[5:]))
         one = self.succeed("slice", "holes.stl", "-o", "one.cli")
@@ -128,7 +128,7 @@ class Failures(MpiTest):
         self.assertRegex(errors[0], pattern)
         self.assertEqual(self.listing(), before)
 
-    def test_errors_are_told_once(self):
+    def test_errors_are_reported_once(self):
         self.box()
         self.write("open.stl", binary_stl(open_box(1, 2, 3)))
         self.write("noise.stl", b"no mesh")
@@ -149,7 +149,7 @@ class Failures(MpiTest):
         self.fail_together(4, "left out 1 of 13", "slice", "holes.stl", "-o", "out.cli", "--strict")
         self.fail_together(6, "does not exist", "slice", "box.stl", "-o", "nowhere/out.cli")
 
-    def test_processes_of_different_jobs_are_told_so(self):
+    def test_processes_of_different_jobs_are_reported(self):
         self.box()
         one = [MPI_PROGRAM, "slice", "box.stl", "-o", "out.cli", "--layer-height"]
         result = self.run_command(self.command(1, *one, "0.1", ":", "-n", "1", *one, "0.2"))

@@ -222,20 +222,20 @@ TEST(Calibration, FeaturesStandOnTheUncutPlate) {
 }
 
 TEST(Head, IsOneClosedSurfaceOfThePapersSizeAndCount) {
-    const TriangleSoup head = make_head();
-    expect_part(head, 467882, {141.61, 111.27, 81.29}, 1);
+    const TriangleSoup header = make_head();
+    expect_part(header, 467882, {141.61, 111.27, 81.29}, 1);
     // Without handles.
-    EXPECT_EQ(inspect(weld(head)).vertices, head.size() / 2 + 2);
+    EXPECT_EQ(inspect(weld(header)).vertices, header.size() / 2 + 2);
 }
 
 TEST(Head, IsSeenFromWithinEverywhere) {
     // Each triangle has a cone of rays of its own, and all cones together cover the sphere once: no two
     // cross.
-    const TriangleSoup head = make_head();
+    const TriangleSoup header = make_head();
     const Point3 eye{66.015, 55.54, 40.626};
     double solid_angle = 0;
-    for (std::size_t i = 0; i < head.size(); ++i) {
-        Triangle3 t = head.placed(i);
+    for (std::size_t i = 0; i < header.size(); ++i) {
+        Triangle3 t = header.placed(i);
         for (Point3& p : t) {
             p = {p.x - eye.x, p.y - eye.y, p.z - eye.z};
             const double distance = std::hypot(p.x, p.y, p.z);
@@ -254,10 +254,10 @@ TEST(Head, IsSeenFromWithinEverywhere) {
 }
 
 TEST(Head, HasUnevenTrianglesAsAScan) {
-    const TriangleSoup head = make_head();
-    std::vector<double> areas(head.size());
+    const TriangleSoup header = make_head();
+    std::vector<double> areas(header.size());
     for (std::size_t i = 0; i < areas.size(); ++i)
-        areas[i] = naive_area(head.placed(i));
+        areas[i] = naive_area(header.placed(i));
     std::sort(areas.begin(), areas.end());
     EXPECT_GT(areas[areas.size() * 9 / 10], 2 * areas[areas.size() / 10]);
 }

@@ -68,7 +68,7 @@ TEST(Agreement, HasAllThrowWhatTheFirstThrewAndRatherNotThatItWasCancelled) {
     }
 }
 
-TEST(Agreement, TellsOtherExceptionsInTheWordsOfAnError) {
+TEST(Agreement, ReportsOtherExceptionsInTheWordsOfAnError) {
     const auto failing_with = [](const auto& exception) {
         return test::common_failure(3, [&](Communicator& own) {
             in_agreement(own, [&] {

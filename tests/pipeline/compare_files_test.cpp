@@ -44,7 +44,7 @@ std::size_t same_of(const FileComparison& found) {
     return same;
 }
 
-TEST(CompareFiles, OfTheSameTellsNothing) {
+TEST(CompareFiles, OfTheSameReportsNothing) {
     const FileComparison found = compare_files(job(), job());
     EXPECT_TRUE(found.agree());
     EXPECT_EQ(same_of(found), 3U);

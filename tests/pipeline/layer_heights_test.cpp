@@ -16,7 +16,7 @@ class HeightsOfLayers : public testing::Test {
     LayerStack layers_ = slice(mesh_, plan_uniform(0, 2, {.layer_height = 0.1}));
 };
 
-TEST_F(HeightsOfLayers, TellWhichPartOfTheMeshTheyCover) {
+TEST_F(HeightsOfLayers, ReportWhichPartOfTheMeshTheyCover) {
     Verification found = verify(layers_, {.mesh = mesh_});
     ASSERT_TRUE(found.heights);
     EXPECT_EQ(found.heights->gaps, 0U);

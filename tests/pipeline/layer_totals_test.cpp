@@ -33,7 +33,7 @@ FileJob measured() {
 FileResult told(const LayerTotals& totals, std::size_t parts) {
     FileResult result;
     result.parts.resize(parts);
-    totals.tell(result);
+    totals.store_in(result);
     return result;
 }
 
@@ -234,7 +234,7 @@ TEST(LayerTotals, NameTheFileAndThePartsThatHaveADefect) {
     FileResult result;
     result.parts.resize(4);
     result.parts[2].label = "bracket";
-    totals.tell(result);
+    totals.store_in(result);
     ASSERT_EQ(result.doubts.size(), 3U);
     EXPECT_TRUE(result.doubts[0].texts().empty());
     EXPECT_EQ(result.doubts[1].texts(),

@@ -13,7 +13,7 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-TEST(MeshDoubts, AreToldWithCountsAndTheLowestPlace) {
+TEST(MeshDoubts, AreReportedWithCountsAndTheLowestPlace) {
     MeshDoubts doubts{.layers = 4};
     EXPECT_EQ(doubts.texts(), Texts());
     doubts.add(1.5, 0.5, {}, {.rings = 3, .area_mm2 = 8, .at = {}});
@@ -56,7 +56,7 @@ TEST(MeshDoubts, NameWhatClosesGapsThatRoundingLeaves) {
     EXPECT_EQ(text_of(2).find("close_gaps_mm"), std::string::npos);
 }
 
-TEST(NearFaceLayers, AreToldWithTheirAreaAndADistanceThatIsEnough) {
+TEST(NearFaceLayers, AreReportedWithTheirAreaAndADistanceThatIsEnough) {
     NearFaceLayers near;
     EXPECT_EQ(near.text(9), "");
     near.add(0.5, 60, 3e-7);

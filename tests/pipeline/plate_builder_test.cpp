@@ -116,7 +116,7 @@ TEST(PlateBuilder, SharesAShapeOnlyAmongPartsThatDifferInXAndY) {
     EXPECT_EQ(plate.shapes[plate.parts[3].shape].mesh.soup()->placement().offset[0], 50);
 }
 
-TEST(PlateBuilder, TellsSupportsByWhatTheFileMarksAndWhatIsSaidOfIt) {
+TEST(PlateBuilder, FindsSupportsByTheMarksOfTheFileAndByOptions) {
     const auto supports_of = [](const PlateInput& input) {
         std::vector<bool> supports;
         const Plate plate = plate_of(
@@ -191,7 +191,7 @@ TEST(PlateBuilder, PlacesAfterTheUnitIsMillimetres) {
                        [&] { static_cast<void>(plate_of({.path = "a.3mf", .unit_mm = 25.4}, with_unit)); });
 }
 
-TEST(PlateBuilder, RefusesPlacesThatNumbersCannotTellApart) {
+TEST(PlateBuilder, RefusesPlacesThatNumbersCannotDistinguish) {
     const auto placed = [](const Transform& placement) {
         static_cast<void>(plate_of({.path = "a.stl", .placement = placement}));
     };

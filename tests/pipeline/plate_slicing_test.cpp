@@ -173,7 +173,7 @@ TEST(PlateSlicing, SlicesAShapeOnceForAllItsParts) {
     EXPECT_EQ(together.matching->inserted.total(), alone.matching->inserted.total());
 }
 
-TEST(PlateSlicing, TellsProgressOfAllWindowsAsThatOfOneRunToItsEnd) {
+TEST(PlateSlicing, ReportsProgressOfAllWindowsAsThatOfOneRunToItsEnd) {
     const Plate plate = plate_of({{make_torus(6, 2, 48, 24), 2}, {make_sphere(3, 3), 2}});
     const Plan plan = plan_of(plate, 0.1);
     for (const std::uint64_t points : {0U, 1000U}) {
@@ -250,11 +250,11 @@ TEST(PlateSlicing, HandsAFewPlanesAtATimeToASinkThatMakesMuchOfThem) {
                                       told.push_back(progress);
                               }};
     static_cast<void>(
-        slice_plate_to(sink, plate, plan, execution, engines().front(), 1'000'000, SinkYield::much_more));
+        slice_plate_to(sink, plate, plan, execution, engines().front(), 1'000'000, SinkCost::expanding));
     EXPECT_EQ(written.size(), plan.layers.size());
     EXPECT_TRUE(std::is_sorted(written.begin(), written.end()));
     EXPECT_LE(most, 8);
-    // What is told of is what the sink has done.
+    // Contents of is what the sink has done.
     ASSERT_GT(told.size(), 10U);
     for (std::size_t i = 0; i < told.size(); ++i) {
         EXPECT_EQ(told[i].total, plan.layers.size());

@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-// Jobs that write scan vectors in the place of contours.
+// Jobs that write scan vectors instead of contours.
 
 namespace lamella::scan_job_cases {
 namespace {
@@ -179,7 +179,7 @@ TEST_F(ScanJob, HasTheSameBytesInLittleMemory) {
     const std::string expected = content("job.cli");
     scanned.max_memory = std::uint64_t{45} << 20;
     const FileResult pieces = slice_file(scanned, {.threads = 2});
-    EXPECT_GT(pieces.slabs, 1U);
+    EXPECT_GT(pieces.ranges, 1U);
     test::expect_same(whole, pieces);
     EXPECT_EQ(content("job.cli"), expected);
 }

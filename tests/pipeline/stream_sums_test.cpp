@@ -75,14 +75,14 @@ TEST(Extent, TakesTheFirstCornerOfWhatIsUsable) {
 
 TEST(VolumeSum, HasTheBitsOfTheVolumeOfTheMeshInAnyOrder) {
     const TriangleSoup placed = streamed().transformed(placement());
-    ASSERT_GT(placed.size(), 2 * fold_piece);
+    ASSERT_GT(placed.size(), 2 * fold_chunk);
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
         VolumeSum sum(placement(), streamed().stored(0)[0]);
-        from_two_threads(batches(fold_piece, seed), [&](const Batch& batch) {
+        from_two_threads(batches(fold_chunk, seed), [&](const Batch& batch) {
             sum.add(batch.second.transformed(placement()), batch.first);
         });
         double six_volumes = 0;
-        for (const double piece : sum.pieces())
+        for (const double piece : sum.chunks())
             six_volumes += piece;
         EXPECT_EQ(six_volumes / 6, volume(placed)) << seed;
     }
@@ -90,9 +90,9 @@ TEST(VolumeSum, HasTheBitsOfTheVolumeOfTheMeshInAnyOrder) {
 
 TEST(VolumeSum, CountsABatchThatWasLeftOutAsNothing) {
     VolumeSum sum({}, {0, 0, 0});
-    EXPECT_TRUE(sum.pieces().empty());
+    EXPECT_TRUE(sum.chunks().empty());
     sum.add(make_box(1, 2, 3), 2);
-    EXPECT_EQ(sum.pieces(), (std::vector<double>{0, 0, 36}));
+    EXPECT_EQ(sum.chunks(), (std::vector<double>{0, 0, 36}));
 }
 
 } // namespace

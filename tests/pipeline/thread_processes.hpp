@@ -29,7 +29,7 @@ namespace lamella::test {
 
 /// State shared by the threads. A process that is gone ends the others: waiting for it throws, so that a test
 /// fails in cases in which processes would hang.
-class Meeting {
+class TriangleIntersection {
   public:
     /// Contribution of a process to a step that all take.
     struct Post {
@@ -39,7 +39,7 @@ class Meeting {
         std::span<const std::span<const std::byte>> outgoing = {};
     };
 
-    explicit Meeting(std::size_t processes) : posts_(processes), gone_(processes, false) {}
+    explicit TriangleIntersection(std::size_t processes) : posts_(processes), gone_(processes, false) {}
 
     [[nodiscard]] std::size_t size() const noexcept { return posts_.size(); }
 
@@ -112,58 +112,61 @@ class Meeting {
 
 class ThreadProcess final : public Communicator {
   public:
-    ThreadProcess(Meeting& meeting, std::size_t process) : meeting_(meeting), process_(process) {}
+    ThreadProcess(TriangleIntersection& intersection, std::size_t process)
+        : intersection_(intersection), process_(process) {}
 
     [[nodiscard]] std::size_t process() const noexcept override { return process_; }
-    [[nodiscard]] std::size_t size() const noexcept override { return meeting_.size(); }
+    [[nodiscard]] std::size_t size() const noexcept override { return intersection_.size(); }
 
     void sum(std::span<std::uint64_t> values) override {
         std::vector<std::uint64_t> total(values.size(), 0);
-        meeting_.meet(process_, {.step = "sum", .numbers = values}, [&](std::span<const Meeting::Post> all) {
-            for (const Meeting::Post& other : all)
-                for (std::size_t i = 0; i < total.size(); ++i)
-                    total[i] += other.numbers[i];
-        });
+        intersection_.meet(process_, {.step = "sum", .numbers = values},
+                           [&](std::span<const TriangleIntersection::Post> all) {
+                               for (const TriangleIntersection::Post& other : all)
+                                   for (std::size_t i = 0; i < total.size(); ++i)
+                                       total[i] += other.numbers[i];
+                           });
         std::copy(total.begin(), total.end(), values.begin());
     }
 
     std::vector<std::string> gather(std::string_view mine) override {
         std::vector<std::string> said;
-        meeting_.meet(process_, {.step = "gather", .said = mine}, [&](std::span<const Meeting::Post> all) {
-            for (const Meeting::Post& other : all)
-                said.emplace_back(other.said);
-        });
+        intersection_.meet(process_, {.step = "gather", .said = mine},
+                           [&](std::span<const TriangleIntersection::Post> all) {
+                               for (const TriangleIntersection::Post& other : all)
+                                   said.emplace_back(other.said);
+                           });
         return said;
     }
 
     std::vector<std::uint64_t> exchange(std::span<const std::uint64_t> outgoing) override {
         std::vector<std::uint64_t> incoming;
-        meeting_.meet(process_, {.step = "exchange of numbers", .numbers = outgoing},
-                      [&](std::span<const Meeting::Post> all) {
-                          for (const Meeting::Post& from : all)
-                              incoming.push_back(from.numbers[process_]);
-                      });
+        intersection_.meet(process_, {.step = "exchange of numbers", .numbers = outgoing},
+                           [&](std::span<const TriangleIntersection::Post> all) {
+                               for (const TriangleIntersection::Post& from : all)
+                                   incoming.push_back(from.numbers[process_]);
+                           });
         return incoming;
     }
 
     void exchange(std::span<const std::span<const std::byte>> outgoing,
                   std::span<const std::span<std::byte>> incoming) override {
-        meeting_.meet(process_, {.step = "exchange of bytes", .outgoing = outgoing},
-                      [&](std::span<const Meeting::Post> all) {
-                          for (std::size_t from = 0; from < size(); ++from) {
-                              const std::span<const std::byte> sent = all[from].outgoing[process_];
-                              ASSERT_EQ(sent.size(), incoming[from].size());
-                              if (!sent.empty())
-                                  std::memcpy(incoming[from].data(), sent.data(), sent.size());
-                          }
-                      });
+        intersection_.meet(process_, {.step = "exchange of bytes", .outgoing = outgoing},
+                           [&](std::span<const TriangleIntersection::Post> all) {
+                               for (std::size_t from = 0; from < size(); ++from) {
+                                   const std::span<const std::byte> sent = all[from].outgoing[process_];
+                                   ASSERT_EQ(sent.size(), incoming[from].size());
+                                   if (!sent.empty())
+                                       std::memcpy(incoming[from].data(), sent.data(), sent.size());
+                               }
+                           });
     }
 
-    void send(std::size_t to, std::string_view bytes) override { meeting_.send(process_, to, bytes); }
-    std::string receive(std::size_t from) override { return meeting_.receive(from, process_); }
+    void send(std::size_t to, std::string_view bytes) override { intersection_.send(process_, to, bytes); }
+    std::string receive(std::size_t from) override { return intersection_.receive(from, process_); }
 
   private:
-    Meeting& meeting_;
+    TriangleIntersection& intersection_;
     std::size_t process_;
 };
 
@@ -171,12 +174,12 @@ class ThreadProcess final : public Communicator {
 /// Error counts as internal.
 template <class Body>
 std::vector<std::optional<Error>> failures_of(std::size_t processes, const Body& body) {
-    Meeting meeting(processes);
+    TriangleIntersection intersection(processes);
     std::vector<std::optional<Error>> failures(processes);
     std::vector<std::thread> threads;
     for (std::size_t p = 0; p < processes; ++p)
         threads.emplace_back([&, p] {
-            ThreadProcess own(meeting, p);
+            ThreadProcess own(intersection, p);
             try {
                 body(own);
             } catch (const Error& error) {
@@ -184,11 +187,11 @@ std::vector<std::optional<Error>> failures_of(std::size_t processes, const Body&
             } catch (const std::exception& error) {
                 failures[p] = Error(ErrorKind::internal, error.what());
             }
-            meeting.leave(p);
+            intersection.leave(p);
         });
     for (std::thread& thread : threads)
         thread.join();
-    EXPECT_TRUE(meeting.quiet()) << "a message was never received";
+    EXPECT_TRUE(intersection.quiet()) << "a message was never received";
     return failures;
 }
 

@@ -120,7 +120,7 @@ TEST(Verify, CountsNoMoreCrossingsOfALayerThanAnybodyReads) {
     EXPECT_EQ(other.findings[0], "1 crossing of contours, the first in layer 1 (z 1.5 mm) at (1, 1)");
 }
 
-TEST(Verify, TellsAPositiveRingThatCrossesItselfFromOneThatRunsTheWrongWayRound) {
+TEST(Verify, DistinguishesAPositiveRingThatCrossesItselfFromAnInvertedOne) {
     // The sides cross next to the left end, where the ring runs clockwise around a small triangle.
     const LayerStack layers{at(0, layer_of({{{0, 5}, {1, 5.5}, {10, 0}, {10, 10}, {1, 4.5}}}))};
     const Verification found = verify(layers);

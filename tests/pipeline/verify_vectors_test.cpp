@@ -339,7 +339,7 @@ TEST_F(VerifyVectors, OfNoVectorsFails) {
     EXPECT_TRUE(with_strategy().none);
 }
 
-TEST_F(VerifyVectors, SaysWhereNothingTellsOfTheMaterial) {
+TEST_F(VerifyVectors, SaysWhereNothingReportsTheMaterial) {
     std::erase_if(parts_, [](const LayerPart& part) { return part.exposure->kind == VectorKind::contour; });
     const VectorVerification found = with_nothing();
     EXPECT_TRUE(found.ok());
@@ -373,12 +373,12 @@ TEST_F(VerifyVectors, FindsContoursThatAreMissing) {
 TEST_F(VerifyVectors, FindsContoursAtAnotherDepth) {
     const auto replaced = [&](const char* name, const std::vector<test::Contour>& rings) {
         Layer& layer = part(name).layers[6];
-        const Layer head = layer;
+        const Layer header = layer;
         layer = layer_of(rings);
-        layer.index = head.index;
-        layer.z = head.z;
-        layer.bottom = head.bottom;
-        layer.top = head.top;
+        layer.index = header.index;
+        layer.z = header.z;
+        layer.bottom = header.bottom;
+        layer.top = header.top;
     };
     replaced("core contour 1", {rectangle(8, 3, 12, 7)}); // deeper inside than it should be
     EXPECT_EQ(with_all().wrong_contours, 1U);
@@ -433,7 +433,7 @@ TEST_F(VerifyVectors, GrantsTheRoundingOfTheFormat) {
         verify_vectors(parts_, {.mesh = mesh_, .rounding = {.step_mm = 0.01}, .strategy = strategy_}).ok());
 }
 
-TEST_F(VerifyVectors, TellsPartsApart) {
+TEST_F(VerifyVectors, DistinguishesParts) {
     const LayerStack other = slice(box_mesh({30, 0, 0}, {50, 10, 1}), plan_);
     for (LayerPart& part : scanned(other, strategy_, "other"))
         parts_.push_back(std::move(part));

@@ -291,7 +291,7 @@ TEST(Combine, CountsOverlapsOnceAndBodiesTurnedInsideOutNot) {
     EXPECT_EQ(combine(twice, normal_layer({square}), exclude).rings, 0U);
 }
 
-TEST(Combine, TakesHeadAndChainsOfTheFirstLayer) {
+TEST(Combine, TakesHeaderAndChainsOfTheFirstLayer) {
     Layer a = normal_layer({rectangle(0, 0, 4, 4)}, {{{0, 9}, {5, 9}}});
     a.index = 7;
     a.z = 1.5;

@@ -41,7 +41,7 @@ TEST(Compare, FindsNothingBetweenEqualLayers) {
     EXPECT_EQ(found.distance_mm, 0);
 }
 
-TEST(Compare, TellsHowFarACornerWasMovedAndWhere) {
+TEST(Compare, ReportsHowFarACornerWasMovedAndWhere) {
     Contour moved = square;
     moved[2] = {10.3, 10.4};
     const LayerDifference found = compare(layer_with({square}), layer_with({moved}));
@@ -173,7 +173,7 @@ TEST(CompareStacks, GrantsContoursWhatBothFormatsRound) {
                 0.001 * std::sqrt(2.0), 1e-12);
 }
 
-TEST(CompareStacks, TellsOfLayersThatAreCutElsewhereBetweenTheSameHeights) {
+TEST(CompareStacks, ReportsLayersThatAreCutElsewhereBetweenTheSameHeights) {
     const LayerStack middle = squares({0.5, 1.5}, 1);
     LayerStack low = middle;
     for (Layer& layer : low)

@@ -27,7 +27,7 @@ TEST(EdgeTree, OfNothingIsInfinitelyFar) {
     EXPECT_EQ(tree.winding({1, 2}), 0);
 }
 
-TEST(EdgeTree, TellsDistancesAndWindings) {
+TEST(EdgeTree, ReportsDistancesAndWindings) {
     const EdgeTree tree(layer_of({rectangle(0, 0, 10, 10), reversed(rectangle(4, 4, 6, 6))}));
     EXPECT_EQ(tree.distance_squared(Point2{2, 5}, 0), 4);
     EXPECT_EQ(tree.distance_squared(Segment{{1, 5}, {3, 5}}, 0), 1);

@@ -289,8 +289,8 @@ TEST(Fill, IsRightWhereAllSidesRunThroughOnePlace) {
         EXPECT_EQ(star.rings, 1U);
         EXPECT_EQ(star.points.size(), 3U * 2 * bars); // the ends of each arm, and where it meets the next one
         EXPECT_FALSE(has_crossings(star));
-        const double meeting = half_width / std::tan(std::numbers::pi / bars / 2);
-        EXPECT_NEAR(measure(star).area_mm2, 2 * bars * half_width * (2 * reach - meeting), 1e-4);
+        const double intersection = half_width / std::tan(std::numbers::pi / bars / 2);
+        EXPECT_NEAR(measure(star).area_mm2, 2 * bars * half_width * (2 * reach - intersection), 1e-4);
         std::reverse(rings.begin(), rings.end());
         EXPECT_TRUE(same_contours(united(rings), star));
     }

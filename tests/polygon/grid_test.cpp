@@ -60,7 +60,7 @@ TEST(Grid, HasEveryPointOfASegmentInOneOfTheCellsAlongIt) {
 
 TEST(Grid, HasACellInCommonForBoxesThatMeet) {
     Random random(32);
-    int meetings = 0;
+    int intersections = 0;
     for (int round = 0; round < 500; ++round) {
         const Box2 whole = random_box(random, {0, 0, 100, 3});
         const Grid grid(whole, Grid::cell_size(whole, 60, 0));
@@ -68,11 +68,11 @@ TEST(Grid, HasACellInCommonForBoxesThatMeet) {
         const Box2 b = random_box(random, whole);
         if (!a.meets(b))
             continue;
-        ++meetings;
+        ++intersections;
         const std::size_t corner = grid.cell({std::max(a.x0, b.x0), std::max(a.y0, b.y0)});
         ASSERT_TRUE(contains(of_box(grid, a), corner) && contains(of_box(grid, b), corner)) << round;
     }
-    EXPECT_GT(meetings, 100);
+    EXPECT_GT(intersections, 100);
 }
 
 TEST(Grid, IsCoveredByItsCellsWithoutOverlap) {

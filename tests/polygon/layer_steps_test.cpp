@@ -38,7 +38,7 @@ TEST(LayerSteps, ThatAreImpossibleAreRefusedWhateverTheLayer) {
     check_steps({.offset_mm = -1, .min_area_mm2 = 1, .simplify_mm = 0.1});
 }
 
-TEST(LayerSteps, AreTakenInOrderAndToldAbout) {
+TEST(LayerSteps, AreTakenInOrderAndReportedAbout) {
     const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4), rectangle(2, 0, 6, 4),
                                               reversed(rectangle(0.5, 0.5, 1, 1)), rectangle(20, 0, 22, 2)}));
     LayerSteps steps;
@@ -61,7 +61,7 @@ TEST(LayerSteps, AreTakenInOrderAndToldAbout) {
     EXPECT_DOUBLE_EQ(sum.area_after_mm2, 96);
 }
 
-TEST(LayerSteps, TellHowManyRingsAnOffsetLeavesNothingOf) {
+TEST(LayerSteps, ReportHowManyRingsAnOffsetLeavesNothingOf) {
     const Layer frame = normal_form(
         layer_of({rectangle(0, 0, 10, 10), reversed(rectangle(1, 1, 9, 9)), rectangle(20, 0, 30, 10)}));
     const auto vanished = [&](double distance) {

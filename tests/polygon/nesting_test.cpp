@@ -40,7 +40,7 @@ Numbers parents(const std::vector<Contour>& rings) {
     return nesting(layer_of(rings)).parent;
 }
 
-TEST(Nesting, OfBodiesAndHolesIsTold) {
+TEST(Nesting, OfBodiesAndHolesIsReported) {
     EXPECT_EQ(kinds({}), Kinds{});
     EXPECT_EQ(kinds({rectangle(0, 0, 9, 9)}), Kinds{outer});
     EXPECT_EQ(kinds({rectangle(0, 0, 9, 9), reversed(rectangle(1, 1, 8, 8)), rectangle(2, 2, 7, 7),
@@ -249,7 +249,7 @@ Layer random_triangles(std::size_t n) {
     return layer_of(rings);
 }
 
-WoundNesting with_memory(const Layer& layer, std::uint64_t bytes) {
+NestingWithWindings with_memory(const Layer& layer, std::uint64_t bytes) {
     const MonotoneChains chains(layer);
     const std::optional<ChainGrid> grid = ChainGrid::of(chains);
     const std::vector<Windings> turns(layer.rings, Windings{1, 0});
@@ -562,8 +562,8 @@ TEST(Nesting, OfRingsAmongOthersInContactIsAsIfAllWereLookedAtTogether) {
             std::count(contacts.group.begin(), contacts.group.end(), Contacts::none));
         ASSERT_TRUE(0 < apart && apart < layer.rings);
         const std::vector<Windings> turns(layer.rings, Windings{1, 0});
-        const WoundNesting found = nesting(layer, chains, grid, contacts, turns);
-        const WoundNesting together = nesting(layer, chains, std::nullopt, contacts, turns);
+        const NestingWithWindings found = nesting(layer, chains, grid, contacts, turns);
+        const NestingWithWindings together = nesting(layer, chains, std::nullopt, contacts, turns);
         EXPECT_EQ(found.nesting.kind, together.nesting.kind);
         EXPECT_EQ(found.nesting.parent, together.nesting.parent);
         EXPECT_EQ(found.nesting.body, together.nesting.body);

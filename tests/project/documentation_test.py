@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM, EXAMPLES = (Path(path).resolve() for path in sys.argv[1:3])
 PAGES = [ROOT / "README.md", *sorted(ROOT.glob("docs/**/*.md"))]
 
-PICTURES = {
+IMAGES = {
     "tutorial_layer.svg": "lamella make rook && lamella slice rook.stl -o layers --format svg-layers --layers 485:486",
 }
 
@@ -131,9 +131,9 @@ class Documentation(unittest.TestCase):
                 self.run_script(script, folder)
         self.assertGreater(tried, 3)
 
-    def test_pictures_of_the_tutorial_are_what_its_commands_draw(self):
-        for name, script in PICTURES.items():
-            with self.subTest(picture=name), tempfile.TemporaryDirectory() as folder:
+    def test_images_of_the_tutorial_are_what_its_commands_draw(self):
+        for name, script in IMAGES.items():
+            with self.subTest(image=name), tempfile.TemporaryDirectory() as folder:
                 self.run_script(script, folder)
                 drawn = next(Path(folder).glob("**/*.svg")).read_text(encoding="utf-8")
                 self.assertEqual((ROOT / "docs/images" / name).read_text(encoding="utf-8"), drawn)

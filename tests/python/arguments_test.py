@@ -129,7 +129,7 @@ def test_mistakes_are_errors_of_the_documented_kinds(folder, name, parameter):
 
 
 @pytest.mark.parametrize("name", CALLS)
-def test_calls_that_do_not_fit_are_told_as_by_python(name):
+def test_calls_that_do_not_fit_are_reported_as_by_python(name):
     function, arguments = CALLS[name]
     for wrong in ([1] * 99, []), ([], {**arguments, "colour": 1}), ([], {"colour": 1}):
         with pytest.raises(TypeError) as caught:

@@ -61,7 +61,7 @@ def test_bad_meshes_end_in_the_text_of_the_program(program, tmp_path, monkeypatc
     assert "\udcff" not in name or str(caught.value).startswith("odd \\xff name.stl: ")
 
 
-def test_a_unit_for_a_file_that_says_its_own_is_told_with_the_file(program, tmp_path):
+def test_a_unit_for_a_file_that_says_its_own_is_reported_with_the_file(program, tmp_path):
     path = tmp_path / "a.amf"
     path.write_text(
         '<amf unit="millimeter"><object id="0"><mesh><vertices>'

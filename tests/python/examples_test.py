@@ -33,13 +33,13 @@ def test_every_example_is_run_here():
 
 
 def test_a_layer_is_drawn(bodies, tmp_path):
-    picture = tmp_path / "layer.png"
+    image = tmp_path / "layer.png"
     path = bodies("calibration")
-    text = run("plot_layer.py", path, 3, picture)
+    text = run("plot_layer.py", path, 3, image)
     layer = lamella.slice(path, z=[3.05])[0]
     assert f"{layer.area:.3f} mm2" in text and (layer.parent >= 0).any()
     # How much of the box around it is filled with the colour of material.
-    image = np.round(imread(picture)[:, :, :3] * 255)
+    image = np.round(imread(image)[:, :, :3] * 255)
     material = np.abs(image - (176, 196, 222)).max(axis=2) <= 2
     rows, columns = np.nonzero(material)
     drawn = material.sum() / (np.ptp(rows) * np.ptp(columns))
@@ -47,22 +47,22 @@ def test_a_layer_is_drawn(bodies, tmp_path):
 
 
 def test_area_over_height(rook, tmp_path):
-    picture = tmp_path / "area.png"
-    layers, volume, step = numbers(run("area_over_height.py", rook, 0.5, picture).replace("mm3", ""))
+    image = tmp_path / "area.png"
+    layers, volume, step = numbers(run("area_over_height.py", rook, 0.5, image).replace("mm3", ""))
     stack = lamella.slice(rook, 0.5)
     assert (layers, volume) == (len(stack), pytest.approx(stack.volume, abs=1e-3))
     assert step == pytest.approx(stack.z[np.abs(np.diff(stack.area)).argmax()], abs=1e-3)
-    assert imread(picture).std() > 0
-    assert numbers(run("area_over_height.py", rook, 50, picture))[0] == 1
+    assert imread(image).std() > 0
+    assert numbers(run("area_over_height.py", rook, 50, image))[0] == 1
 
 
 def test_scan_vectors_are_drawn(bodies, tmp_path):
-    picture = tmp_path / "scan.png"
+    image = tmp_path / "scan.png"
     path = bodies("box", "--size", "20,30,10")
-    number, lines = numbers(run("plot_scan.py", path, 5, picture).rpartition(": layer")[2])
+    number, lines = numbers(run("plot_scan.py", path, 5, image).rpartition(": layer")[2])
     (layer,) = lamella.scan([lamella.slice(path, layer_height=0.1)[int(number)]])
     assert number in (49, 50) and lines == len(layer.vectors)
-    assert imread(picture).std() > 0
+    assert imread(image).std() > 0
 
 
 def test_narrow_places_get_less_power(bodies):

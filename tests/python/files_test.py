@@ -167,7 +167,7 @@ def test_parts_stay_apart_in_files(tmp_path):
 def test_parts_of_other_layers_are_refused(tmp_path, change):
     square = [(0, 0), (1, 0), (1, 1)]
     heads = {"z": 0.5, "bottom": 0, "top": 1, "index": 0}
-    one, other = (lamella.Stack([lamella.Layer([square], **head)]) for head in (heads, {**heads, **change}))
+    one, other = (lamella.Stack([lamella.Layer([square], **header)]) for header in (heads, {**heads, **change}))
     (name,) = change
     with pytest.raises(lamella.UsageError, match={"bottom": "bottoms", "top": "tops", "index": "indices"}[name]):
         lamella.write(tmp_path / "two.cli", [one, other])
@@ -336,14 +336,14 @@ def test_conversion_is_that_of_the_program(program, rook, tmp_path):
         lamella.convert(tmp_path / "rook.cli", tmp_path / "rook.cli")
 
 
-def test_pictures_are_those_of_the_program(program, rook, tmp_path):
+def test_images_are_those_of_the_program(program, rook, tmp_path):
     program.succeed("slice", rook, "-o", tmp_path / "program.zip", "--format", "png-zip", "--layer-height", 5,
                     "--pixel-size", "0.2")
     lamella.write(tmp_path / "rook.zip", lamella.slice(rook, 5), format="png-zip", pixel_mm=0.2)
     assert (tmp_path / "rook.zip").read_bytes() == (tmp_path / "program.zip").read_bytes()
 
 
-PICTURES = [
+IMAGES = [
     ("png-zip", {"pixels": (90, 80), "display_mm": (45, 40)}, ["--resolution", "90x80", "--display-size", "45,40"]),
     ("png-zip", {"pixel_mm": (0.2, 0.3), "antialias": 1}, ["--pixel-size", "0.2,0.3", "--antialias", 1]),
     ("png-zip", {"pixel_mm": 0.5, "orientation": "portrait", "mirror": "xy", "gamma": 2.5},
@@ -355,8 +355,8 @@ PICTURES = [
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize("name, keywords, options", PICTURES)
-def test_options_of_pictures_are_those_of_the_program(program, rook, tmp_path, name, keywords, options):
+@pytest.mark.parametrize("name, keywords, options", IMAGES)
+def test_options_of_images_are_those_of_the_program(program, rook, tmp_path, name, keywords, options):
     (tmp_path / "program").mkdir()
     target = tmp_path / "program" / "rook.out"
     program.succeed("slice", rook, "-o", target, "--format", name, "--layer-height", 10, *options)
@@ -450,12 +450,12 @@ def test_inspection_is_that_of_the_program(program, rook):
     assert found.sound and found.defects == ""
 
 
-def test_defects_are_told_in_words():
+def test_defects_are_reported_in_words():
     vertices, faces = open_box()
     found = lamella.inspect((vertices, np.concatenate([faces, faces[:1], [(0, 0, 1)]])))
     assert not found.closed and not found.sound
     assert found.defects == (
-        "4 boundary edges, 3 crowded edges, 3 orientation conflicts, 1 duplicate triangle, "
+        "4 boundary edges, 3 non-manifold edges, 3 orientation conflicts, 1 duplicate triangle, "
         "1 degenerate triangle"
     )
     assert lamella.inspect(box_arrays(inward=True)).inverted_shells == 1
@@ -486,7 +486,7 @@ def test_verification_finds_what_is_wrong(program, rook, tmp_path):
     assert lamella.verify(bow_tie).crossings == 1
 
 
-def test_comparison_tells_where_layers_differ():
+def test_comparison_reports_where_layers_differ():
     stack = lamella.slice(box_arrays(), 1)
     assert lamella.compare(stack, stack).same == len(stack)
     moved = lamella.Stack([
@@ -532,7 +532,7 @@ def test_odd_slice_files_are_errors_where_they_are_asked_to_be(tmp_path):
         lamella.read(path, strict=True)
 
 
-def test_stl_files_tell_what_single_precision_takes(tmp_path):
+def test_stl_files_report_what_single_precision_takes(tmp_path):
     lamella.write(tmp_path / "exact.stl", lamella.Mesh(*box_arrays()), strict=True)
     vertices, faces = box_arrays(at=(1e6, 0, 0))
     thin = lamella.Mesh(np.where(vertices == 1e6 + 20, 1e6 + 0.01, vertices), faces)

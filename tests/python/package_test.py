@@ -46,7 +46,7 @@ def test_everything_has_a_docstring(name):
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
-def test_docstrings_tell_every_argument(name):
+def test_docstrings_describe_every_argument(name):
     function = getattr(lamella, name)
     if "Takes what `slice` takes" in function.__doc__ or "For the rest see `write`" in function.__doc__:
         return
@@ -73,7 +73,7 @@ QUANTITIES = {
 
 
 @pytest.mark.parametrize("name", QUANTITIES)
-def test_docstrings_tell_shapes_and_units(name):
+def test_docstrings_give_shapes_and_units(name):
     for member, words in QUANTITIES[name].items():
         text = getattr(getattr(lamella, name), member).__doc__
         assert all(word in text for word in words), f"{name}.{member}: {text}"
@@ -88,7 +88,7 @@ def test_stubs_have_what_the_extension_has(name):
 
 
 @pytest.mark.parametrize("name", EXTENSION)
-def test_stubs_tell_which_classes_have_no_hash(name):
+def test_stubs_report_which_classes_have_no_hash(name):
     unhashable = {node.target.id for node in stub()[name].body if isinstance(node, ast.AnnAssign)} & {"__hash__"}
     assert bool(unhashable) == (getattr(lamella, name).__hash__ is None)
 

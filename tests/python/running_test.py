@@ -79,7 +79,7 @@ mesh = lamella.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 1)], [(0, 1, 2)])
 
 def test_two_threads_slice_side_by_side(sheet):
     # Each call waits, in its midst, for the other one to be in its midst, too.
-    meeting = threading.Barrier(2, timeout=60)
+    intersection = threading.Barrier(2, timeout=60)
     areas = [None, None]
 
     def slice_one(place):
@@ -87,7 +87,7 @@ def test_two_threads_slice_side_by_side(sheet):
 
         def progress(stage, done, total):
             if stage == "slice" and not met:
-                met.append(meeting.wait())
+                met.append(intersection.wait())
 
         areas[place] = lamella.slice(sheet, 0.01, threads=1, progress=progress).area
         assert met
@@ -113,7 +113,7 @@ def test_many_threads_may_ask_one_layer(sheet):
 
 
 @pytest.mark.parametrize("work", [lamella.slice, lambda *a, **k: list(lamella.iter_layers(*a, **k))])
-def test_progress_is_told_in_order_by_the_thread_that_called(rook, work):
+def test_progress_is_reported_in_order_by_the_thread_that_called(rook, work):
     told = []
     work(rook, 0.05, progress=lambda *event: told.append((threading.get_ident(), *event)))
     assert {thread for thread, *_ in told} == {threading.get_ident()}
@@ -277,9 +277,9 @@ class Viewer:
     """Listens to a stream of its own: neither is held by anybody else."""
 
     def __init__(self, path, height):
-        self.stream = lamella.iter_layers(path, height, progress=self.tell)
+        self.stream = lamella.iter_layers(path, height, progress=self.on_progress)
 
-    def tell(self, stage, done, total):
+    def on_progress(self, stage, done, total):
         pass
 
 

@@ -53,7 +53,7 @@ def test_hashes_of_vectors_see_their_order():
     assert hatches[0].hash == hatches[2].hash != hatches[1].hash
 
 
-def test_what_no_vectors_are_made_of_is_told(tmp_path):
+def test_what_no_vectors_are_made_of_is_reported(tmp_path):
     """At once of a stack, and of other layers at their end; in the words of the program."""
     inward = lamella.Mesh(*box_arrays(inward=True))
     with pytest.warns(lamella.DefectWarning, match="^the mesh: 10 rings bound no material in 10 of 10 layers, first at z = 0.5 mm") as told:
@@ -67,8 +67,8 @@ def test_what_no_vectors_are_made_of_is_told(tmp_path):
         with pytest.warns(lamella.DefectWarning, match=inside_out):
             assert sum(len(layer.vectors) for layer in lamella.scan(layers)) == 0
     square = '{"index":0,"z":1,"bottom":0,"top":2,"parts":[{"rings":[[0,0,9,0,9,9,0,9]],"chains":[[1,1,2,2]],"hatches":[1,1,2,1]}]}'
-    head = '{"format":"lamella layers","version":1,"units":"mm","parts":[{"label":"part"}],"layers":['
-    (tmp_path / "a.json").write_text(head + square + "]}")
+    header = '{"format":"lamella layers","version":1,"units":"mm","parts":[{"label":"part"}],"layers":['
+    (tmp_path / "a.json").write_text(header + square + "]}")
     read = lamella.read(tmp_path / "a.json")
     with pytest.warns(lamella.DefectWarning) as told:
         lamella.scan(read)
@@ -332,7 +332,7 @@ def test_what_scanning_takes_and_gives_is_copied_and_compared(protocol):
     assert scanned.figures[0] != scanned.figures[1]
 
 
-def test_attributes_with_few_values_tell_them():
+def test_attributes_with_few_values_list_them():
     for attribute, values in [
         (lamella.HatchRule.pattern, ["lines", "meander", "stripes", "chessboard", "hexagons"]),
         (lamella.HatchRule.order, ["rows", "random"]),
@@ -342,7 +342,7 @@ def test_attributes_with_few_values_tell_them():
         assert attribute.__doc__.endswith(": " + ", ".join(f'"{value}"' for value in values))
 
 
-def test_attributes_of_strategies_tell_wrong_types_from_wrong_values():
+def test_attributes_of_strategies_distinguish_wrong_types_from_wrong_values():
     contours = lamella.ContourRule()
     with pytest.raises(lamella.UsageError, match="^count: -1 is not possible"):
         contours.count = -1

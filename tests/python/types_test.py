@@ -81,7 +81,7 @@ def test_users_get_types(tmp_path):
     assert code == 0, text
 
 
-def test_users_are_told_their_mistakes(tmp_path):
+def test_mistakes_of_users_are_explained(tmp_path):
     program = tmp_path / "bad.py"
     program.write_text("from typing import Hashable\nimport lamella\n" + "\n".join(BAD) + "\n")
     code, text = mypy(tmp_path, str(program))

@@ -124,8 +124,8 @@ TEST(CoverageBand, HasMaterialAlongAnEdgeInEachRowThatItReaches) {
     constexpr std::uint32_t rows = 4;
     CoverageBand band(20, rows, 1);
     for (int round = 0; round < 2000; ++round) {
-        const PictureEdge edge({random.real(-5, 25), random.real(0, 14)},
-                               {random.real(-5, 25), random.real(0, 14)});
+        const ImageEdge edge({random.real(-5, 25), random.real(0, 14)},
+                             {random.real(-5, 25), random.real(0, 14)});
         band.begin_along(edge, top, top + rows, 1);
         for (std::uint32_t row = 0; row < rows; ++row) {
             // The edge in strips, each of which is as good as upright.

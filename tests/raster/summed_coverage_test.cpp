@@ -1,5 +1,5 @@
 #include "lamella/contour/measure.hpp"
-#include "lamella/raster/picture.hpp"
+#include "lamella/raster/image.hpp"
 
 #include "fixtures/layers.hpp"
 #include "fixtures/random.hpp"
@@ -56,7 +56,7 @@ Layer clean_layer(Random& random, double width, double height, bool stepped) {
 }
 
 struct Drawn {
-    GreyPicture picture;
+    GreyImage image;
     double covered = 0;
 };
 
@@ -92,7 +92,7 @@ void expect_right(std::span<const Layer> parts, const PixelGrid& grid, const std
             }
         }
         for (std::uint32_t c = 0; c < grid.width; ++c) {
-            ASSERT_NEAR(found.picture.row(r)[c], 255 * std::clamp(area[c], 0.0, 1.0), 0.5 + 1e-6)
+            ASSERT_NEAR(found.image.row(r)[c], 255 * std::clamp(area[c], 0.0, 1.0), 0.5 + 1e-6)
                 << what << ", column " << c << ", row " << r;
             covered += std::clamp(area[c], 0.0, 1.0);
         }
@@ -111,7 +111,7 @@ TEST(SummedCoverage, IsExactWhereNothingIsCoveredTwice) {
     }
 }
 
-TEST(SummedCoverage, IsExactWhicheverWayThePictureLies) {
+TEST(SummedCoverage, IsExactWhicheverWayTheImageLies) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         Random random(seed);
         const Layer layer = clean_layer(random, 10, 10, seed % 2 == 0);
@@ -185,11 +185,11 @@ TEST(SummedCoverage, CountsPlacesThatAreCoveredSeveralTimesUpToTheWholePixel) {
     const Layer layer = layer_of({body, body, rectangle(0.25, 0.5, 0.75, 1), rectangle(0.25, 0.5, 0.75, 1)});
     const Drawn found = drawn({&layer, 1}, {.width = 10, .height = 10});
     EXPECT_EQ(found.covered, 36 + 0.5);
-    EXPECT_EQ(found.picture.row(0)[0], 128);
-    EXPECT_EQ(std::count(found.picture.values.begin(), found.picture.values.end(), 255), 36);
+    EXPECT_EQ(found.image.row(0)[0], 128);
+    EXPECT_EQ(std::count(found.image.values.begin(), found.image.values.end(), 255), 36);
 }
 
-TEST(SummedCoverage, DrawsTheLargestPicture) {
+TEST(SummedCoverage, DrawsTheLargestImage) {
     const double side = most_pixels;
     const Layer layer = layer_of({{{0, 0}, {side, 0}, {side, side}}});
     const PixelGrid grid{.width = most_pixels, .height = most_pixels};

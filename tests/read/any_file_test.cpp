@@ -19,7 +19,7 @@
 namespace lamella::any_file_cases {
 namespace {
 
-using test::packed;
+using test::compressed;
 
 using namespace std::string_view_literals;
 
@@ -104,11 +104,11 @@ TEST(ReadAny, TakesMeshesOnlyWhereThereAreNoLayers) {
 }
 
 TEST(ReadAny, LooksIntoWhatIsPackedWithGzip) {
-    const std::string layers = packed(layers_as_text);
+    const std::string layers = compressed(layers_as_text);
     if (layers.empty())
         GTEST_SKIP() << "no gzip program";
     EXPECT_TRUE(std::holds_alternative<LayerFile>(read_text(layers)));
-    EXPECT_TRUE(std::holds_alternative<MeshFile>(read_text(packed(mesh_as_text))));
+    EXPECT_TRUE(std::holds_alternative<MeshFile>(read_text(compressed(mesh_as_text))));
     for (std::size_t length = 1; length < layers.size(); ++length)
         EXPECT_NE(refusal_of(std::string_view(layers).substr(0, length)), "") << length;
 }

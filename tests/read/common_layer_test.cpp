@@ -32,8 +32,8 @@ void expect_error(const std::string& bytes, const std::string& part) {
     EXPECT_NE(error_of(bytes).find(part), std::string::npos) << error_of(bytes);
 }
 
-std::string ascii(const std::string& geometry, const std::string& head = "$$UNITS/0.01\n$$VERSION/200\n") {
-    return "$$HEADERSTART\n$$ASCII\n" + head + "$$HEADEREND\n$$GEOMETRYSTART\n" + geometry +
+std::string ascii(const std::string& geometry, const std::string& header = "$$UNITS/0.01\n$$VERSION/200\n") {
+    return "$$HEADERSTART\n$$ASCII\n" + header + "$$HEADEREND\n$$GEOMETRYSTART\n" + geometry +
            "$$GEOMETRYEND\n";
 }
 
@@ -54,8 +54,8 @@ std::string u16(T... values) {
     return (bits(static_cast<std::uint16_t>(values)) + ...);
 }
 
-std::string binary(const std::string& geometry, const std::string& head = "$$UNITS/0.01\n") {
-    return "$$HEADERSTART\n$$BINARY\n" + head + "$$HEADEREND" + geometry;
+std::string binary(const std::string& geometry, const std::string& header = "$$UNITS/0.01\n") {
+    return "$$HEADERSTART\n$$BINARY\n" + header + "$$HEADEREND" + geometry;
 }
 
 std::string long_square(float to) {
@@ -80,7 +80,7 @@ void expect_ring(const LayerFile& file, double area) {
 
 } // namespace
 
-TEST(ReadCommonLayer, AsciiTellsHeightsAndContours) {
+TEST(ReadCommonLayer, AsciiReportsHeightsAndContours) {
     const LayerFile file = read(ascii(ring));
     expect_ring(file, 96);
     EXPECT_EQ(file.format, "cli-ascii");
@@ -191,7 +191,7 @@ TEST(ReadCommonLayer, OpenContoursThatEndWhereTheyBeganAreClosed) {
     EXPECT_TRUE(file.warnings[0].starts_with("1 open contour ends where it began")) << file.warnings[0];
 }
 
-TEST(ReadCommonLayer, ABoxOfTheFirstAndTheLastPlaneTellsNoBottom) {
+TEST(ReadCommonLayer, ABoxOfTheFirstAndTheLastPlaneReportsNoBottom) {
     const std::string layers =
         "$$LAYER/10\n" + ring.substr(ring.find("$$POLY")) + "$$LAYER/20\n" + ring.substr(ring.find("$$POLY"));
     for (const std::string box : {"0,0,0.1,10,10,0.2", "0,0,0.10000001,10,10,0.2"}) {
@@ -327,7 +327,7 @@ TEST(ReadCommonLayer, WithoutABoxHeightsAreBottomsWhereTheFirstIsZeroOnly) {
     EXPECT_TRUE(file.warnings.empty());
 }
 
-TEST(ReadCommonLayer, TheLayerThatTellsTheBottomHasNoPoints) {
+TEST(ReadCommonLayer, TheLayerThatReportsTheBottomHasNoPoints) {
     const std::string triangle = "$$POLYLINE/1,1,4,0,0,10,0,10,10,0,0\n";
     const std::string layers = "$$LAYER/50\n" + triangle + "$$LAYER/100\n" + triangle;
     for (const std::string nothing : {"", "$$HATCHES/1,0\n", "$$POLYLINE/1,1,0\n"}) {
@@ -381,7 +381,7 @@ TEST(ReadCommonLayer, HatchesAreKept) {
     EXPECT_EQ(bytes.parts.front().layers.front().hatches.size(), 4U);
 }
 
-TEST(ReadCommonLayer, PartsAreToldByTheirNumbers) {
+TEST(ReadCommonLayer, PartsAreReportedByTheirNumbers) {
     const std::string triangle = ",1,4,0,0,10,0,10,10,0,0\n";
     const LayerFile file =
         read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/7" + triangle + "$$POLYLINE/3" + triangle +
@@ -424,14 +424,14 @@ TEST(ReadCommonLayer, ShortHeightsAreSignedWhereTheBoxReachesBelowZero) {
 }
 
 TEST(ReadCommonLayer, AlignedGeometryStartsOnAWordAndPadsShortNumbers) {
-    std::string head = "$$HEADERSTART\n$$BINARY\n$$UNITS/0.01\n$$ALIGN\n";
-    while ((head.size() + 12) % 4 != 0)
-        head += ' ';
-    head += "$$HEADEREND";
-    while (head.size() % 4 != 0)
-        head += '\n';
+    std::string header = "$$HEADERSTART\n$$BINARY\n$$UNITS/0.01\n$$ALIGN\n";
+    while ((header.size() + 12) % 4 != 0)
+        header += ' ';
+    header += "$$HEADEREND";
+    while (header.size() % 4 != 0)
+        header += '\n';
     const std::string square = u16(0, 0, 1000, 0, 1000, 1000, 0, 1000, 0, 0);
-    expect_ring(read(head + u16(128, 0, 0, 0, 128, 0, 50, 0, 129, 0, 1, 0, 1, 0, 5, 0) + square), 100);
+    expect_ring(read(header + u16(128, 0, 0, 0, 128, 0, 50, 0, 129, 0, 1, 0, 1, 0, 5, 0) + square), 100);
 }
 
 TEST(ReadCommonLayer, ALineEndBehindTheHeaderOrPaddingAtTheEndDoesNoHarm) {

@@ -15,7 +15,7 @@
 namespace lamella::test {
 
 /// Returns the content compressed as a gzip file; "" if the program is missing.
-inline std::string packed(std::string_view content) {
+inline std::string compressed(std::string_view content) {
     const TemporaryFolder folder;
     const std::string path = folder.file("content");
     std::ofstream(path, std::ios::binary) << content;

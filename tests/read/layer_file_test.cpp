@@ -14,13 +14,13 @@
 namespace lamella {
 namespace {
 
-using test::packed;
+using test::compressed;
 
 const std::string square =
     "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$VERSION/200\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/0\n$$LAYER/1\n"
     "$$POLYLINE/1,1,5,0,0,2,0,2,2,0,2,0,0\n$$GEOMETRYEND\n";
 
-LayerFile read_packed(const std::string& content, std::uint64_t max_memory = 0) {
+LayerFile read_compressed(const std::string& content, std::uint64_t max_memory = 0) {
     return read_layers(std::as_bytes(std::span(content)), "layers.cli.gz", {.max_memory = max_memory});
 }
 
@@ -65,10 +65,10 @@ TEST(LayerFile, WhosePartsTheCallerMadeUnequalIsNotMerged) {
 }
 
 TEST(LayerFile, MayBePackedWithGzip) {
-    const std::string content = packed(square);
+    const std::string content = compressed(square);
     if (content.empty())
         GTEST_SKIP() << "no gzip program";
-    const LayerFile file = read_packed(content);
+    const LayerFile file = read_compressed(content);
     EXPECT_EQ(file.format, "cli-ascii");
     ASSERT_EQ(file.parts.size(), 1U);
     ASSERT_EQ(file.parts.front().layers.size(), 1U);
@@ -76,19 +76,19 @@ TEST(LayerFile, MayBePackedWithGzip) {
 }
 
 TEST(LayerFile, WhatIsUnpackedCountsForTheLimit) {
-    const std::string content = packed(square + std::string(1 << 20, '\n'));
+    const std::string content = compressed(square + std::string(1 << 20, '\n'));
     if (content.empty())
         GTEST_SKIP() << "no gzip program";
-    EXPECT_EQ(read_packed(content, 2U << 20).parts.size(), 1U);
-    test::error_of(ErrorKind::limit, [&] { static_cast<void>(read_packed(content, 1U << 19)); });
+    EXPECT_EQ(read_compressed(content, 2U << 20).parts.size(), 1U);
+    test::error_of(ErrorKind::limit, [&] { static_cast<void>(read_compressed(content, 1U << 19)); });
 }
 
 TEST(LayerFile, PackedWithGzipAndCutOffIsAnError) {
-    const std::string content = packed(square);
+    const std::string content = compressed(square);
     if (content.empty())
         GTEST_SKIP() << "no gzip program";
     for (std::size_t length = 4; length < content.size(); ++length)
-        EXPECT_THROW(static_cast<void>(read_packed(content.substr(0, length))), Error) << length;
+        EXPECT_THROW(static_cast<void>(read_compressed(content.substr(0, length))), Error) << length;
 }
 
 } // namespace

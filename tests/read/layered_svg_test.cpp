@@ -94,7 +94,7 @@ TEST(ReadLayeredSvg, GroupsOfOneHeightAreOneLayer) {
     EXPECT_EQ(groups(" slic3r:slice-z=\"0.9\"").parts.at(0).layers.size(), 3U); // another cut
 }
 
-TEST(ReadLayeredSvg, OutlinesOutsideOfLayersAreToldOf) {
+TEST(ReadLayeredSvg, OutlinesOutsideOfLayersAreReportedOf) {
     const std::string layer = "<g slic3r:z=\"1\">" + square + "</g>";
     for (const std::string& lost :
          std::vector<std::string>{square, "<g id=\"layer7\">" + square + "</g>", "<g>" + layer + "</g>",
@@ -119,7 +119,7 @@ TEST(ReadLayeredSvg, AnAttributeThatIsNoNumberToItsEndIsRefused) {
     EXPECT_TRUE(read(sized).warnings.empty());
 }
 
-TEST(ReadLayeredSvg, NoSlabIsUpsideDown) {
+TEST(ReadLayeredSvg, NoRangeIsUpsideDown) {
     const LayerFile file = read(svg("<g slic3r:z=\"-1\">" + square + "</g>"));
     EXPECT_EQ(file.parts.at(0).layers.at(0).bottom, file.parts.at(0).layers.at(0).top);
     expect_error(svg("<g slic3r:z=\"1\" slic3r:layer-height=\"-0.5\"/>"), "must not be below 0");
@@ -159,7 +159,7 @@ TEST(ReadLayeredSvg, PolylinesAndPathsThatStayOpenAreChains) {
     }
 }
 
-TEST(ReadLayeredSvg, TransformsAreNotFollowedButToldOf) {
+TEST(ReadLayeredSvg, TransformsAreNotFollowedButReported) {
     const std::string plain = svg("<g slic3r:z=\"0.5\"><g>" + square + "</g></g>");
     EXPECT_TRUE(read(plain).warnings.empty());
     for (const std::string tag : {"<svg ", "<g slic3r:z=\"0.5\"", "<g>", "<polygon "}) {

@@ -26,7 +26,7 @@ std::string layer(const std::string& part, const std::string& z = "1") {
     return "{\"index\": 5, \"z\": " + z + ", \"bottom\": 0, \"top\": 2, \"parts\": [" + part + "]}";
 }
 
-TEST(ReadLayersJson, TellsAllThatALayerHas) {
+TEST(ReadLayersJson, ReportsAllThatALayerHas) {
     const LayerFile found = read(file(layer(R"({"rings": [[0, 0, 1e1, 0, 0, 10]], "chains": [[1, 1, 2, 2]],
                                                "hatches": [0, 1, 2, 3]})")));
     EXPECT_EQ(found.parts.front().label, "\xc3\xa4\xf0\x9f\x98\x80\\x0a");

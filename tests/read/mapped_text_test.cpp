@@ -100,16 +100,16 @@ TEST(MappedText, PlyIsLetGoOf) {
     const auto read = [](const ByteSource& source) {
         return read_ply(source, {}, {});
     };
-    const std::string head = fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\n"
-                                         "property float y\nproperty float z\nelement face {}\n"
-                                         "property list uchar int vertex_indices\nend_header\n",
-                                         rows, rows - 2);
+    const std::string header = fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\n"
+                                           "property float y\nproperty float z\nelement face {}\n"
+                                           "property list uchar int vertex_indices\nend_header\n",
+                                           rows, rows - 2);
     const std::string body = vertices("") + faces("3", 0);
-    expect_released(head + body, read);
+    expect_released(header + body, read);
     // All words in a line, which are read by themselves.
     std::string words = body;
     std::replace(words.begin(), words.end(), '\n', ' ');
-    expect_released(head + words, read);
+    expect_released(header + words, read);
 }
 
 TEST(MappedText, OffIsLetGoOf) {

@@ -41,7 +41,7 @@ TEST(MeshFile, IsReadByItsContentWhateverItsName) {
     }
 }
 
-TEST(MeshFile, IsReadByItsNameWhereTheContentDoesNotTell) {
+TEST(MeshFile, IsReadByItsNameWhereTheContentDoesNotReport) {
     EXPECT_EQ(read(off.substr(4), "part.off").format, "off");
     EXPECT_EQ(read(off.substr(4), "PART.OFF").format, "off");
     EXPECT_EQ(read("s off\nxyz\n" + obj, "part.Obj").format, "obj");
@@ -76,12 +76,12 @@ TEST(MeshFile, RefusesSliceFilesByWhatTheyHold) {
     }
     EXPECT_EQ(error_of(zip_test::zip_bytes({{.name = "points.npy", .content = "x"}}), "part.npz"),
               "part.npz: is a slice file (NumPy arrays): " + already);
-    for (const std::string picture : {"00000.png", "part/LAYER.PNG"})
+    for (const std::string image : {"00000.png", "part/LAYER.PNG"})
         EXPECT_EQ(
             error_of(zip_test::zip_bytes(
-                         {{.name = "config.ini", .content = "x"}, {.name = picture, .content = "x"}}),
+                         {{.name = "config.ini", .content = "x"}, {.name = image, .content = "x"}}),
                      "job.sl1"),
-            "job.sl1: holds pictures of layers, as for a resin printer: it is sliced already, and neither a "
+            "job.sl1: holds images of layers, as for a resin printer: it is sliced already, and neither a "
             "mesh nor contours can be read from it");
 }
 
@@ -201,10 +201,10 @@ TEST(MeshFile, MayBePackedWithGzip) {
         if (std::system(fmt::format("gzip -k '{}'", path).c_str()) != 0)
             GTEST_SKIP() << "no gzip program";
         const MeshFile plain = read_mesh(path);
-        const MeshFile packed = read_mesh(path + ".gz");
-        EXPECT_EQ(packed.format, plain.format);
-        EXPECT_EQ(packed.stored_triangles, 1U);
-        EXPECT_EQ(volume(packed.mesh()), volume(plain.mesh()));
+        const MeshFile compressed = read_mesh(path + ".gz");
+        EXPECT_EQ(compressed.format, plain.format);
+        EXPECT_EQ(compressed.stored_triangles, 1U);
+        EXPECT_EQ(volume(compressed.mesh()), volume(plain.mesh()));
         test::error_of(ErrorKind::limit, [&] { (void)read_mesh(path + ".gz", {.max_memory = 20}); });
     }
 }

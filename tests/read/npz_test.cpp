@@ -22,10 +22,10 @@ struct NumpyArray {
 
 std::string npy(const NumpyArray& array) {
     using namespace std::string_literals;
-    std::string head =
+    std::string header =
         fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", array.type, array.shape);
-    head.resize(117, ' ');
-    return "\x93NUMPY\1\0v\0"s + head + '\n' + array.bytes;
+    header.resize(117, ' ');
+    return "\x93NUMPY\1\0v\0"s + header + '\n' + array.bytes;
 }
 
 std::string numbers(const std::vector<std::uint64_t>& values) {

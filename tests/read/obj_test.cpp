@@ -72,7 +72,7 @@ TEST(Obj, LeavesOutVerticesThatNoFaceUses) {
                 corners, {{0, 1, 2}});
 }
 
-TEST(Obj, TellsTheNameOfTheFirstObject) {
+TEST(Obj, ReportsTheNameOfTheFirstObject) {
     EXPECT_EQ(read("o  a long name \no other\n" + triangle, name).name, "a long name");
 }
 
@@ -171,7 +171,7 @@ TEST(Obj, IsTheSameForAnyThreads) {
 }
 
 TEST(Obj, CountsBackAcrossPieces) {
-    // Pieces of a megabyte, all but the first one without a vertex.
+    // Chunks of a megabyte, all but the first one without a vertex.
     std::string text = "v 0 0 0\nv 1 0 0\nv 0 1.5 -0.2\n";
     constexpr std::size_t faces = 300'000;
     for (std::size_t i = 0; i < faces; ++i)

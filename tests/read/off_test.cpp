@@ -16,14 +16,14 @@ TEST(Off, ReadsVerticesAndFaces) {
     EXPECT_EQ(read("OFF\n3 1 0\n" + rows, "part.stl").format, "off");
 }
 
-TEST(Off, TakesTheHeadInAnyLayout) {
-    for (const std::string head :
+TEST(Off, TakesTheHeaderInAnyLayout) {
+    for (const std::string header :
          {"OFF 3 1 0\n", "OFF # a comment\n# another\n3 1\n", "3 1 0\n", "\r\nOFF\r\n3\r\n1 0\r\n",
           "\xEF\xBB\xBFOFF\n3 1 3 # edges\n", "COFF\n3 1 0\n", "nOFF\n3\n3 1 0\n",
           // Counts that follow the word without a blank, as in ModelNet40; counts on lines of their own.
           "OFF3 1 0\n", "COFF3 1 0 # edges\n", "OFF3\n1 0\n", "OFF# a comment\n3 1 0# edges\n",
           "nOFF3\n3 1 0\n", "# first\n\nOFF3 1\n", "OFF\n3\n1\n0\n", "OFF\n3 1\n# edges\n0\n"})
-        expect_mesh(head + rows, name, corners, {{0, 1, 2}});
+        expect_mesh(header + rows, name, corners, {{0, 1, 2}});
 }
 
 TEST(Off, SkipsColoursNormalsAndComments) {

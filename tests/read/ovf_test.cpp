@@ -35,10 +35,10 @@ std::string plane_named(std::size_t times) {
     const std::size_t plane = file.size();
     file.append(8, '\0');
     const std::size_t shell = file.size();
-    ProtobufMessage head;
-    head.real(ovf::work_plane::z, 1);
-    head.text(99, std::string(100, 'x'));
-    file += head.delimited();
+    ProtobufMessage header;
+    header.real(ovf::work_plane::z, 1);
+    header.text(99, std::string(100, 'x'));
+    file += header.delimited();
     put_position(file, plane, file.size());
     ProtobufMessage of_plane;
     of_plane.integer(ovf::table::shell, static_cast<std::int64_t>(shell));
@@ -53,8 +53,7 @@ std::string plane_named(std::size_t times) {
 TEST(ReadOvf, ReadsNoMoreThanTheFileHolds) {
     const std::string once = plane_named(1);
     EXPECT_EQ(read_layers(std::as_bytes(std::span(once)), "test.ovf").parts.at(0).layers.size(), 1U);
-    EXPECT_NE(error_of(plane_named(1000)).find("found a table, a head or a block once more"),
-              std::string::npos);
+    EXPECT_NE(error_of(plane_named(1000)).find("found a second table, header or block"), std::string::npos);
 }
 
 TEST(ReadOvf, ABrokenListOfPositionsHasItsPlace) {
@@ -84,9 +83,9 @@ std::string job_of(const std::vector<Plane>& planes, const std::vector<std::stri
                    std::int64_t announced = 0, double speed = 800) {
     std::string file(ovf::magic);
     file.append(8, '\0');
-    std::vector<std::uint64_t> places;
+    std::vector<std::uint64_t> locations;
     for (const Plane& plane : planes) {
-        places.push_back(file.size());
+        locations.push_back(file.size());
         file.append(8, '\0');
         std::vector<std::uint64_t> blocks(plane.blocks.size());
         for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -96,16 +95,16 @@ std::string job_of(const std::vector<Plane>& planes, const std::vector<std::stri
         }
         if (!blocks.empty())
             blocks.insert(blocks.begin(), plane.named - 1, blocks.front());
-        ProtobufMessage head;
-        head.real(ovf::work_plane::z, plane.z);
-        head.integer(ovf::work_plane::block_count, plane.announced);
-        head.integer(ovf::work_plane::repeats, plane.repeats);
-        head.integer(ovf::work_plane::number, plane.number);
+        ProtobufMessage header;
+        header.real(ovf::work_plane::z, plane.z);
+        header.integer(ovf::work_plane::block_count, plane.announced);
+        header.integer(ovf::work_plane::repeats, plane.repeats);
+        header.integer(ovf::work_plane::number, plane.number);
         ProtobufMessage table;
         table.integer(ovf::table::shell, static_cast<std::int64_t>(file.size()));
         table.integers(ovf::table::positions, blocks);
-        file += head.delimited();
-        put_position(file, places.back(), file.size());
+        file += header.delimited();
+        put_position(file, locations.back(), file.size());
         file += table.delimited();
     }
     ProtobufMessage job;
@@ -122,7 +121,7 @@ std::string job_of(const std::vector<Plane>& planes, const std::vector<std::stri
     }
     ProtobufMessage table;
     table.integer(ovf::table::shell, static_cast<std::int64_t>(file.size()));
-    table.integers(ovf::table::positions, places);
+    table.integers(ovf::table::positions, locations);
     file += job.delimited();
     put_position(file, ovf::magic.size(), file.size());
     return file + table.delimited();
@@ -171,7 +170,7 @@ TEST(ReadOvf, ABlockIsExecutedOnce) {
     Plane plane{1, {block(ovf::block::hatches, 1)}};
     EXPECT_EQ(read(job_of({plane}, parts)).parts.size(), 1U);
     plane.named = 2;
-    EXPECT_NE(error_of(job_of({plane}, parts)).find("found a table, a head or a block once more"),
+    EXPECT_NE(error_of(job_of({plane}, parts)).find("found a second table, header or block"),
               std::string::npos);
 }
 

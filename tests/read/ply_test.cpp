@@ -15,7 +15,7 @@ namespace {
 const std::string name = "part.ply";
 const std::vector<Point3> corners{{0, 0, 0}, {1, 0, 0}, {0, 1.5, -0.25}};
 
-std::string head(const std::string& form, std::uint64_t vertices = 3, std::uint64_t faces = 1) {
+std::string header(const std::string& form, std::uint64_t vertices = 3, std::uint64_t faces = 1) {
     return fmt::format("ply\nformat {} 1.0\ncomment made by a test\nelement vertex {}\nproperty float x\n"
                        "property float y\nproperty float z\nelement face {}\n"
                        "property list uchar int vertex_indices\nend_header\n",
@@ -60,11 +60,11 @@ const std::string little = "binary_little_endian";
 const std::string big = "binary_big_endian";
 
 TEST(Ply, ReadsAllThreeForms) {
-    expect_mesh(head("ascii") + rows, name, corners, {{0, 1, 2}});
-    expect_mesh(head(little) + binary_rows(false), name, corners, {{0, 1, 2}});
-    expect_mesh(head(big) + binary_rows(true), name, corners, {{0, 1, 2}});
+    expect_mesh(header("ascii") + rows, name, corners, {{0, 1, 2}});
+    expect_mesh(header(little) + binary_rows(false), name, corners, {{0, 1, 2}});
+    expect_mesh(header(big) + binary_rows(true), name, corners, {{0, 1, 2}});
     // By its first line, whatever the name.
-    EXPECT_EQ(read(head(little) + binary_rows(false), "part.stl").format, "ply");
+    EXPECT_EQ(read(header(little) + binary_rows(false), "part.stl").format, "ply");
 }
 
 std::string strips_head(const std::string& form, const std::string& index_type,
@@ -116,27 +116,27 @@ TEST(Ply, SaysWhichStripNamesAVertexThatIsNotThere) {
     for (int i = 0; i < 5; ++i)
         bytes.all<float>(i, i * i, 0);
     bytes.all<std::int32_t>(3, 0, 1, 2).all<std::int32_t>(4, 0, 1, 2, 5);
-    const std::string head = strips_head(little, "int", 2);
-    const std::string error = error_of(head + bytes.text, name);
-    EXPECT_NE(error.find(fmt::format("byte {}", head.size() + 60 + 16)), std::string::npos) << error;
+    const std::string header = strips_head(little, "int", 2);
+    const std::string error = error_of(header + bytes.text, name);
+    EXPECT_NE(error.find(fmt::format("byte {}", header.size() + 60 + 16)), std::string::npos) << error;
 }
 
 TEST(Ply, FindsTheRowsBehindAnyLineEnds) {
     for (const std::string end : {"\r\n", "\r", "\n"}) {
-        std::string text = head(little);
+        std::string text = header(little);
         for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += end.size())
             text.replace(at, 1, end);
         expect_mesh(text + binary_rows(false), name, corners, {{0, 1, 2}});
     }
     // Only the last line ends with both.
-    std::string text = head(little);
+    std::string text = header(little);
     text.insert(text.size() - 1, "\r");
     expect_mesh(text + binary_rows(false), name, corners, {{0, 1, 2}});
     // The first byte of the rows looks like the end of a line.
     Bytes odd(false);
     odd.add(std::uint32_t{0x3f80000a}).all<float>(0, 0, 1, 0, 0, 0, 1, 0).add(std::uint8_t{3});
     odd.all<std::int32_t>(0, 1, 2);
-    EXPECT_EQ(mesh_of(read(head(little) + odd.text, name)).vertices[0].x,
+    EXPECT_EQ(mesh_of(read(header(little) + odd.text, name)).vertices[0].x,
               double{std::bit_cast<float>(0x3f80000aU)});
 }
 
@@ -200,8 +200,8 @@ std::string strip(int faces, bool even, bool swapped) {
         if (quad)
             bytes.add(std::int32_t{0});
     }
-    return head(swapped ? big : little, static_cast<std::uint64_t>(faces) + 2,
-                static_cast<std::uint64_t>(faces)) +
+    return header(swapped ? big : little, static_cast<std::uint64_t>(faces) + 2,
+                  static_cast<std::uint64_t>(faces)) +
            bytes.text;
 }
 
@@ -256,7 +256,7 @@ TEST(Ply, TakesTheWordsOfTextInAnyLayout) {
 
 TEST(Ply, NamesPlacesInTextOfAnyLayout) {
     const auto expect = [](const std::string& rows_of_text, const std::string& error) {
-        EXPECT_EQ(error_of(head("ascii") + rows_of_text, name), name + ": " + error);
+        EXPECT_EQ(error_of(header("ascii") + rows_of_text, name), name + ": " + error);
     };
     expect("0 0\n0 1\n0 0 0\n1 1,5 3 0\n1 2\n",
            "line 14: found '1,5', expected a number with a decimal point and no comma");
@@ -273,12 +273,12 @@ TEST(Ply, NamesPlacesInTextOfAnyLayout) {
     // There are as many lines as rows, so that a row is a line.
     expect("0 0\n0 1 0\n0 0 1\n3 0 1 2\n", "line 11: found the end of the line, expected a number");
     expect("0 0 0\n0 1 0\n0 0 1\n3 0 1\n", "line 14: found the end of the line, expected a whole number");
-    expect_warning(head("ascii", 3, 2) + "0 0 0 1 0 0 0 1\n1 2\n0 1 3 0\n1 2\n", name, 1,
+    expect_warning(header("ascii", 3, 2) + "0 0 0 1 0 0 0 1\n1 2\n0 1 3 0\n1 2\n", name, 1,
                    "line 12: left out 1 face of fewer than three corners (this is the first)");
 }
 
 TEST(Ply, LeavesOutWhatLinesHaveBeyondTheirRows) {
-    const std::string text = head("ascii") + "0 0 0\n1 0 0 255 9\n0 1 0 255\n3 0 1 2\n";
+    const std::string text = header("ascii") + "0 0 0\n1 0 0 255 9\n0 1 0 255\n3 0 1 2\n";
     expect_warning(text, name, 1,
                    "line 12: left out what the line has beyond the values of its row (this is the first)");
     EXPECT_EQ(mesh_of(read(text, name)).vertices, (std::vector<Point3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
@@ -287,34 +287,34 @@ TEST(Ply, LeavesOutWhatLinesHaveBeyondTheirRows) {
 TEST(Ply, WarnsOfWhatFollowsAllRows) {
     for (const std::string white : {"\n", "\r\n \n", " "})
         for (const std::string& whole :
-             {head("ascii") + rows, head(little) + binary_rows(false), head(big) + binary_rows(true)})
+             {header("ascii") + rows, header(little) + binary_rows(false), header(big) + binary_rows(true)})
             expect_mesh(whole + white, name, corners, {{0, 1, 2}});
-    expect_warning(head("ascii") + rows + "3 2 1 0\n\n3 1 2 0\n", name, 1,
+    expect_warning(header("ascii") + rows + "3 2 1 0\n\n3 1 2 0\n", name, 1,
                    "line 15: left out 2 lines from here on, beyond the 4 rows of the head");
-    const std::string binary = head(little) + binary_rows(false);
+    const std::string binary = header(little) + binary_rows(false);
     expect_warning(
         binary + binary_rows(false).substr(36), name, 1,
-        fmt::format("byte {}: left out 13 bytes from here on, beyond the rows of the head", binary.size()));
+        fmt::format("byte {}: left out 13 bytes from here on, beyond the rows of the header", binary.size()));
     // Elements that nobody needs belong to the file, and may be cut off.
-    std::string more = head("ascii");
+    std::string more = header("ascii");
     more.insert(more.find("end_header"), "element edge 2\nproperty int a\n");
     expect_mesh(more + rows + "0\n1\n", name, corners, {{0, 1, 2}});
     expect_mesh(more + rows + "0\n", name, corners, {{0, 1, 2}});
     expect_warning(more + rows + "0\n1\n2\n", name, 1,
                    "line 19: left out 1 line from here on, beyond the 6 rows of the head");
-    more = head(little);
+    more = header(little);
     more.insert(more.find("end_header"), "element edge 2\nproperty list uchar uchar a\n");
     const std::string lists("\1\7\2\7\7", 5);
     for (std::size_t size = 0; size <= lists.size(); ++size)
         expect_mesh(more + binary_rows(false) + lists.substr(0, size), name, corners, {{0, 1, 2}});
     expect_warning(more + binary_rows(false) + lists + '\0', name, 1,
-                   fmt::format("byte {}: left out 1 bytes from here on, beyond the rows of the head",
+                   fmt::format("byte {}: left out 1 bytes from here on, beyond the rows of the header",
                                more.size() + binary_rows(false).size() + lists.size()));
 }
 
 TEST(Ply, MayBeginWithAByteOrderMark) {
-    expect_mesh("\xEF\xBB\xBF" + head("ascii") + rows, name, corners, {{0, 1, 2}});
-    expect_mesh("\xEF\xBB\xBF" + head("ascii") + rows, "part.stl", corners, {{0, 1, 2}});
+    expect_mesh("\xEF\xBB\xBF" + header("ascii") + rows, name, corners, {{0, 1, 2}});
+    expect_mesh("\xEF\xBB\xBF" + header("ascii") + rows, "part.stl", corners, {{0, 1, 2}});
 }
 
 TEST(Ply, CountsTextOfAnyLayoutOnceOnly) {
@@ -343,63 +343,66 @@ TEST(Ply, IsTheSameForAnyThreads) {
                 mesh_of(read(strip(50'000, false, false), name)).triangles);
 }
 
-TEST(Ply, NamesPlaceOfAnErrorInTheHead) {
+TEST(Ply, NamesPlaceOfAnErrorInTheHeader) {
     const auto expect = [](std::string text, const std::string& from, const std::string& to,
                            const std::string& error) {
         text.replace(text.find(from), from.size(), to);
         EXPECT_EQ(error_of(text, name), name + ": " + error);
     };
-    const std::string whole = head("ascii") + rows;
+    const std::string whole = header("ascii") + rows;
     expect(whole, "format ascii 1.0", "format ascii 2.0",
-           "line 2: found 'format ascii 2.0' in the head of a PLY file, expected 'ascii', "
+           "line 2: found 'format ascii 2.0' in the header of a PLY file, expected 'ascii', "
            "'binary_little_endian' or "
            "'binary_big_endian', and version 1.0");
-    expect(whole, "element vertex 3", "element vertex -3",
-           "line 4: found 'element vertex -3' in the head of a PLY file, expected the name of an element and "
-           "how many "
-           "there are");
-    expect(whole, "property float x", "property half x",
-           "line 5: found 'property half x' in the head of a PLY file, expected a type such as float, uchar "
-           "or int32");
+    expect(
+        whole, "element vertex 3", "element vertex -3",
+        "line 4: found 'element vertex -3' in the header of a PLY file, expected the name of an element and "
+        "how many "
+        "there are");
+    expect(
+        whole, "property float x", "property half x",
+        "line 5: found 'property half x' in the header of a PLY file, expected a type such as float, uchar "
+        "or int32");
     expect(whole, "property float x", "property float u",
-           "the head has no 'property float x' of the element 'vertex'");
+           "the header has no 'property float x' of the element 'vertex'");
     expect(whole, "element vertex", "element point",
-           "the head has no 'element vertex', expected one with the properties x, y and z");
+           "the header has no 'element vertex', expected one with the properties x, y and z");
     expect(whole, "vertex_indices", "somewhat",
-           "the head has no 'property list uchar int vertex_indices' of the element 'face'");
+           "the header has no 'property list uchar int vertex_indices' of the element 'face'");
     expect(whole, "element face 1", "element face 0",
            "holds no triangle: 3 vertices without an element 'face' (a cloud of points has no surface to "
            "slice)");
     EXPECT_NE(error_of("ply\nformat ascii 1.0\nelement vertex 3\n", name).find("expected 'end_header'"),
               std::string::npos);
     EXPECT_EQ(error_of("plx\n", name),
-              name + ": line 1: found 'plx' in the head of a PLY file, expected the line 'ply'");
-    expect_warning("ply\nformat ascii 1.0\nmade by nobody\n" + head("ascii").substr(21) + rows, name, 1,
-                   "line 3: took 'made by nobody' in the head for a comment");
+              name + ": line 1: found 'plx' in the header of a PLY file, expected the line 'ply'");
+    expect_warning("ply\nformat ascii 1.0\nmade by nobody\n" + header("ascii").substr(21) + rows, name, 1,
+                   "line 3: took 'made by nobody' in the header for a comment");
 }
 
 TEST(Ply, NamesPlaceOfAnErrorInTheRows) {
     const auto expect = [](const std::string& text, const std::string& error) {
         EXPECT_EQ(error_of(text, name), name + ": " + error);
     };
-    expect(head("ascii") + "0 0\n", "line 12: the file ends after 0 rows, expected 4 by the head (it is cut "
-                                    "off, or the numbers there are wrong)");
-    expect(head("ascii") + "0 0 0\n1 0 0\n0 1 x\n3 0 1 2\n", "line 13: found 'x', expected a number");
-    expect(head("ascii") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+    expect(header("ascii") + "0 0\n",
+           "line 12: the file ends after 0 rows, expected 4 by the head (it is cut "
+           "off, or the numbers there are wrong)");
+    expect(header("ascii") + "0 0 0\n1 0 0\n0 1 x\n3 0 1 2\n", "line 13: found 'x', expected a number");
+    expect(header("ascii") + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
            "line 14: a face names a vertex that is not there; expected numbers from 0 to 2");
-    expect(head("ascii") + "0 0 0\n1 0 0\n", "line 13: the file ends after 2 rows, expected 4 by the head "
-                                             "(it is cut off, or the numbers there are wrong)");
-    const std::string binary = head(little) + binary_rows(false);
+    expect(header("ascii") + "0 0 0\n1 0 0\n", "line 13: the file ends after 2 rows, expected 4 by the head "
+                                               "(it is cut off, or the numbers there are wrong)");
+    const std::string binary = header(little) + binary_rows(false);
     expect(
         binary.substr(0, binary.size() - 1),
         fmt::format(
             "byte {}: the file ends within row 1 of 1 of the element 'face' (it is cut off, or damaged by a "
             "transfer in text mode, or its header is wrong)",
             binary.size() - 1));
-    expect(head(little, 4'000'000'000, 1) + binary_rows(false),
+    expect(header(little, 4'000'000'000, 1) + binary_rows(false),
            fmt::format("byte {}: the file ends within row 5 of 4000000000 of the element 'vertex' (it is cut "
                        "off, or damaged by a transfer in text mode, or its header is wrong)",
-                       head(little, 4'000'000'000, 1).size() + 49));
+                       header(little, 4'000'000'000, 1).size() + 49));
     for (const int corner : {3, -1}) {
         std::string broken = binary;
         std::memcpy(broken.data() + broken.size() - 4, &corner, 4);
@@ -410,23 +413,23 @@ TEST(Ply, NamesPlaceOfAnErrorInTheRows) {
 }
 
 TEST(Ply, LeavesOutWhatIsNoTriangle) {
-    expect_warning(head("ascii", 3, 2) + "0 0 0\n1 0 0\n0 1.5 -0.25\n2 0 1\n3 0 1 2\n", name, 1,
+    expect_warning(header("ascii", 3, 2) + "0 0 0\n1 0 0\n0 1.5 -0.25\n2 0 1\n3 0 1 2\n", name, 1,
                    "line 14: left out 1 face of fewer than three corners (this is the first)");
     Bytes bytes(false);
     bytes.all<float>(0, 0, 0, 1, 0, 0, 0, 1.5, -0.25).add(std::uint8_t{1}).all<std::int32_t>(0);
     bytes.add(std::uint8_t{3}).all<std::int32_t>(0, 1, 2);
-    expect_warning(head(little, 3, 2) + bytes.text, name, 1,
+    expect_warning(header(little, 3, 2) + bytes.text, name, 1,
                    fmt::format("byte {}: left out 1 face of fewer than three corners (this is the first)",
-                               head(little, 3, 2).size() + 36));
+                               header(little, 3, 2).size() + 36));
     Bytes odd(false);
     odd.all<float>(0, 0, 0, 1, 0, 0, 0, 1.5, -0.25, std::numeric_limits<float>::infinity(), 0, 0);
     odd.add(std::uint8_t{3}).all<std::int32_t>(0, 1, 2).add(std::uint8_t{3}).all<std::int32_t>(0, 3, 2);
     expect_warning(
-        head(little, 4, 2) + odd.text, name, 1,
+        header(little, 4, 2) + odd.text, name, 1,
         fmt::format(
             "byte {}: left out 1 of 2 triangles, which have a corner that is NaN or infinite (this is "
             "the first)",
-            head(little, 4, 2).size() + 48 + 13));
+            header(little, 4, 2).size() + 48 + 13));
 }
 
 TEST(Ply, StopsAtTheLimits) {
@@ -440,8 +443,8 @@ TEST(Ply, StopsAtTheLimits) {
 
 TEST(Ply, SurvivesHostility) {
     survive_hostility(
-        {head("ascii") + rows, head(little) + binary_rows(false), head(big) + binary_rows(true),
-         strip(7, false, false), ascii_with_all(5), head("ascii") + "0 0\n0 1 0 0 0\n1.5 -0.25 3 0\n1 2",
+        {header("ascii") + rows, header(little) + binary_rows(false), header(big) + binary_rows(true),
+         strip(7, false, false), ascii_with_all(5), header("ascii") + "0 0\n0 1 0 0 0\n1.5 -0.25 3 0\n1 2",
          strips_head("ascii", "int", 1) + "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 1\n6 0 1 2 -1 3 4\n",
          strips_head(little, "int", 1) + std::string(60, '\0') + std::string("\1\0\0\0\2\0\0\0", 8)},
         name,

@@ -104,11 +104,11 @@ class LimitsOfReading : public ::testing::Test {
     }
 
     /// With a limit, layers are refused at a place that begins so; without one, there is no room for them.
-    static void expect_refused(const std::string& path, const std::string& place) {
+    static void expect_refused(const std::string& path, const std::string& location) {
         EXPECT_EQ(layers_outcome(path, {}, 32 * megabyte), "memory ran out");
         const std::string text = layers_outcome(path, {.max_memory = 10 * megabyte}, 32 * megabyte);
         EXPECT_TRUE(text.starts_with(
-            path + ": takes more than the 10000000 bytes of `max_memory` (counted up to " + place))
+            path + ": takes more than the 10000000 bytes of `max_memory` (counted up to " + location))
             << text;
     }
 
@@ -216,15 +216,15 @@ std::string repeated(std::string_view text, int times) {
 
 TEST_F(LimitsOfReading, LayersOfTheCommonLayerInterfaceAreCountedBeforeTheyAreMade) {
     using namespace std::string_literals;
-    const std::string head = "$$HEADERSTART\n$$UNITS/1\n";
-    expect_refused(file("binary.cli", head + "$$BINARY\n$$HEADEREND" + repeated("\x80\0\1\0"s, 1'000'000)),
+    const std::string header = "$$HEADERSTART\n$$UNITS/1\n";
+    expect_refused(file("binary.cli", header + "$$BINARY\n$$HEADEREND" + repeated("\x80\0\1\0"s, 1'000'000)),
                    "byte ");
     expect_refused(
-        file("points.cli", head + "$$BINARY\n$$HEADEREND\x80\0\1\0\x81\0\1\0\1\0\xff\xff"s +
+        file("points.cli", header + "$$BINARY\n$$HEADEREND\x80\0\1\0\x81\0\1\0\1\0\xff\xff"s +
                                std::string(4 * 65535, '\1') +
                                repeated("\x81\0\1\0\1\0\4\0\0\0\0\0\1\0\0\0\1\0\1\0\0\0\0\0"s, 1'000'000)),
         "byte ");
-    const std::string text = head + "$$ASCII\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/1\n";
+    const std::string text = header + "$$ASCII\n$$HEADEREND\n$$GEOMETRYSTART\n$$LAYER/1\n";
     expect_refused(file("layers.cli", text + repeated("$$LAYER/1\n", 500'000) + "$$GEOMETRYEND"), "line ");
     expect_refused(
         file("rings.cli", text + repeated("$$POLYLINE/1,1,3,0,0,1,0,0,1\n", 1'000'000) + "$$GEOMETRYEND"),
@@ -240,11 +240,11 @@ TEST_F(LimitsOfReading, LayersOfTheCommonLayerInterfaceAreCountedBeforeTheyAreMa
 
 TEST_F(LimitsOfReading, LayersOfSlcAreCountedBeforeTheyAreMade) {
     using namespace std::string_literals;
-    const std::string head =
+    const std::string header =
         "-SLCVER 2.0 -UNIT MM -TYPE PART \r\n\x1a" + std::string(256, '\0') + '\1' + std::string(16, '\0');
-    expect_refused(file("layers.slc", head + std::string(8 * 1'000'000, '\0')), "byte ");
+    expect_refused(file("layers.slc", header + std::string(8 * 1'000'000, '\0')), "byte ");
     expect_refused(
-        file("points.slc", head + "\0\0\0\0\x40\x42\x0f\0"s +
+        file("points.slc", header + "\0\0\0\0\x40\x42\x0f\0"s +
                                repeated("\4\0\0\0\0\0\0\0"s + std::string(8, '\0') + "\0\0\x80\x3f\0\0\0\0"s +
                                             "\0\0\0\0\0\0\x80\x3f"s + std::string(8, '\0'),
                                         1'000'000)),
@@ -267,26 +267,27 @@ TEST_F(LimitsOfReading, LayersOfSvgAreCountedBeforeTheyAreMade) {
 }
 
 TEST_F(LimitsOfReading, LayersOfJsonAreCountedBeforeTheyAreMade) {
-    const std::string head = R"({"format": "lamella layers", "version": 1, "parts": [{"label": "a"})";
-    expect_refused(file("parts.json", head + repeated(",{}", 1'500'000) + "]}"), "byte ");
-    expect_refused(
-        file("points.json", head + R"(], "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[)" +
-                                repeated("1,2,2,1,", 3'000'000) + "0,0]]}]}]}"),
-        "byte ");
+    const std::string header = R"({"format": "lamella layers", "version": 1, "parts": [{"label": "a"})";
+    expect_refused(file("parts.json", header + repeated(",{}", 1'500'000) + "]}"), "byte ");
+    expect_refused(file("points.json",
+                        header + R"(], "layers": [{"z": 1, "bottom": 0, "top": 2, "parts": [{"rings": [[)" +
+                            repeated("1,2,2,1,", 3'000'000) + "0,0]]}]}]}"),
+                   "byte ");
     std::string layers;
     for (int i = 0; i < 250'000; ++i)
         layers += fmt::format("{}{{\"z\":{},\"bottom\":{},\"top\":{},\"parts\":[{{}}]}}", i == 0 ? "" : ",",
                               i, i, i);
-    expect_refused(file("layers.json", head + "], \"layers\": [" + layers + "]}"), "layer ");
+    expect_refused(file("layers.json", header + "], \"layers\": [" + layers + "]}"), "layer ");
 }
 
 /// An array of zeros.
 std::pair<std::string, std::string> zeros(const std::string& name, const std::string& type, std::size_t bytes,
                                           const std::string& shape) {
     using namespace std::string_literals;
-    std::string head = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
-    head.resize(117, ' ');
-    return {name + ".npy", "\x93NUMPY\1\0v\0"s + head + '\n' + std::string(bytes, '\0')};
+    std::string header =
+        fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
+    header.resize(117, ' ');
+    return {name + ".npy", "\x93NUMPY\1\0v\0"s + header + '\n' + std::string(bytes, '\0')};
 }
 
 TEST_F(LimitsOfReading, ArraysAreCountedBeforeThereAreLayers) {

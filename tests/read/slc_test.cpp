@@ -27,8 +27,8 @@ std::string error_of(const std::string& bytes) {
     return test::error_of(ErrorKind::input, [&] { static_cast<void>(read(bytes)); });
 }
 
-std::string head(const std::string& keywords = "-SLCVER 2.0 -UNIT MM -TYPE PART ",
-                 const std::string& end = "\r\n\x1a") {
+std::string header(const std::string& keywords = "-SLCVER 2.0 -UNIT MM -TYPE PART ",
+                   const std::string& end = "\r\n\x1a") {
     return keywords + end + std::string(256, ' ') + '\1' + bits(0.0F) + bits(0.5F) + bits(0.0F) + bits(0.0F);
 }
 
@@ -58,33 +58,33 @@ void expect_square(const LayerFile& file, double scale = 1) {
 }
 
 TEST(ReadSlc, HeightsAreBottomsAndTheEndIsTheTop) {
-    const LayerFile file = read(head() + two_layers());
+    const LayerFile file = read(header() + two_layers());
     expect_square(file);
     EXPECT_TRUE(file.warnings.empty());
 }
 
 TEST(ReadSlc, HeadersOfOthersAreUnderstood) {
-    expect_square(read(head("-slcver2.0-unitMM") + two_layers()));
-    expect_square(read(head("-SLCVER 2.0\r\n-UNITS INCH\r\n-PACKAGE A-B ", "\x1a") + two_layers()), 25.4);
-    EXPECT_EQ(read(head("-SLCVER 2.0 ") + two_layers()).warnings.size(), 1U);
+    expect_square(read(header("-slcver2.0-unitMM") + two_layers()));
+    expect_square(read(header("-SLCVER 2.0\r\n-UNITS INCH\r\n-PACKAGE A-B ", "\x1a") + two_layers()), 25.4);
+    EXPECT_EQ(read(header("-SLCVER 2.0 ") + two_layers()).warnings.size(), 1U);
 }
 
-TEST(ReadSlc, WhatIsOddIsTold) {
+TEST(ReadSlc, WhatIsOddIsReported) {
     const std::string layer = bits(0.0F) + bits(1U);
-    EXPECT_EQ(read(head() + layer + square).warnings.size(), 1U); // no end
-    EXPECT_EQ(read(head() + layer + square + bits(0.0F) + bits(0xFFFFFFFFU)).warnings.size(),
+    EXPECT_EQ(read(header() + layer + square).warnings.size(), 1U); // no end
+    EXPECT_EQ(read(header() + layer + square + bits(0.0F) + bits(0xFFFFFFFFU)).warnings.size(),
               1U); // end too low
-    const LayerFile open = read(head() + layer + contour({0, 0, 1, 0, 1, 1}) + end_at_one);
+    const LayerFile open = read(header() + layer + contour({0, 0, 1, 0, 1, 1}) + end_at_one);
     EXPECT_EQ(open.warnings.size(), 1U);
     EXPECT_EQ(open.parts.front().layers.front().rings, 1U);
     const LayerFile web =
-        read(head("-SLCVER 2.0 -UNIT MM -TYPE WEB ") + layer + contour({0, 0, 1, 0, 1, 1}) + end_at_one);
+        read(header("-SLCVER 2.0 -UNIT MM -TYPE WEB ") + layer + contour({0, 0, 1, 0, 1, 1}) + end_at_one);
     EXPECT_EQ(web.parts.front().layers.front().open_chains(), 1U);
     EXPECT_TRUE(web.warnings.empty());
 }
 
-TEST(ReadSlc, WhatFollowsTheEndIsTold) {
-    const std::string whole = head() + two_layers();
+TEST(ReadSlc, WhatFollowsTheEndIsReported) {
+    const std::string whole = header() + two_layers();
     const LayerFile file = read(whole + "more");
     expect_square(file);
     EXPECT_EQ(file.warnings,
@@ -93,8 +93,8 @@ TEST(ReadSlc, WhatFollowsTheEndIsTold) {
 }
 
 TEST(ReadSlc, SupportsAreMarked) {
-    EXPECT_FALSE(read(head() + two_layers()).parts.at(0).support);
-    EXPECT_TRUE(read(head("-SLCVER 2.0 -UNIT MM -TYPE SUPPORT ") + two_layers()).parts.at(0).support);
+    EXPECT_FALSE(read(header() + two_layers()).parts.at(0).support);
+    EXPECT_TRUE(read(header("-SLCVER 2.0 -UNIT MM -TYPE SUPPORT ") + two_layers()).parts.at(0).support);
 }
 
 TEST(ReadSlc, TheOthersOfThatNameAreNamed) {
@@ -103,17 +103,17 @@ TEST(ReadSlc, TheOthersOfThatNameAreNamed) {
 }
 
 TEST(ReadSlc, ClaimsAreChecked) {
-    EXPECT_NE(error_of(head() + bits(0.0F) + bits(7U)).find("7 contours"), std::string::npos);
-    EXPECT_NE(error_of(head() + bits(0.0F) + bits(1U) + bits(9U) + bits(0U)).find("9 points"),
+    EXPECT_NE(error_of(header() + bits(0.0F) + bits(7U)).find("7 contours"), std::string::npos);
+    EXPECT_NE(error_of(header() + bits(0.0F) + bits(1U) + bits(9U) + bits(0U)).find("9 points"),
               std::string::npos);
-    EXPECT_NE(error_of(head().substr(0, 100)).find("256"), std::string::npos);
-    std::string none = head();
+    EXPECT_NE(error_of(header().substr(0, 100)).find("256"), std::string::npos);
+    std::string none = header();
     none[none.size() - 17] = 0;
     EXPECT_NE(error_of(none).find("no entries"), std::string::npos);
-    EXPECT_NE(error_of(head() + end_at_one).find("no layer"), std::string::npos);
+    EXPECT_NE(error_of(header() + end_at_one).find("no layer"), std::string::npos);
     const float nan = std::nanf("");
-    EXPECT_NE(error_of(head() + bits(nan) + bits(0U)).find("not finite"), std::string::npos);
-    EXPECT_NE(error_of(head() + bits(0.0F) + bits(1U) + contour({nan, 0, 1, 0, 1, 1})).find("not finite"),
+    EXPECT_NE(error_of(header() + bits(nan) + bits(0U)).find("not finite"), std::string::npos);
+    EXPECT_NE(error_of(header() + bits(0.0F) + bits(1U) + contour({nan, 0, 1, 0, 1, 1})).find("not finite"),
               std::string::npos);
 }
 

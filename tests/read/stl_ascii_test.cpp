@@ -345,7 +345,7 @@ TEST(StlAscii, RefusesAFileWithoutATriangle) {
 }
 
 /// Files of several megabytes are parsed in pieces. Nothing of that may be seen.
-class StlAsciiInPieces : public testing::Test {
+class StlAsciiInChunks : public testing::Test {
   protected:
     static const Triangles& large() {
         static const Triangles triangles = some_triangles(20'000);
@@ -368,7 +368,7 @@ class StlAsciiInPieces : public testing::Test {
     }
 };
 
-TEST_F(StlAsciiInPieces, GivesTheSameWithAnyNumberOfThreads) {
+TEST_F(StlAsciiInChunks, GivesTheSameWithAnyNumberOfThreads) {
     ASSERT_GT(text().size(), 2U << 20);
     expect_clean(text(), large());
     expect_same_with_any_threads(text());
@@ -378,7 +378,7 @@ TEST_F(StlAsciiInPieces, GivesTheSameWithAnyNumberOfThreads) {
     expect_same_with_any_threads(text().substr(0, text().size() * 3 / 4));
 }
 
-TEST_F(StlAsciiInPieces, IsNotFooledByNamesThatLookLikeFacets) {
+TEST_F(StlAsciiInChunks, IsNotFooledByNamesThatLookLikeFacets) {
     // Everything in these names looks like a good place to begin a piece.
     std::string trap;
     while (trap.size() < 3'000'000)
@@ -391,7 +391,7 @@ TEST_F(StlAsciiInPieces, IsNotFooledByNamesThatLookLikeFacets) {
     }
 }
 
-TEST_F(StlAsciiInPieces, ReportsTheFirstOfManyFaultsWithItsLine) {
+TEST_F(StlAsciiInChunks, ReportsTheFirstOfManyFaultsWithItsLine) {
     std::mt19937 random(7);
     for (int round = 0; round < 5; ++round) {
         std::string broken = text();
@@ -410,7 +410,7 @@ TEST_F(StlAsciiInPieces, ReportsTheFirstOfManyFaultsWithItsLine) {
     }
 }
 
-TEST_F(StlAsciiInPieces, ReadsSolidsThatEndAnywhere) {
+TEST_F(StlAsciiInChunks, ReadsSolidsThatEndAnywhere) {
     // A new solid every few facets, so that pieces begin and end in and between solids.
     std::string file;
     Triangles expected;

@@ -373,7 +373,7 @@ TEST(ThreeMf, VolumesOfSlic3rMayStandInTheMesh) {
     EXPECT_TRUE(says(file.warnings.at(0), "1 modifier"));
 }
 
-TEST(ThreeMf, RolesThatCannotBeReadAreToldAndHostileOnesHarmNothing) {
+TEST(ThreeMf, RolesThatCannotBeReadAreReportedAndHostileOnesHarmNothing) {
     const std::string root = model(object(1, two_boxes()), one_item);
     const auto with = [&](std::string_view config) {
         return package(root, {{slic3r_part, std::string(config)}});
@@ -681,7 +681,7 @@ TEST(ThreeMf, NestingHasALimit) {
     EXPECT_TRUE(says(error_of(nested(5000)), "is nested deeper than 64"));
 }
 
-TEST(ThreeMf, StrictReadersAreToldWhatBreaksTheRules) {
+TEST(ThreeMf, StrictReadersGetWhatBreaksTheRules) {
     const std::string good = model(object(1, box_mesh()), one_item);
     const auto strict = [](const std::string& bytes) {
         EXPECT_EQ(error_of(bytes), "");

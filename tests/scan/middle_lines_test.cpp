@@ -182,7 +182,7 @@ TEST(MiddleLines, OfFinsOnABodyAreOfTheFinsAlone) {
                                       {6, 13},
                                       {6, 10},
                                       {0, 10}}});
-    const Layer fins = narrow_places(body, offset(body, -0.05), 0.05);
+    const Layer fins = narrow_points(body, offset(body, -0.05), 0.05);
     EXPECT_NEAR(measure(fins).area_mm2, 0.08 * 7, 1e-3);
     const Lines lines = lines_of(fins);
     ASSERT_EQ(lines.size(), 2U);
@@ -205,9 +205,9 @@ TEST(MiddleLines, AreTheSameWhateverElseThereIs) {
 
 TEST(NarrowPlaces, AreNoneWhereAllIsWide) {
     for (const Contour& ring : {rectangle(0, 0, 10, 10), regular_polygon(300, 5), regular_polygon(5, 2)})
-        EXPECT_EQ(narrow_places(normal_layer({ring}), offset(normal_layer({ring}), -0.05), 0.05).rings, 0U);
+        EXPECT_EQ(narrow_points(normal_layer({ring}), offset(normal_layer({ring}), -0.05), 0.05).rings, 0U);
     const Layer plate = normal_layer({rectangle(0, 0, 10, 10), reversed(regular_polygon(40, 1))});
-    EXPECT_EQ(narrow_places(plate, offset(plate, -0.05), 0.05).rings, 0U);
+    EXPECT_EQ(narrow_points(plate, offset(plate, -0.05), 0.05).rings, 0U);
 }
 
 TEST(UnreachedArea, IsExactWhereNothingAndWhereAllIsReached) {

@@ -121,7 +121,7 @@ TEST(Scan, MeasuresWhatNoVectorReaches) {
     const Layer layer = normal_layer({rectangle(0, 0, 10, 10), rectangle(12, 0, 12.09, 10)});
     ScanStrategy strategy; // the outermost contour is at 0.05
     strategy.contours.thin_walls = ThinWalls::leave_out;
-    ScanMemory memory;
+    InsetCache memory;
     std::vector<double> areas;
     static_cast<void>(scan(layer, {}, {}, strategy, nullptr, &areas));
     ASSERT_EQ(areas.size(), 2U);
@@ -242,7 +242,7 @@ TEST(Scan, GivesALineOnlyToWallsThatItsHatchLeavesBare) {
     EXPECT_LT(unreached(wall, strategy), 1e-3);
 }
 
-TEST(Scan, TellsApartOfWhichRegionItIsThatNothingReaches) {
+TEST(Scan, DistinguishesOfWhichRegionItIsThatNothingReaches) {
     ScanStrategy strategy;
     strategy.contours.thin_walls = ThinWalls::leave_out;
     strategy.hatch.angle_degrees = 45;
@@ -596,7 +596,7 @@ TEST(Scan, WithAMemoryIsTheSame) {
         layer.top = i + 1;
         layers.push_back(std::move(layer));
     }
-    ScanMemory memory;
+    InsetCache memory;
     for (std::size_t i = 1; i + 1 < layers.size(); ++i) {
         const std::vector<ScanLayer> below{layers[i - 1]};
         const std::vector<ScanLayer> above{layers[i + 1]};
@@ -619,9 +619,9 @@ TEST(Scan, RemembersLayersThatDifferByStraightPoints) {
     const auto wall = [](double t) {
         return layer_of({{{0, 0}, {10 * t, 0}, {10, 0}, {10, 10 * t}, {10, 10}, {0, 10}}});
     };
-    ScanMemory memory;
+    InsetCache memory;
     const std::vector<Layer> first = scan(wall(0.25), {}, {}, {}, &memory);
-    const std::shared_ptr<const ScanMemory::Insets> kept = memory.last();
+    const std::shared_ptr<const InsetCache::Insets> kept = memory.last();
     ASSERT_NE(kept, nullptr);
     const std::vector<Layer> second = scan(wall(0.75), {}, {}, {}, &memory);
     EXPECT_EQ(memory.last(), kept);

@@ -135,7 +135,7 @@ TEST(Strategy, OfPatternsWithoutCellsMayAskForLinesLongerThanThese) {
     }
 }
 
-TEST(Strategy, TellsWhatIsExposedInItsOrder) {
+TEST(Strategy, ReportsWhatIsExposedInItsOrder) {
     ScanStrategy strategy;
     const auto names = [&] {
         std::string all;

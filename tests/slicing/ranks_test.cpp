@@ -59,7 +59,7 @@ TEST(Ranks, OfNoPlanesAreZero) {
     expect_counts({});
 }
 
-TEST(Ranks, TellASinglePlaneFromItsNeighbours) {
+TEST(Ranks, DistinguishASinglePlaneFromItsNeighbours) {
     for (const double z : {0.0, -1.5, 1e300, 5e-324, -largest})
         expect_counts({z}, {z - 1, z + 1});
 }

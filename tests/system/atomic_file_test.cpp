@@ -199,9 +199,9 @@ TEST(AtomicFile, KeepsTheOrderOfPiecesOfAllSizes) {
     std::string expected;
     AtomicFile file(folder.file("a"));
     for (const std::size_t size : {1U, 262'143U, 1U, 0U, 262'144U, 7U, 262'145U, 1'000'000U, 3U}) {
-        const std::string piece(size, static_cast<char>('a' + expected.size() % 26));
-        expected += piece;
-        file.append(piece);
+        const std::string chunk(size, static_cast<char>('a' + expected.size() % 26));
+        expected += chunk;
+        file.append(chunk);
     }
     EXPECT_EQ(file.bytes(), expected.size());
     file.commit();

@@ -39,9 +39,9 @@ std::span<const std::byte> bytes(const std::string& text) {
     return std::as_bytes(std::span(text));
 }
 
-std::string read(const SpillFile& file, std::uint64_t place, std::size_t size) {
+std::string read(const SpillFile& file, std::uint64_t position, std::size_t size) {
     std::string text(size, '\0');
-    file.read(place, std::as_writable_bytes(std::span(text)));
+    file.read(position, std::as_writable_bytes(std::span(text)));
     return text;
 }
 
@@ -76,9 +76,9 @@ TEST(SpillFile, NamesAFolderThatIsNotThere) {
 TEST(SpillFile, SaysBeforeTheWorkThatThereIsNoRoom) {
     const TemporaryFolder folder;
     const SpillFolder spill(folder.path());
-    const std::string place = folder.path().string() + ": ";
+    const std::string position = folder.path().string() + ": ";
     // More than any disk has.
-    test::expect_error(ErrorKind::output, {place.c_str(), "36028797.0 GB", "TMPDIR"},
+    test::expect_error(ErrorKind::output, {position.c_str(), "36028797.0 GB", "TMPDIR"},
                        [] { const SpillFile file(std::uint64_t{1} << 55); });
 }
 

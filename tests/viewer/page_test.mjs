@@ -872,7 +872,7 @@ test('a picture that is drawn in slices is the same as one that is drawn at once
   const { page, complaints } = await open('coarse.html', { view: 'stack' });
   await page.waitForSelector('canvas[data-built]');
   await page.keyboard.press('Home');
-  const pictureOf = async (layer) => {
+  const imageOf = async (layer) => {
     await page.locator('#layer').fill(String(layer));
     await settled(page);
     return page.locator('canvas[data-built]').screenshot();
@@ -892,14 +892,14 @@ test('a picture that is drawn in slices is the same as one that is drawn at once
       };
     }, milliseconds);
   await drawIn(60); // more and more in a slice
-  for (const layer of [60, 70, 80, 90]) await pictureOf(layer);
-  const [few, many] = [await pictureOf(2), await pictureOf(80)];
+  for (const layer of [60, 70, 80, 90]) await imageOf(layer);
+  const [few, many] = [await imageOf(2), await imageOf(80)];
   assert.ok((await differentPixels(page, few, many)) > 5000);
   await drawIn(600); // as little as there can be in a slice
-  await pictureOf(40);
+  await imageOf(40);
   // The last digit of a colour may differ, and which of two walls is seen where they meet.
   for (const [layer, picture] of [[80, many], [2, few]]) {
-    const different = await differentPixels(page, await pictureOf(layer), picture);
+    const different = await differentPixels(page, await imageOf(layer), picture);
     assert.ok(different < 20, `layer ${layer}: ${different} pixels`);
   }
   assert.deepEqual(complaints, []);

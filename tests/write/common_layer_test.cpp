@@ -143,7 +143,7 @@ TEST(CommonLayer, CountsTheLabelsThatItChanged) {
     }
 }
 
-TEST(CommonLayer, DropsContoursThatItsUnitsCannotTellFromAPoint) {
+TEST(CommonLayer, DropsContoursThatItsUnitsCannotDistinguishFromAPoint) {
     LayerBuilder builder;
     add_contour(builder, {{5, 5}, {5.1, 5}, {5, 5.1}});
     add_contour(builder, {{7, 7}, {7.1, 7.1}}, false);
@@ -155,7 +155,7 @@ TEST(CommonLayer, DropsContoursThatItsUnitsCannotTellFromAPoint) {
         << text;
 }
 
-TEST(CommonLayerLong, DropsPointsThatSinglePrecisionCannotTellApart) {
+TEST(CommonLayerLong, DropsPointsThatSinglePrecisionCannotDistinguish) {
     LayerBuilder builder;
     const double next = 100 + 1e-9;
     add_contour(builder, {{100, 0}, {100, 100}, {next, 100}, {0, 50}});

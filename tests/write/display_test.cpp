@@ -12,16 +12,16 @@ Box3 box(double x0, double y0, double x1, double y1) {
     return {{x0, y0, 0}, {x1, y1, 1}};
 }
 
-PicturePrinter printer() {
+ImagePrinter printer() {
     return {.name = "P", .pixels = {200, 100}, .display_mm = {20, 10}, .portrait = true, .mirror_x = true};
 }
 
-void expect_refusal(const char* text, const Box3& part, const PictureOptions& options,
-                    const PicturePrinter& by = {}) {
+void expect_refusal(const char* text, const Box3& part, const ImageOptions& options,
+                    const ImagePrinter& by = {}) {
     test::expect_error(ErrorKind::usage, {text}, [&] { static_cast<void>(display_for(part, options, by)); });
 }
 
-TEST(Display, HasAsManyPixelsAsThePartNeedsUnlessToldOtherwise) {
+TEST(Display, HasAsManyPixelsAsThePartNeedsUnlessReportedOtherwise) {
     const Display display = display_for(box(-3, 100, 7, 102.01), {}, {});
     EXPECT_EQ(display.pixels.x, 200U);
     EXPECT_EQ(display.pixels.y, 41U);
@@ -34,11 +34,11 @@ TEST(Display, HasAsManyPixelsAsThePartNeedsUnlessToldOtherwise) {
 
 TEST(Display, FollowsFromTwoOfSizeNumberAndPixel) {
     const Box3 part = box(0, 0, 5, 5);
-    for (const PictureOptions& options :
-         {PictureOptions{.pixel_mm = {{0.1, 0.2}}, .pixels = {{100, 200}}},
-          PictureOptions{.pixel_mm = {{0.1, 0.2}}, .display_mm = {{10, 40}}},
-          PictureOptions{.pixels = {{100, 200}}, .display_mm = {{10, 40}}},
-          PictureOptions{.pixel_mm = {{0.1, 0.2}}, .pixels = {{100, 200}}, .display_mm = {{10, 40}}}}) {
+    for (const ImageOptions& options :
+         {ImageOptions{.pixel_mm = {{0.1, 0.2}}, .pixels = {{100, 200}}},
+          ImageOptions{.pixel_mm = {{0.1, 0.2}}, .display_mm = {{10, 40}}},
+          ImageOptions{.pixels = {{100, 200}}, .display_mm = {{10, 40}}},
+          ImageOptions{.pixel_mm = {{0.1, 0.2}}, .pixels = {{100, 200}}, .display_mm = {{10, 40}}}}) {
         const Display display = display_for(part, options, {});
         EXPECT_EQ(display.pixels.x, 100U);
         EXPECT_EQ(display.pixels.y, 200U);

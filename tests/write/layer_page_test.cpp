@@ -51,7 +51,7 @@ WrittenPage write_page(const std::vector<LayerStack>& parts, const LayerFileInfo
             plane.push_back(part[i]);
         writer->prepare(plane)();
     }
-    writer->tell(notes);
+    writer->add_notes(notes);
     writer->finish();
     const std::string html = file_bytes(folder.file("page.html"));
     EXPECT_EQ(writer->bytes(), html.size());
@@ -91,11 +91,11 @@ double member(const std::string& json, const std::string& name) {
 
 /// The layers of a page in mm.
 std::vector<PageLayer> layers_of(const ReadPage& page, std::size_t parts = 1) {
-    const std::string& head = page.json.at("head");
-    const std::vector<double> origin = numbers_of(head).at("origin");
+    const std::string& header = page.json.at("head");
+    const std::vector<double> origin = numbers_of(header).at("origin");
     std::vector<PageLayer> layers;
     for (const std::string& data : page.data)
-        layers.push_back(page_layer(data, parts, member(head, "step_mm"), {origin[0], origin[1]}));
+        layers.push_back(page_layer(data, parts, member(header, "step_mm"), {origin[0], origin[1]}));
     return layers;
 }
 
@@ -189,7 +189,7 @@ TEST(LayerPage, HasAStepThatIsRoundAndSmall) {
     }
 }
 
-TEST(LayerPage, TellsTheFiguresOfTheFullContours) {
+TEST(LayerPage, ReportsTheFiguresOfTheFullContours) {
     const LayerStack layers = fine_rings(6);
     for (const PageOptions& options : {options_with(), options_with(6000), options_with(1U << 24U, 100)}) {
         auto table = numbers_of(write_page(layers, options).page.json.at("table"));
@@ -263,7 +263,7 @@ TEST(LayerPage, LetsALayerUseWhatThoseBelowLeft) {
     EXPECT_FALSE(write_page(layers, options_with(3 * size / 5)).warnings.empty());
 }
 
-TEST(LayerPage, TellsWhatStepsMadeOfTheLayers) {
+TEST(LayerPage, ReportsWhatStepsMadeOfTheLayers) {
     const LayerStack layers = fine_rings(4);
     const double area = measure(layers[2]).area_mm2;
     LayerChanges once{.changed_layers = 1, .rings_dropped = 2, .area_before_mm2 = 30, .area_after_mm2 = 10};
@@ -446,7 +446,7 @@ TEST(LayerPage, KeepsHostileTextInItsPlace) {
         options.title = text;
         PageNotes notes;
         notes.sections = {{text, {{text, text, Tone::bad}}}};
-        notes.places = {{text, text, {{1, 2, 3}}}};
+        notes.locations = {{text, text, {{1, 2, 3}}}};
         const WrittenPage written = write_page({layers}, info, options, notes);
         EXPECT_EQ(written.page.scripts, scripts);
         EXPECT_EQ(written.page.data.size(), 2U);
@@ -523,8 +523,8 @@ TEST(MeshPage, HoldsASmallMeshWhole) {
     for (const auto& [a, b, c] : other.triangles)
         mesh.triangles.push_back({a + shift, b + shift, c + shift});
     const ReadPage page = mesh_page(mesh);
-    const std::string& head = page.json.at("head");
-    const double step = member(head, "step_mm");
+    const std::string& header = page.json.at("head");
+    const double step = member(header, "step_mm");
     const Box3 box = bounding_box(mesh);
     EXPECT_DOUBLE_EQ(step, (box.max.x - box.min.x) / 65536);
     const CoarseMesh read = mesh_of(page.data.at(0), box.min, step);
@@ -544,12 +544,12 @@ TEST(MeshPage, HoldsASmallMeshWhole) {
 TEST(MeshPage, CoarsensALargeMeshByItsRule) {
     const IndexedMesh mesh = weld(make_sphere(20, 8)); // 1.3 million triangles
     const ReadPage page = mesh_page(mesh);
-    const std::string& head = page.json.at("head");
-    EXPECT_EQ(member(head, "triangles"), static_cast<double>(mesh.triangles.size()));
-    const double shown = member(head, "shown");
+    const std::string& header = page.json.at("head");
+    EXPECT_EQ(member(header, "triangles"), static_cast<double>(mesh.triangles.size()));
+    const double shown = member(header, "shown");
     EXPECT_LE(shown, static_cast<double>(page_triangles));
     EXPECT_GT(shown, page_triangles / 8.0); // half the step would be too fine
-    const double step = member(head, "step_mm");
+    const double step = member(header, "step_mm");
     EXPECT_DOUBLE_EQ(std::exp2(std::round(std::log2(40 / step))), 40 / step);
     const CoarseMesh read = mesh_of(page.data.at(0), bounding_box(mesh).min, step);
     EXPECT_EQ(static_cast<double>(read.triangles.size()), shown);

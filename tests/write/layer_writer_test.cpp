@@ -177,7 +177,7 @@ TEST(LayerWriter, RefusesPlanesThatIltReadersWouldTakeForOne) {
     }
 }
 
-TEST(LayerWriter, RefusesHeightsThatTheFileCannotTellApartOrHold) {
+TEST(LayerWriter, RefusesHeightsThatTheFileCannotDistinguishOrHold) {
     const TemporaryFolder folder;
     for (const LayerFormat* format : plain_formats()) {
         const auto error_at = [&](double bottom, double thickness) {
@@ -254,7 +254,7 @@ TEST(LayerWriter, SaysWhichLabelsHaveNoPlace) {
         info.parts = {{.label = "bracket"}};
         EXPECT_EQ(write_layers(folder.file("out"), layer_format(format, ""), layers, info),
                   (std::vector<std::string>{
-                      "1 label was not written, the first \"bracket\": the format has no place for labels"}))
+                      "1 label was not written, the first \"bracket\": the format cannot hold labels"}))
             << format;
     }
 }
@@ -264,7 +264,7 @@ TEST(LayerWriter, SaysWhichPartsAreSupportsWhereTheFormatCannot) {
     const LayerStack stack = square_with_hole();
     LayerFileInfo info = info_of(stack);
     info.parts = {{.label = "body"}, {.label = "foot", .support = true}, {.label = "leg", .support = true}};
-    constexpr std::string_view text = "2 parts are supports: the format has no place for that; 3mf has";
+    constexpr std::string_view text = "2 parts are supports: the format cannot hold that; 3mf has";
     for (const LayerFormat* format : plain_formats()) {
         const std::vector<std::string> warnings = write_layers(
             folder.file("out"), *format, std::vector<LayerStack>(3, stack), info, options_for_any());
@@ -352,7 +352,7 @@ std::vector<Layer> empty_plane(std::size_t i) {
     return {layer};
 }
 
-TEST(WritePlanes, WritesInOrderOnAnyNumberOfThreadsAndTellsHowFarItIs) {
+TEST(WritePlanes, WritesInOrderOnAnyNumberOfThreadsAndReportsHowFarItIs) {
     std::vector<std::uint64_t> expected(500);
     std::iota(expected.begin(), expected.end(), 0);
     for (const unsigned threads : {1U, 2U, 7U}) {
@@ -468,18 +468,18 @@ TEST(LayerWriter, WritesStacksWithoutContoursAndWithoutLayers) {
     }
 }
 
-TEST(WriteLayers, TakesFormatAndHeadFromPathAndLayers) {
+TEST(WriteLayers, TakesFormatAndHeaderFromPathAndLayers) {
     const TemporaryFolder folder;
     LayerBuilder nothing;
     const LayerStack empty{nothing.finish(0, 0.5, 0, 1)};
     for (const LayerStack& layers : {random_layers(1, 40, 30, {10, -5}, false), square_with_hole(), empty}) {
-        LayerFileInfo head = info_of(layers);
-        head.box.min.z = layers.front().bottom;
-        head.box.max.z = layers.back().top;
-        head.parts.front().box = head.box;
+        LayerFileInfo header = info_of(layers);
+        header.box.min.z = layers.front().bottom;
+        header.box.max.z = layers.back().top;
+        header.parts.front().box = header.box;
         for (const char* name : {"part.cli", "part.svg", "part.slc", "part.3mf", "part.json"}) {
             write_layers(folder.file(name), layers);
-            write_layers(folder.file("expected"), layer_format("", name), layers, head);
+            write_layers(folder.file("expected"), layer_format("", name), layers, header);
             EXPECT_EQ(file_bytes(folder.file(name)), file_bytes(folder.file("expected"))) << name;
         }
     }

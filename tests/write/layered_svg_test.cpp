@@ -103,7 +103,7 @@ TEST(LayeredSvg, HasAGroupForAPartAloneThatHasAName) {
                          "<g data-lamella-part=\"1\" data-lamella-label=\"bracket\">\n    <polygon"));
 }
 
-TEST(SvgLayers, WritesOnePicturePerLayer) {
+TEST(SvgLayers, WritesOneImagePerLayer) {
     const TemporaryFolder folder;
     LayerStack layers = square_with_hole();
     LayerBuilder builder;
@@ -129,7 +129,7 @@ TEST(SvgLayers, WritesOnePicturePerLayer) {
         contains(chain, "stroke=\"#d62728\" vector-effect=\"non-scaling-stroke\" d=\"M1,1 9,9\n\"/>"));
 }
 
-TEST(SvgLayers, ReplacesItsOwnPicturesAndNothingElse) {
+TEST(SvgLayers, ReplacesItsOwnImagesAndNothingElse) {
     const TemporaryFolder folder;
     LayerStack layers = square_with_hole();
     const auto write = [&] {

@@ -169,14 +169,15 @@ std::string ply(const IndexedMesh& mesh) {
 
 TEST(WritePly, HasTheBytesOfTheFormat) {
     const std::string bytes = ply(two_triangles);
-    const std::string head = "ply\nformat binary_little_endian 1.0\ncomment written by Lamella, millimetres\n"
-                             "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                             "element face 2\nproperty list uchar uint vertex_indices\nend_header\n";
-    ASSERT_EQ(bytes.substr(0, head.size()), head);
-    ASSERT_EQ(bytes.size(), head.size() + 4 * 12 + 2 * 13);
-    EXPECT_EQ(read_at<float>(bytes, head.size() + 3 * 12 + 4), -0.25F);
-    EXPECT_EQ(bytes[head.size() + 48 + 13], 3);
-    EXPECT_EQ(read_at<std::uint32_t>(bytes, head.size() + 48 + 14), 3U);
+    const std::string header =
+        "ply\nformat binary_little_endian 1.0\ncomment written by Lamella, millimetres\n"
+        "element vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 2\nproperty list uchar uint vertex_indices\nend_header\n";
+    ASSERT_EQ(bytes.substr(0, header.size()), header);
+    ASSERT_EQ(bytes.size(), header.size() + 4 * 12 + 2 * 13);
+    EXPECT_EQ(read_at<float>(bytes, header.size() + 3 * 12 + 4), -0.25F);
+    EXPECT_EQ(bytes[header.size() + 48 + 13], 3);
+    EXPECT_EQ(read_at<std::uint32_t>(bytes, header.size() + 48 + 14), 3U);
 }
 
 TEST(WritePly, KeepsWhatSinglePrecisionCannotHold) {

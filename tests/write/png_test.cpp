@@ -33,7 +33,7 @@ Layer tangle(std::uint64_t seed, double size, std::int64_t points) {
     return layer_of(rings);
 }
 
-TEST(Png, IsReadByLibpngAsThePictureThatItIs) {
+TEST(Png, IsReadByLibpngAsTheImageThatItIs) {
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
         for (const unsigned antialias : {1U, 4U}) {
             const PixelGrid grid{.width = static_cast<std::uint32_t>(1 + 61 * seed % 700),
@@ -52,7 +52,7 @@ TEST(Png, IsReadByLibpngAsThePictureThatItIs) {
     }
 }
 
-TEST(Png, HasNothingButHeadPixelsAndEnd) {
+TEST(Png, HasNothingButHeaderPixelsAndEnd) {
     const std::string file = encoded(Layer{}, {.width = 4000, .height = 3000}, {});
     EXPECT_EQ(file.substr(0, 8), "\x89PNG\r\n\x1a\n");
     EXPECT_EQ(file.substr(12, 4), "IHDR");
@@ -64,12 +64,12 @@ TEST(Png, HasNothingButHeadPixelsAndEnd) {
     EXPECT_EQ(file.size(), 8 + 25 + 12 + 12 + (byte(33) << 24 | byte(34) << 16 | byte(35) << 8 | byte(36)));
 }
 
-TEST(Png, OfABlankPictureIsAsSmallAsDeflateAllows) {
+TEST(Png, OfABlankImageIsAsSmallAsDeflateAllows) {
     const std::string file = encoded(Layer{}, {.width = 4000, .height = 3000}, {});
     EXPECT_LT(file.size(), 4001 * 3000 / 1032 + 150U);
 }
 
-TEST(Png, MakesOnePictureAfterTheOther) {
+TEST(Png, MakesOneImageAfterTheOther) {
     PngEncoder encoder(10, 10);
     const std::vector<PixelRun> row{{3, 0}, {7, 255}, {10, 0}};
     ByteBuffer first;
@@ -79,9 +79,9 @@ TEST(Png, MakesOnePictureAfterTheOther) {
     encoder.add(row, 4);
     encoder.add(row, 6);
     encoder.finish(second);
-    const PngFile picture = read_png(std::string(second.view()));
-    EXPECT_EQ(picture.error, "");
-    EXPECT_TRUE(picture.values == read_png(std::string(first.view())).values);
+    const PngFile image = read_png(std::string(second.view()));
+    EXPECT_EQ(image.error, "");
+    EXPECT_TRUE(image.values == read_png(std::string(first.view())).values);
 }
 
 } // namespace

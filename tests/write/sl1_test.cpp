@@ -69,27 +69,27 @@ TEST(Sl1, RefusesPartsLargerThanTheDisplay) {
 }
 
 /// The entry of an archive that is stored.
-PngFile stored_picture(const std::string& archive, const std::string& name) {
+PngFile stored_image(const std::string& archive, const std::string& name) {
     const std::size_t begin = archive.find("\x89PNG", archive.find(name));
     const std::size_t end = archive.find("IEND", begin) + 8;
     return read_png(archive.substr(begin, end - begin));
 }
 
-TEST(Sl1, ShowsItsPicturesUpright) {
+TEST(Sl1, ShowsItsImagesUpright) {
     // x runs up the picture and y to the right; the display has 2560 rows and 1440 columns.
     const TemporaryFolder folder;
     const LayerStack layers = stack_of({0.1});
     write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), layers, info_of(layers),
-                 {.picture = {.raster = {.antialias = 1}}});
-    const PngFile picture = stored_picture(file_bytes(folder.file("job.sl1")), "job00000.png");
-    ASSERT_EQ(picture.error, "");
-    ASSERT_EQ(picture.width, 1440U);
-    ASSERT_EQ(picture.height, 2560U);
+                 {.image = {.raster = {.antialias = 1}}});
+    const PngFile image = stored_image(file_bytes(folder.file("job.sl1")), "job00000.png");
+    ASSERT_EQ(image.error, "");
+    ASSERT_EQ(image.width, 1440U);
+    ASSERT_EQ(image.height, 2560U);
     const auto at = [&](double x,
                         double y) { // from the part's lower left corner, which is off the middle by 5
         const auto column = static_cast<std::size_t>(720 + (y - 5) / 0.04725);
         const auto row = static_cast<std::size_t>(1280 - (x - 5) / 0.04725);
-        return picture.values[row * 1440 + column];
+        return image.values[row * 1440 + column];
     };
     EXPECT_EQ(at(9, 1), 255);
     EXPECT_EQ(at(9, 8), 255);
@@ -97,22 +97,22 @@ TEST(Sl1, ShowsItsPicturesUpright) {
     EXPECT_EQ(at(3, 9), 0);
 }
 
-TEST(Sl1, HasPicturesOfThePart) {
+TEST(Sl1, HasImagesOfThePart) {
     const TemporaryFolder folder;
     const LayerStack layers = stack_of({1, 1, 1, 1, 1, 1});
     write_layers(folder.file("job.sl1"), layer_format("", "job.sl1"), layers, info_of(layers));
     const std::string archive = file_bytes(folder.file("job.sl1"));
     for (const std::uint32_t width : {400U, 800U}) {
         const std::uint32_t height = width == 400 ? 400 : 480;
-        const PngFile picture =
-            stored_picture(archive, fmt::format("thumbnail/thumbnail{}x{}.png", width, height));
-        ASSERT_EQ(picture.error, "");
-        EXPECT_EQ(picture.width, width);
-        EXPECT_EQ(picture.height, height);
-        EXPECT_EQ(picture.bits, 8);
-        EXPECT_EQ(picture.colour_type, PNG_COLOR_TYPE_RGBA);
+        const PngFile image =
+            stored_image(archive, fmt::format("thumbnail/thumbnail{}x{}.png", width, height));
+        ASSERT_EQ(image.error, "");
+        EXPECT_EQ(image.width, width);
+        EXPECT_EQ(image.height, height);
+        EXPECT_EQ(image.bits, 8);
+        EXPECT_EQ(image.colour_type, PNG_COLOR_TYPE_RGBA);
         const auto alpha = [&](std::size_t column, std::size_t row) {
-            return picture.values[4 * (row * width + column) + 3];
+            return image.values[4 * (row * width + column) + 3];
         };
         EXPECT_EQ(alpha(width / 2, height / 2), 255);
         EXPECT_EQ(alpha(3, 3), 0);

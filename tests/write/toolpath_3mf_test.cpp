@@ -31,22 +31,22 @@ std::string identifier(const std::string& text) {
                        high & 0xFFFFU, low >> 48U, low & 0xFFFFFFFFFFFFU);
 }
 
-TEST(Toolpath3mf, IdentifiersAreHashesOfTheWholeHead) {
+TEST(Toolpath3mf, IdentifiersAreHashesOfTheWholeHeader) {
     const TemporaryFolder folder;
     const LayerStack stack = square_with_hole();
     LayerFileInfo info = info_of(stack);
     info.parts.clear();
-    std::string head = "2 0 0 0 0 10 10 1";
+    std::string header = "2 0 0 0 0 10 10 1";
     for (int i = 0; i < 300; ++i) {
         const std::string label = "part " + std::to_string(i);
         info.parts.push_back({label, info.box});
-        head += " \"" + label + "\" 0 0 0 10 10 1";
+        header += " \"" + label + "\" 0 0 0 10 10 1";
     }
     write_layers(folder.file("out"), layer_format("3mf-toolpath", ""),
                  std::vector<LayerStack>(info.parts.size(), stack), info);
     const ZipReader zip(open_bytes(folder.file("out")), 0);
     const std::string model(zip.read(*zip.find("3D/3dmodel.model")).text());
-    const std::string all = identifier("toolpath " + head);
+    const std::string all = identifier("toolpath " + header);
     for (int i = 0; i < 300; ++i)
         EXPECT_TRUE(contains(model, "p:UUID=\"" + identifier(fmt::format("item {} {}", i, all)) + "\"/>"))
             << i;

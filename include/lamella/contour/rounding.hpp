@@ -19,8 +19,8 @@ struct Rounding {
     /// Returns the largest distance between neighbouring numbers that the format distinguishes, up to this
     /// magnitude: no number is moved by more than half of it.
     [[nodiscard]] double step_at(double magnitude_mm) const noexcept {
-        constexpr double last_place = 0x1p-23;
-        return std::max(step_mm, single_precision ? std::abs(magnitude_mm) * last_place : 0.0);
+        constexpr double last_digit = 0x1p-23;
+        return std::max(step_mm, single_precision ? std::abs(magnitude_mm) * last_digit : 0.0);
     }
     friend bool operator==(const Rounding&, const Rounding&) = default;
 };

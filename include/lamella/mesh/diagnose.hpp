@@ -58,10 +58,11 @@ struct Shell {
     std::uint32_t depth = 0;
 };
 
-using EdgePlace = std::array<Point3, 2>;
+using EdgeLocation = std::array<Point3, 2>;
 
-inline constexpr DefectWords crowded_vertices{"nonmanifold_vertices", "crowded vertex", "crowded vertices",
-                                              "parts of the surface touch in a point; no harm to contours"};
+inline constexpr DefectWords non_manifold_vertices{
+    "nonmanifold_vertices", "non-manifold vertex", "non-manifold vertices",
+    "parts of the surface touch in a point; no harm to contours"};
 
 struct Diagnosis {
     Inspection counts;
@@ -79,10 +80,10 @@ struct Diagnosis {
     std::uint64_t opposite_pairs = 0;
 
     // Locations: the first `keep` of each kind.
-    std::vector<BoundaryLoop> loops;          ///< longest first
-    std::vector<EdgePlace> nonmanifold_edges; ///< ordered by vertex numbers
-    std::vector<EdgePlace> conflicting_edges; ///< ordered by vertex numbers
-    std::vector<Point3> vertices;             ///< the non-manifold vertices, ordered by number
+    std::vector<BoundaryLoop> loops;             ///< longest first
+    std::vector<EdgeLocation> nonmanifold_edges; ///< ordered by vertex numbers
+    std::vector<EdgeLocation> conflicting_edges; ///< ordered by vertex numbers
+    std::vector<Point3> vertices;                ///< the non-manifold vertices, ordered by number
     /// Ordered by number; the first triangle of each kind is not listed.
     std::vector<std::uint32_t> duplicate_triangles;
     std::vector<std::uint32_t> degenerate_triangles;     ///< ordered by number

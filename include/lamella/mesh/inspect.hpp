@@ -66,7 +66,7 @@ inline constexpr std::array<DefectKind, 6> defect_kinds{
        "the surface has holes; contours stay open there"}},
      {&Inspection::nonmanifold_edges,
       false,
-      {"nonmanifold_edges", "crowded edge", "crowded edges",
+      {"nonmanifold_edges", "non-manifold edge", "non-manifold edges",
        "more than two triangles share an edge; contours part or touch there"}},
      {&Inspection::orientation_conflicts,
       true,

@@ -15,7 +15,7 @@ LAMELLA_API_BEGIN
 namespace lamella {
 
 /// Largest number of locations in a report; its counts are complete.
-inline constexpr std::size_t repair_places = 16;
+inline constexpr std::size_t repair_locations = 16;
 
 struct ToleranceWeld {
     IndexedMesh mesh;
@@ -24,7 +24,7 @@ struct ToleranceWeld {
     std::uint64_t pairs_apart = 0;         ///< pairs within the tolerance that were not joined, see below
     double longest_move_mm = 0;
     /// The first few locations to which vertices were moved, in lexicographic order.
-    std::vector<Point3> places;
+    std::vector<Point3> locations;
 };
 
 /// Joins vertices that are close to one another, so that cracks up to that width close.
@@ -46,7 +46,7 @@ struct DroppedDuplicates {
     IndexedMesh mesh;
     std::uint64_t repeated_triangles = 0; ///< dropped because a triangle with the same orientation was kept
     std::uint64_t opposite_triangles = 0; ///< dropped in pairs of opposite orientation
-    std::vector<Point3> places;           ///< centroids of the first few
+    std::vector<Point3> locations;        ///< centroids of the first few
 };
 
 /// Drops triangles that have the same three vertices as others. Among those, triangles of opposite
@@ -59,12 +59,13 @@ struct DroppedDuplicates {
 struct OrientedMesh {
     IndexedMesh mesh;
     std::uint64_t patches = 0;
-    std::uint64_t turned_triangles = 0; ///< triangles whose orientation was reversed
+    std::uint64_t flipped_triangles = 0; ///< triangles whose orientation was reversed
     /// Patches flipped together with all patches tied to them, once these agree.
-    std::uint64_t turned_outward = 0;
-    std::uint64_t turned_inward = 0;     ///< likewise, inward
-    std::uint64_t one_sided_patches = 0; ///< patches that cannot be made consistent, such as a Moebius strip
-    std::vector<Point3> places;          ///< centroids of the first few flipped triangles
+    std::uint64_t flipped_outward = 0;
+    std::uint64_t flipped_inward = 0; ///< likewise, inward
+    std::uint64_t non_orientable_patches =
+        0;                         ///< patches that cannot be made consistent, such as a Moebius strip
+    std::vector<Point3> locations; ///< centroids of the first few flipped triangles
 };
 
 /// Flips triangles so that neighbours agree and material lies inside.

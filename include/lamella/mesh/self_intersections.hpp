@@ -17,21 +17,21 @@ LAMELLA_API_BEGIN
 namespace lamella {
 
 /// The kind of an intersection of two triangles beyond the vertices and the edge that they share.
-enum class MeetingKind {
+enum class IntersectionKind {
     crossing,    ///< each passes through the other
     overlapping, ///< they lie in one plane and their areas overlap
     touching,    ///< they share a point or a segment, and one of them ends there
 };
 
-struct Meeting {
+struct TriangleIntersection {
     std::uint32_t triangle_a = 0; ///< below triangle_b
     std::uint32_t triangle_b = 0;
-    MeetingKind kind = MeetingKind::crossing;
+    IntersectionKind kind = IntersectionKind::crossing;
     Point3 at; ///< approximate location
 };
 
 /// Numbers of intersecting pairs of triangles of two parts of a mesh (or of one, where a == b).
-struct PartMeetings {
+struct PartIntersections {
     std::uint32_t part_a = 0; ///< not above part_b
     std::uint32_t part_b = 0;
     std::uint64_t crossing = 0;
@@ -46,30 +46,30 @@ struct SelfIntersections {
     /// Triangles without area (degenerate, or with all corners on a line), which are ignored.
     std::uint64_t flat_triangles = 0;
     /// The first few pairs that cross or overlap, by (triangle_a, triangle_b); then the first few that touch.
-    std::vector<Meeting> first;
+    std::vector<TriangleIntersection> first;
     /// By (part_a, part_b), if parts were given.
-    std::vector<PartMeetings> parts;
+    std::vector<PartIntersections> parts;
 
     [[nodiscard]] std::uint64_t pairs() const noexcept { return crossing + overlapping + touching; }
 };
 
-/// The words for intersections in all reports, in the order of MeetingKind.
-struct MeetingWords {
+/// The words for intersections in all reports, in the order of IntersectionKind.
+struct IntersectionWords {
     std::uint64_t SelfIntersections::*count;
     DefectWords words;
 };
-inline constexpr std::array<MeetingWords, 3> meeting_words{
+inline constexpr std::array<IntersectionWords, 3> intersection_words{
     {{&SelfIntersections::crossing,
       {"crossing", "crossing", "crossings", "two triangles pass through each other"}},
      {&SelfIntersections::overlapping,
       {"overlapping", "overlap", "overlaps", "two triangles lie upon one another in one plane"}},
      {&SelfIntersections::touching,
       {"touching", "touch", "touches", "two triangles meet beside their edges"}}}};
-[[nodiscard]] constexpr const DefectWords& words_of(MeetingKind kind) {
-    return meeting_words[static_cast<std::size_t>(kind)].words;
+[[nodiscard]] constexpr const DefectWords& words_of(IntersectionKind kind) {
+    return intersection_words[static_cast<std::size_t>(kind)].words;
 }
 
-struct MeetingOptions {
+struct IntersectionOptions {
     std::size_t keep = 16; ///< largest number of pairs in each half of SelfIntersections::first
     /// The part of each triangle, such as its shell; if empty, `SelfIntersections::parts` stays empty.
     std::span<const std::uint32_t> parts = {};
@@ -83,7 +83,7 @@ struct MeetingOptions {
 /// O(n log n + pairs of triangles with overlapping boxes), on all threads; the result is the same for any
 /// number of threads. The slow case is long slanted triangles whose boxes contain many others.
 [[nodiscard]] SelfIntersections find_self_intersections(const IndexedMesh& mesh,
-                                                        const MeetingOptions& options = {},
+                                                        const IntersectionOptions& options = {},
                                                         const Execution& execution = {});
 
 } // namespace lamella

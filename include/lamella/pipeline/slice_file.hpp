@@ -151,8 +151,8 @@ struct FileResult {
 
     std::string engine;
     unsigned threads = 0;
-    std::uint64_t slabs = 0; ///< the meshes were too large for the memory: in so many shares of the planes
-                             ///< they were sliced, by all processes
+    std::uint64_t ranges = 0; ///< the meshes were too large for the memory: in so many shares of the planes
+                              ///< they were sliced, by all processes
     /// What each process did, in their order.
     std::vector<ProcessFigures> processes;
     SliceReport report;                  ///< contours and chains as they are after contour gaps were closed

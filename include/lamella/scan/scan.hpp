@@ -43,7 +43,7 @@ class ScanLayer {
 /// What layers of one part have in common: along upright walls many layers are the same, and the last one
 /// moved inwards is kept for those that follow. It changes nothing but the time that `scan` takes. For any
 /// number of threads.
-class ScanMemory {
+class InsetCache {
   public:
     struct Insets; ///< the material of a layer, moved inwards by the distances of a strategy
 
@@ -85,13 +85,13 @@ class ScanMemory {
 /// what it becomes in a file. Throws Error{cancelled}, too.
 [[nodiscard]] std::vector<Layer> scan(const ScanLayer& layer, std::span<const ScanLayer> below,
                                       std::span<const ScanLayer> above, const ScanStrategy& strategy,
-                                      ScanMemory* memory = nullptr, std::vector<double>* unreached = nullptr,
+                                      InsetCache* memory = nullptr, std::vector<double>* unreached = nullptr,
                                       const LayerLimits& limits = {});
 
 /// The same of a layer of a support: by the strategy's rule for these, a layer for each of its
 /// `support_exposures`.
 [[nodiscard]] std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy,
-                                              ScanMemory* memory = nullptr,
+                                              InsetCache* memory = nullptr,
                                               std::vector<double>* unreached = nullptr,
                                               const LayerLimits& limits = {});
 

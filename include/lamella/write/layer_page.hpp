@@ -35,7 +35,7 @@ struct PageSection {
 };
 
 /// A location on or in the part that a page marks and lists, such as the rim of a hole.
-struct PagePlace {
+struct PageLocation {
     std::string kind;           ///< locations with equal texts are of one kind, such as "boundary loop"
     std::string text;           ///< describes this location
     std::vector<Point3> points; ///< one point, or a line through several; at least one
@@ -52,14 +52,14 @@ struct PageChange {
 /// Facts and locations that a page shows besides the data.
 struct PageNotes {
     std::vector<PageSection> sections;
-    std::vector<PagePlace> places;
+    std::vector<PageLocation> locations;
     /// One or more for each plane that was changed, in any order. If empty, the page does not mention layer
     /// steps.
     std::vector<PageChange> changes = {};
 };
 
 /// Returns the locations that a diagnosis lists, with their meaning for slicing. O(points).
-[[nodiscard]] std::vector<PagePlace> places_of(const Diagnosis& diagnosis);
+[[nodiscard]] std::vector<PageLocation> places_of(const Diagnosis& diagnosis);
 
 /// Writes the page of a stack of layers. docs/viewer.md describes its content, the rounding of coordinates,
 /// and the thinning of layers beyond PageOptions::budget_bytes.
@@ -67,7 +67,7 @@ class LayerPageWriter : public LayerWriter {
   public:
     /// Adds notes to the page, in this order. May be called at any time before `finish`, by one thread at a
     /// time.
-    virtual void tell(PageNotes notes) = 0;
+    virtual void add_notes(PageNotes notes) = 0;
 };
 
 /// Opens a page writer. Throws as open_layer_writer does, and Error{usage} if the options have no viewer.

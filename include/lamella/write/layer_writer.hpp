@@ -8,7 +8,7 @@
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
-#include "lamella/write/picture_options.hpp"
+#include "lamella/write/image_options.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -37,9 +37,9 @@ struct PartInfo {
 [[nodiscard]] Box3 part_box(std::span<const Layer> layers) noexcept;
 
 /// A range of the layers of a slice file, for formats whose files are layers one after the other
-/// (LayerFormat::pieces). Several processes write one file in this manner: the concatenated ranges are the
+/// (LayerFormat::chunks). Several processes write one file in this manner: the concatenated ranges are the
 /// file.
-struct LayerFilePiece {
+struct LayerFileChunk {
     std::uint64_t before = 0; ///< number of layers of the file below this range
     std::uint64_t layers = 0; ///< number of layers of this range
     /// Takes the bytes of the range, in order.
@@ -55,7 +55,7 @@ struct LayerFileInfo {
     /// Rule by which all layers were cut. Formats that keep cuts keep it, too.
     PlaneRule rule = PlaneRule::section_above;
     /// If set, only this range is written, and not to a file. It must outlive the writer.
-    const LayerFilePiece* piece = nullptr;
+    const LayerFileChunk* chunk = nullptr;
     /// True if all layers pass `check`, as those of `slice` do: the writer then need not check every point.
     bool known_finite = false;
 };
@@ -89,7 +89,7 @@ struct LayerWriteOptions {
     /// Common Layer Interface, binary: 16-bit coordinates; Error{usage} if they do not fit.
     bool short_form = false;
     /// png, png-zip, sl1, sl1s.
-    PictureOptions picture = {};
+    ImageOptions image = {};
     /// sl1, sl1s.
     ExposureOptions exposure = {};
     /// html.
@@ -109,7 +109,7 @@ struct LayerFormat {
     /// Extension of files that get their names from a program, if it is not `extension`.
     std::string_view file_extension = extension;
     bool directory = false;    ///< writes one file per layer into a directory
-    bool pieces = false;       ///< ranges of layers can be written separately
+    bool chunks = false;       ///< ranges of layers can be written separately
     bool joins = false;        ///< files of consecutive layers can be merged without reading the layers
     bool one_way = false;      ///< layers cannot be read back
     bool filled_parts = false; ///< files contain only those parts that are not empty
@@ -120,7 +120,7 @@ struct LayerFormat {
     // Fields of LayerWriteOptions that the format takes.
     bool units = false;
     bool short_form = false;
-    bool picture = false;
+    bool image = false;
     bool exposure = false;
 };
 

@@ -15,7 +15,7 @@ void slice_by_ecc_edge_match(const SliceJob& job) {
     SerialEngine engine(job);
     EdgeLinkedLists lists(engine);
     using Node = EdgeLinkedLists::Node;
-    const auto place = [&](std::uint32_t plane, Node* node, const Node& before, Inserted how) {
+    const auto position = [&](std::uint32_t plane, Node* node, const Node& before, Inserted how) {
         if (how == Inserted::new_list)
             return lists.into_new(plane, node);
         if (how == Inserted::back)
@@ -27,7 +27,7 @@ void slice_by_ecc_edge_match(const SliceJob& job) {
     const auto leave_completed = [](std::uint32_t, EdgeLinkedLists::List*) {
     };
     engine.for_triangles([&](std::size_t triangle) {
-        lists.insert_triangle(engine, engine.sections(triangle), place, leave_completed);
+        lists.insert_triangle(engine, engine.sections(triangle), position, leave_completed);
     });
     job.report.matching = lists.final_counts();
     engine.deliver(

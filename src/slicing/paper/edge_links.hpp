@@ -75,9 +75,9 @@ class EdgeLinkedLists : public IntersectionLists<LinkedIntersectionNode> {
     /// place(plane, node, before, how) is the engine's chain of cases. It inserts `node` like `before`, which
     /// was inserted by the case `how`: new_list, back, front or link. closed(plane, list) is called for every
     /// completed list.
-    template <class Place, class Closed>
-    void insert_triangle(const SerialEngine& engine, const TriangleSections& sections, const Place& place,
-                         const Closed& closed) {
+    template <class Position, class Closed>
+    void insert_triangle(const SerialEngine& engine, const TriangleSections& sections,
+                         const Position& position, const Closed& closed) {
         Node* before = nullptr;
         Placed placed{};
         for (const TriangleSection& section : sections) {
@@ -92,7 +92,7 @@ class EdgeLinkedLists : public IntersectionLists<LinkedIntersectionNode> {
                 const bool first_on_these_edges = plane + 1 == section.end;
                 const Placed now = first_on_these_edges || placed.how == Inserted::close
                                        ? insert_by_search(plane, node)
-                                       : place(plane, node, *before, placed.how);
+                                       : position(plane, node, *before, placed.how);
                 const bool was_an_end = placed.how != Inserted::link && placed.how != Inserted::close;
                 if (before != nullptr && was_an_end)
                     before->edge_link = now.list;

@@ -17,7 +17,7 @@ void slice_by_eecc(const SliceJob& job) {
     EdgeLinkedLists lists(engine);
     using Node = EdgeLinkedLists::Node;
     std::vector<ContourList<Node>> completed(engine.planes());
-    const auto place = [&](std::uint32_t plane, Node* node, const Node& before, Inserted how) {
+    const auto position = [&](std::uint32_t plane, Node* node, const Node& before, Inserted how) {
         if (how == Inserted::front) // 29.89 %
             return lists.at_front(plane, node, before);
         if (how == Inserted::new_list) // 26.91 %
@@ -31,7 +31,7 @@ void slice_by_eecc(const SliceJob& job) {
         completed[plane].append(list);
     };
     engine.for_triangles([&](std::size_t triangle) {
-        lists.insert_triangle(engine, engine.sections(triangle), place, move_completed);
+        lists.insert_triangle(engine, engine.sections(triangle), position, move_completed);
     });
     job.report.matching = lists.final_counts();
     engine.deliver([&](std::uint32_t plane, LayerBuilder& layer) {

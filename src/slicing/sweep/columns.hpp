@@ -45,22 +45,22 @@ class ColumnStore {
         const std::size_t stride = EdgeColumns::padded(edges);
         if (room_ - used_ < stride)
             return not_kept;
-        const std::uint64_t place = used_;
+        const std::uint64_t position = used_;
         used_ += stride;
-        return place;
+        return position;
     }
 
-    [[nodiscard]] double* at(std::uint64_t place) const noexcept {
-        assert(place < used_);
-        return columns_.data() + EdgeColumns::columns * place;
+    [[nodiscard]] double* at(std::uint64_t position) const noexcept {
+        assert(position < used_);
+        return columns_.data() + EdgeColumns::columns * position;
     }
 
     /// Releases all reservations. Columns that are still needed must then be moved by move_down before
     /// anything else is reserved, in ascending order of their old offsets.
     void release() noexcept { used_ = 0; }
-    std::uint64_t move_down(std::uint64_t place, std::size_t edges) {
-        assert(place >= used_ && place + EdgeColumns::padded(edges) <= room_);
-        const double* from = columns_.data() + EdgeColumns::columns * place;
+    std::uint64_t move_down(std::uint64_t position, std::size_t edges) {
+        assert(position >= used_ && position + EdgeColumns::padded(edges) <= room_);
+        const double* from = columns_.data() + EdgeColumns::columns * position;
         const std::uint64_t to = reserve(edges);
         std::copy(from, from + EdgeColumns::columns * EdgeColumns::padded(edges), at(to));
         return to;

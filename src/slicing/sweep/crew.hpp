@@ -3,7 +3,7 @@
 // The workers of a task: either the one that sweeps it alone, or all workers of the executor.
 
 #include "core/executor.hpp"
-#include "slicing/slabs.hpp"
+#include "slicing/plane_ranges.hpp"
 #include "slicing/sweep/columns.hpp"
 #include "slicing/sweep/runs.hpp"
 

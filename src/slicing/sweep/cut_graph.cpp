@@ -354,24 +354,26 @@ class Builder {
         collect(pool, block);
         graph_.count = pool.used();
         join();
-        if (!crowded_.empty())
-            graph_.nonmanifold_edges = pair_crowded_edges(graph_, crowded_, executor_);
+        if (!non_manifold_.empty())
+            graph_.nonmanifold_edges = pair_non_manifold_edges(graph_, non_manifold_, executor_);
         assert(is_complete(graph_));
         return std::move(graph_);
     }
 
   private:
     /// Two nodes of equal hash.
-    struct Meeting {
+    struct TriangleIntersection {
         std::uint32_t first; ///< the same in all pairs with one hash
         std::uint32_t other;
     };
 
     struct Worker {
         std::unique_ptr<Collector<Corners>> collector;
-        std::array<Meeting, 16> meetings; ///< pending, the oldest at `met` modulo their number
+        std::array<TriangleIntersection, 16>
+            intersections; ///< pending, the oldest at `met` modulo their number
         std::size_t met = 0;
-        std::vector<std::uint32_t> crowded; ///< nodes that share their hash with others, with repetitions
+        std::vector<std::uint32_t>
+            non_manifold; ///< nodes that share their hash with others, with repetitions
     };
 
     void collect(CutNodePool& pool, std::uint32_t block) {
@@ -413,39 +415,39 @@ class Builder {
                 Worker& worker = worker_[w];
                 __builtin_prefetch(&graph_.nodes[first], 1);
                 __builtin_prefetch(&graph_.nodes[other], 1);
-                Meeting& oldest = worker.meetings[worker.met % worker.meetings.size()];
-                if (worker.met >= worker.meetings.size())
-                    meet(oldest, worker.crowded);
+                TriangleIntersection& oldest = worker.intersections[worker.met % worker.intersections.size()];
+                if (worker.met >= worker.intersections.size())
+                    meet(oldest, worker.non_manifold);
                 oldest = {first, other};
                 ++worker.met;
             });
         for (Worker& worker : worker_) {
-            const std::size_t places = worker.meetings.size();
-            for (std::size_t i = worker.met < places ? 0 : worker.met - places; i < worker.met; ++i)
-                meet(worker.meetings[i % places], worker.crowded);
-            crowded_.insert(crowded_.end(), worker.crowded.begin(), worker.crowded.end());
+            const std::size_t positions = worker.intersections.size();
+            for (std::size_t i = worker.met < positions ? 0 : worker.met - positions; i < worker.met; ++i)
+                meet(worker.intersections[i % positions], worker.non_manifold);
+            non_manifold_.insert(non_manifold_.end(), worker.non_manifold.begin(), worker.non_manifold.end());
         }
         // A half may have been recorded before it became part of another node, which then replaces it.
-        for (std::uint32_t& id : crowded_)
+        for (std::uint32_t& id : non_manifold_)
             if (!graph_.nodes[id].in_use())
                 id = graph_.nodes[id].split;
     }
 
-    void meet(const Meeting& meeting, std::vector<std::uint32_t>& crowded) {
-        Node& a = graph_.nodes[meeting.first];
-        Node& b = graph_.nodes[meeting.other];
+    void meet(const TriangleIntersection& intersection, std::vector<std::uint32_t>& non_manifold) {
+        Node& a = graph_.nodes[intersection.first];
+        Node& b = graph_.nodes[intersection.other];
         if (!a.in_use()) {
             // It already became part of another node, so the edge has at least three halves.
-            crowded.insert(crowded.end(), {a.split, meeting.other});
+            non_manifold.insert(non_manifold.end(), {a.split, intersection.other});
             return;
         }
         const bool halves = a.entered != b.entered && a.left() != b.left() && a.entered != a.left();
         if (!halves || !(a.ends == b.ends)) {
-            crowded.insert(crowded.end(), {meeting.first, meeting.other});
+            non_manifold.insert(non_manifold.end(), {intersection.first, intersection.other});
         } else if (a.entered) {
-            unite(meeting.first, meeting.other);
+            unite(intersection.first, intersection.other);
         } else {
-            unite(meeting.other, meeting.first);
+            unite(intersection.other, intersection.first);
         }
     }
 
@@ -475,7 +477,7 @@ class Builder {
     std::vector<Worker> worker_;
     NodePartitions partitions_;
     CutGraph<Ends> graph_;
-    std::vector<std::uint32_t> crowded_; // nodes that share their ends, unordered, with repetitions
+    std::vector<std::uint32_t> non_manifold_; // nodes that share their ends, unordered, with repetitions
 };
 
 } // namespace

@@ -136,7 +136,7 @@ inline void place_contours(const std::vector<LayerEntry>& entries, Runs& runs, L
     std::uint64_t size = 0;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         Ring& ring = runs.ring(entries[i].ring);
-        ring.place = size;
+        ring.position = size;
         size += ring.count;
         layer.offsets[i + 1] = size;
         layer.rings += entries[i].closed;
@@ -183,8 +183,8 @@ void emit(PlaneRange planes, const Plan& plan, const Ranks& ranks, Runs& runs, E
             end_if_stopping(crew.executor());
             if (outline.edges.data == nullptr)
                 outline.edges = edges_of(run, scratch);
-            assert(layer_begin + ring.place + ring.count <= total);
-            write_ring(outline, z, ring, piece.points + layer_begin + ring.place, past_cache, scratch);
+            assert(layer_begin + ring.position + ring.count <= total);
+            write_ring(outline, z, ring, piece.points + layer_begin + ring.position, past_cache, scratch);
         }
     });
 

@@ -1,11 +1,11 @@
-#include "slicing/slabs.hpp"
+#include "slicing/plane_ranges.hpp"
 #include "slicing/sweep/cut_graph.hpp"
 
 #include <algorithm>
 
 namespace lamella {
 
-std::uint64_t SlabMemory::bytes(const SlabNeeds& slab) const noexcept {
+std::uint64_t RangeMemory::bytes(const RangeNeeds& range) const noexcept {
     // While nodes are joined, 20 bytes are allowed for the record of each. Later each node has an entry in
     // the order of starts and, at most, in the list of one task that it reaches into; and each worker has an
     // array with one entry per node for the nodes that it visited.
@@ -16,8 +16,8 @@ std::uint64_t SlabMemory::bytes(const SlabNeeds& slab) const noexcept {
     // A point and the text that a sink makes of it.
     constexpr std::uint64_t point = sizeof(Point2) + 40;
     const std::uint64_t in_flight =
-        std::min(std::max(points_in_flight, 2 * slab.most_points), slab.points + slab.most_points);
-    return sizeof(Triangle3f) * slab.triangles + node * slab.edges + point * in_flight;
+        std::min(std::max(points_in_flight, 2 * range.most_points), range.points + range.most_points);
+    return sizeof(Triangle3f) * range.triangles + node * range.edges + point * in_flight;
 }
 
 } // namespace lamella

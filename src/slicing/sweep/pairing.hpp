@@ -119,19 +119,19 @@ inline std::vector<std::pair<std::size_t, std::size_t>> match(const std::vector<
 /// not in use are ignored. Returns the number of non-manifold edges. O(nodes of the graph + c log c) for c
 /// crowded nodes; only called if there are any.
 template <class Ends>
-std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_t> crowded,
-                                 Executor& executor) {
+std::uint64_t pair_non_manifold_edges(CutGraph<Ends>& graph, std::vector<std::uint32_t> non_manifold,
+                                      Executor& executor) {
     using pairing::Ray;
     using Node = CutNode<Ends>;
 
     const auto ends_order = [&](std::uint32_t a, std::uint32_t b) {
         return std::memcmp(&graph.nodes[a].ends, &graph.nodes[b].ends, sizeof(Ends));
     };
-    std::sort(crowded.begin(), crowded.end(), [&](std::uint32_t a, std::uint32_t b) {
+    std::sort(non_manifold.begin(), non_manifold.end(), [&](std::uint32_t a, std::uint32_t b) {
         const int order = ends_order(a, b);
         return order != 0 ? order < 0 : a < b;
     });
-    crowded.erase(std::unique(crowded.begin(), crowded.end()), crowded.end());
+    non_manifold.erase(std::unique(non_manifold.begin(), non_manifold.end()), non_manifold.end());
     executor.check_cancelled();
 
     const auto third = [&](const Ends& edge, const Ends& other) {
@@ -141,9 +141,9 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
 
     // The triangle that arrives at a node is stored in the node that links to it: one pass over all nodes
     // finds it.
-    std::vector<bool> is_crowded(graph.count);
-    for (const std::uint32_t id : crowded)
-        is_crowded[id] = true;
+    std::vector<bool> is_non_manifold(graph.count);
+    for (const std::uint32_t id : non_manifold)
+        is_non_manifold[id] = true;
     struct Arrival {
         std::uint32_t node;
         std::uint32_t from;
@@ -156,7 +156,7 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
             if (!node.in_use() || !node.left())
                 continue;
             for (const std::uint32_t next : {node.next_low, node.next_high})
-                if (is_crowded[next])
+                if (is_non_manifold[next])
                     found[worker].push_back({next, static_cast<std::uint32_t>(id), node.triangle});
         }
     });
@@ -174,20 +174,20 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
     std::uint64_t edges = 0;
     std::vector<Ray> rays;
     std::vector<Node> links;
-    for (std::size_t begin = 0; begin < crowded.size();) {
+    for (std::size_t begin = 0; begin < non_manifold.size();) {
         if (edges % 1024 == 0)
             executor.check_cancelled();
         std::size_t end = begin + 1;
-        while (end < crowded.size() && ends_order(crowded[begin], crowded[end]) == 0)
+        while (end < non_manifold.size() && ends_order(non_manifold[begin], non_manifold[end]) == 0)
             ++end;
 
-        const Ends edge = graph.nodes[crowded[begin]].ends;
+        const Ends edge = graph.nodes[non_manifold[begin]].ends;
         PlaneSpan span{};
         rays.clear();
         links.clear();
         std::vector<std::uint32_t> spare; // nodes without an arriving contour, for the unpaired links
         for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t id = crowded[i];
+            const std::uint32_t id = non_manifold[i];
             Node& node = graph.nodes[id];
             if (node.in_use())
                 span = graph.spans[id];
@@ -212,7 +212,7 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
         std::sort(rays.begin(), rays.end(), pairing::before);
 
         std::vector<bool> placed(links.size());
-        const auto place = [&](std::uint32_t node, std::uint32_t link) {
+        const auto position = [&](std::uint32_t node, std::uint32_t link) {
             assert(!placed[link]);
             const Node& from = links[link];
             Node& to = graph.nodes[node];
@@ -225,11 +225,11 @@ std::uint64_t pair_crowded_edges(CutGraph<Ends>& graph, std::vector<std::uint32_
             placed[link] = true;
         };
         for (const auto& [arriving, leaving] : pairing::match(rays))
-            place(rays[arriving].node, rays[leaving].node);
+            position(rays[arriving].node, rays[leaving].node);
         for (std::uint32_t link = 0; link < links.size(); ++link) {
             if (!placed[link]) {
                 assert(!spare.empty()); // each unpaired link came with such a node
-                place(spare.back(), link);
+                position(spare.back(), link);
                 spare.pop_back();
             }
         }

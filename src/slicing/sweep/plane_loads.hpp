@@ -14,7 +14,7 @@
 namespace lamella {
 
 /// A chunk of consecutive nodes for one worker, and the numbers of them that begin and end on each plane.
-struct NodeShare {
+struct NodeRange {
     std::uint32_t begin;
     std::uint32_t end;
     std::vector<std::uint32_t> begins; ///< per plane, and one more entry
@@ -32,13 +32,13 @@ struct PlaneLoads {
 
 /// Divides the nodes into chunks, at most one per worker and each large enough for a thread, and counts them.
 template <class Ends>
-std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t planes, Executor& executor) {
+std::vector<NodeRange> count_nodes(const CutGraph<Ends>& graph, std::uint32_t planes, Executor& executor) {
     constexpr std::uint64_t worth_a_thread = 1U << 15; // nodes
     const std::uint64_t shares =
         std::clamp<std::uint64_t>(graph.count / worth_a_thread, 1, executor.workers());
-    std::vector<NodeShare> result(shares);
+    std::vector<NodeRange> result(shares);
     executor.for_chunks(shares, 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
-        NodeShare& share = result[s];
+        NodeRange& share = result[s];
         share.begin = static_cast<std::uint32_t>(graph.count * s / shares);
         share.end = static_cast<std::uint32_t>(graph.count * (s + 1) / shares);
         share.begins.assign(planes + std::size_t{1}, 0);
@@ -55,14 +55,14 @@ std::vector<NodeShare> count_nodes(const CutGraph<Ends>& graph, std::uint32_t pl
 }
 
 /// Returns the sums over all chunks.
-inline PlaneLoads loads_of(const std::vector<NodeShare>& shares, std::uint32_t planes) {
+inline PlaneLoads loads_of(const std::vector<NodeRange>& shares, std::uint32_t planes) {
     PlaneLoads loads;
     loads.points.resize(planes);
     loads.begun.resize(planes + std::size_t{1});
     std::uint64_t alive = 0;
     for (std::uint32_t p = 0; p < planes; ++p) {
         std::uint64_t begins = 0;
-        for (const NodeShare& share : shares) {
+        for (const NodeRange& share : shares) {
             assert(share.begins.size() == planes + std::size_t{1} &&
                    share.ends.size() == share.begins.size());
             begins += share.begins[p];

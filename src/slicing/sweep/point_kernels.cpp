@@ -148,15 +148,15 @@ interleave(const typename Vector<width>::Doubles& x, const typename Vector<width
 /// Stores past the cache. `to` must be a multiple of the vector's size.
 template <int width>
 [[gnu::always_inline]] inline void stream(const typename Vector<width>::Doubles& v, double* to) {
-    [[maybe_unused]] auto& place = *reinterpret_cast<typename Vector<width>::Doubles*>(to);
+    [[maybe_unused]] auto& position = *reinterpret_cast<typename Vector<width>::Doubles*>(to);
 #if defined(__clang__)
-    __builtin_nontemporal_store(v, &place);
+    __builtin_nontemporal_store(v, &position);
 #elif defined(__x86_64__)
     // GCC has no such builtin, and the intrinsics cannot be called from here.
     if constexpr (width == 2)
-        asm("movntpd %1, %0" : "=m"(place) : "x"(v));
+        asm("movntpd %1, %0" : "=m"(position) : "x"(v));
     else
-        asm("vmovntpd %1, %0" : "=m"(place) : "v"(v));
+        asm("vmovntpd %1, %0" : "=m"(position) : "v"(v));
 #else
     store<width>(v, to);
 #endif

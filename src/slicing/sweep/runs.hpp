@@ -34,10 +34,10 @@ struct Run {
 
 /// One contour on one plane.
 struct Ring {
-    Point2 first;        ///< the point at which it starts
-    std::uint32_t start; ///< index of that point after repeated points are dropped
-    std::uint32_t count; ///< number of points kept; 0 if it shrank to a point or a line
-    std::uint64_t place; ///< offset in the layer's array
+    Point2 first;           ///< the point at which it starts
+    std::uint32_t start;    ///< index of that point after repeated points are dropped
+    std::uint32_t count;    ///< number of points kept; 0 if it shrank to a point or a line
+    std::uint64_t position; ///< offset in the layer's array
 };
 
 /// The runs of a task that are needed by later planes or by planes not yet written. They are in the order in

@@ -23,7 +23,7 @@ class StartIndex {
   public:
     /// Requires that the nodes were counted in `shares`, added up in `loads` and divided into `tasks`.
     template <class Ends>
-    StartIndex(const CutGraph<Ends>& graph, const std::vector<NodeShare>& shares, const PlaneLoads& loads,
+    StartIndex(const CutGraph<Ends>& graph, const std::vector<NodeRange>& shares, const PlaneLoads& loads,
                const std::vector<SweepTask>& tasks, Executor& executor)
         : starts_before_(loads.begun), starts_(loads.begun.back()) {
         // Each plane's task.
@@ -32,7 +32,7 @@ class StartIndex {
         for (std::uint32_t t = 0; t < tasks.size(); ++t)
             std::fill(task_of.begin() + tasks[t].planes.begin, task_of.begin() + tasks[t].planes.end, t);
 
-        Places places = places_of(shares, loads, tasks, task_of);
+        Positions positions = places_of(shares, loads, tasks, task_of);
         carried_ = PageArray<std::uint32_t>(carried_before_.back());
         executor.for_chunks(shares.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
             for (std::uint32_t id = shares[s].begin; id < shares[s].end; ++id) {
@@ -40,15 +40,16 @@ class StartIndex {
                 if (span.last == 0)
                     continue;
                 assert(span.first < span.last);
-                starts_[places.starts[s][span.first]++] = id;
+                starts_[positions.starts[s][span.first]++] = id;
                 for (std::uint32_t t = task_of[span.first] + 1;
                      t < tasks.size() && tasks[t].planes.begin < span.last; ++t)
-                    carried_[places.carried[s][t]++] = id;
+                    carried_[positions.carried[s][t]++] = id;
             }
         });
         // The last chunk has completed the starts of each plane and the nodes carried into each task.
-        assert(std::equal(places.starts.back().begin(), places.starts.back().end(), loads.begun.begin() + 1));
-        assert(std::equal(places.carried.back().begin(), places.carried.back().end(),
+        assert(std::equal(positions.starts.back().begin(), positions.starts.back().end(),
+                          loads.begun.begin() + 1));
+        assert(std::equal(positions.carried.back().begin(), positions.carried.back().end(),
                           carried_before_.begin() + 1));
     }
 
@@ -67,22 +68,22 @@ class StartIndex {
 
   private:
     /// The offset at which each chunk of the nodes writes next.
-    struct Places {
+    struct Positions {
         std::vector<std::vector<std::uint64_t>> starts;  ///< per chunk and plane
         std::vector<std::vector<std::uint64_t>> carried; ///< per chunk and task
     };
 
-    Places places_of(const std::vector<NodeShare>& shares, const PlaneLoads& loads,
-                     const std::vector<SweepTask>& tasks, const std::vector<std::uint32_t>& task_of) {
+    Positions places_of(const std::vector<NodeRange>& shares, const PlaneLoads& loads,
+                        const std::vector<SweepTask>& tasks, const std::vector<std::uint32_t>& task_of) {
         const std::uint32_t planes = loads.planes();
-        Places places;
-        places.starts.assign(shares.size(), std::vector<std::uint64_t>(planes));
-        places.carried.assign(shares.size(), std::vector<std::uint64_t>(tasks.size()));
+        Positions positions;
+        positions.starts.assign(shares.size(), std::vector<std::uint64_t>(planes));
+        positions.carried.assign(shares.size(), std::vector<std::uint64_t>(tasks.size()));
         for (std::uint32_t p = 0; p < planes; ++p) {
-            std::uint64_t place = loads.begun[p];
+            std::uint64_t position = loads.begun[p];
             for (std::size_t s = 0; s < shares.size(); ++s)
-                places.starts[s][p] = std::exchange(place, place + shares[s].begins[p]);
-            assert(place == loads.begun[p + 1]);
+                positions.starts[s][p] = std::exchange(position, position + shares[s].begins[p]);
+            assert(position == loads.begun[p + 1]);
         }
         // First the number of nodes that each chunk has for each task, then their offset.
         for (std::size_t s = 0; s < shares.size(); ++s) {
@@ -90,18 +91,18 @@ class StartIndex {
             for (std::uint32_t p = 0; p < planes; ++p) {
                 open -= shares[s].ends[p];
                 if (tasks[task_of[p]].planes.begin == p)
-                    places.carried[s][task_of[p]] = open;
+                    positions.carried[s][task_of[p]] = open;
                 open += shares[s].begins[p];
             }
         }
         carried_before_.assign(tasks.size() + 1, 0);
         for (std::size_t t = 0; t < tasks.size(); ++t) {
-            std::uint64_t place = carried_before_[t];
-            for (std::vector<std::uint64_t>& of_share : places.carried)
-                of_share[t] = std::exchange(place, place + of_share[t]);
-            carried_before_[t + 1] = place;
+            std::uint64_t position = carried_before_[t];
+            for (std::vector<std::uint64_t>& of_share : positions.carried)
+                of_share[t] = std::exchange(position, position + of_share[t]);
+            carried_before_[t + 1] = position;
         }
-        return places;
+        return positions;
     }
 
     std::vector<std::uint64_t> starts_before_; ///< per plane, and one more entry

@@ -163,7 +163,7 @@ void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& 
     ProgressMeter progress(job.execution, Stage::slice, ranks.count());
     OrderedDelivery delivery(executor, progress);
 
-    const std::vector<NodeShare> shares = count_nodes(graph, ranks.count(), executor);
+    const std::vector<NodeRange> shares = count_nodes(graph, ranks.count(), executor);
     const PlaneLoads loads = loads_of(shares, ranks.count());
     const std::vector<SweepTask> tasks = schedule(loads, executor.workers(), job.points_in_flight);
     const StartIndex starts(graph, shares, loads, tasks, executor);

@@ -201,10 +201,10 @@ class Walk {
             followed[segment.next] = true;
         }
         std::vector<bool> joined(segments_.size());
-        const auto join = [&](std::uint32_t head, bool closed) {
+        const auto join = [&](std::uint32_t header, bool closed) {
             joined_.clear();
             std::uint32_t valid_until = end_of_run(plane);
-            for (std::uint32_t s = head; s != no_node && !joined[s]; s = segments_[s].next) {
+            for (std::uint32_t s = header; s != no_node && !joined[s]; s = segments_[s].next) {
                 joined[s] = true;
                 valid_until = std::min(valid_until, segments_[s].valid_until);
                 joined_.insert(joined_.end(),

@@ -97,7 +97,7 @@ TEST(Emit, GivesEachContourItsPlaceBehindTheOneBefore) {
     place_contours(contours.entries, contours.runs, layer);
     EXPECT_EQ(layer.offsets, (std::vector<std::uint64_t>{0, 4, 7, 9}));
     EXPECT_EQ(layer.rings, 2U);
-    EXPECT_EQ(contours.runs.ring(2).place, 7U);
+    EXPECT_EQ(contours.runs.ring(2).position, 7U);
 }
 
 } // namespace

@@ -24,7 +24,7 @@ TEST(StartIndex, NamesTheNodesThatBeginOnAPlaneAndThoseThatReachIntoATask) {
     const std::vector<SweepTask> tasks{{{0, 1}, 50}, {{1, 17}, 50}, {{17, 40}, 50}, {{40, 50}, 50}};
     for (const unsigned threads : {1U, 3U}) {
         Executor executor({.threads = threads});
-        const std::vector<NodeShare> shares = count_nodes(graph, 50, executor);
+        const std::vector<NodeRange> shares = count_nodes(graph, 50, executor);
         const PlaneLoads loads = loads_of(shares, 50);
         const StartIndex index(graph, shares, loads, tasks, executor);
         for (std::uint32_t plane = 0; plane < 50; ++plane)

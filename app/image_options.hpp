@@ -1,0 +1,34 @@
+#pragma once
+
+// Options of image formats.
+
+#include "lamella/write/layer_writer.hpp"
+
+#include "command.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lamella::app {
+
+struct ImageArguments {
+    std::optional<AlongXY<double>> pixel_mm = {};
+    std::optional<AlongXY<std::uint32_t>> pixels = {};
+    std::optional<AlongXY<double>> display_mm = {};
+    std::string orientation = {};
+    std::string mirror = {};
+    std::optional<std::uint32_t> antialias = {};
+    std::optional<double> gamma = {};
+    std::optional<double> exposure_s = {};
+    std::optional<double> first_exposure_s = {};
+    std::optional<std::uint32_t> fade_layers = {};
+
+    /// Throws Error{usage} if options do not apply to the format, and if SOURCE_DATE_EPOCH is not a time.
+    void apply(const LayerFormat& format, LayerWriteOptions& options) const;
+};
+
+[[nodiscard]] OptionGroup image_options(ImageArguments& target);
+
+} // namespace lamella::app

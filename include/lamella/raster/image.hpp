@@ -1,0 +1,85 @@
+#pragma once
+
+// Layers as pixels, for projectors and displays such as those of resin printers.
+
+#include "lamella/contour/layer.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+LAMELLA_API_BEGIN
+namespace lamella {
+
+/// The pixels of an image and the position of a layer among them. Pixel (c, r) is the square [c, c + 1] x [r,
+/// r + 1] of image coordinates (u, v): columns to the right, rows downwards. The point (x, y) lies at
+///     u = ux x + uy y + u0,    v = vx x + vy y + v0.
+struct PixelGrid {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    double ux = 1, uy = 0, u0 = 0;
+    double vx = 0, vy = 1, v0 = 0;
+};
+
+/// Largest width and height of an image in pixels, and largest number of anti-aliasing levels.
+inline constexpr std::uint32_t most_pixels = 65535;
+inline constexpr unsigned most_antialias = 64;
+
+struct RasterOptions {
+    /// A pixel's coverage is the fraction of its area in which the winding number is not zero. It is exact
+    /// with one exception: a contiguous part of a row that contains more corners and crossings of contours
+    /// than this number, or more than twice as many edges, and is not a single line with bends. There the row
+    /// is divided into this number of strips. Each strip is evaluated along its middle; its error is less
+    /// than its own area, and only occurs where contours begin, end, bend or cross within it.
+    ///
+    /// 1 disables anti-aliasing: the centre of a pixel decides. A centre on a contour counts if the material
+    /// lies to its right or, on a horizontal line, below it, so that adjacent bodies share no pixel.
+    unsigned antialias = 8;
+    /// States that the winding number is 0 or 1 everywhere, as `winds_once` of polygon determines. Then
+    /// coverage is a sum over the edges in any order: exact, and several times as fast if contours are finer
+    /// than pixels. If the statement is false, overlaps within a pixel count several times, up to the whole
+    /// pixel. Makes no difference without anti-aliasing. Image writers determine it by themselves.
+    bool winds_once = false;
+    /// The value of a pixel is 255 (v / 255)^gamma, rounded, where v is 255 times its coverage, rounded.
+    double gamma = 1;
+};
+
+/// Consecutive pixels of a row with the same value, from the end of the previous run up to `end`.
+struct PixelRun {
+    std::uint32_t end = 0;
+    std::uint8_t value = 0;
+
+    friend bool operator==(const PixelRun&, const PixelRun&) = default;
+};
+
+/// Receives the next rows of an image, from the top down: `times` equal rows. Consecutive runs differ in
+/// value; the last one ends at the width of the image.
+using RowSink = std::function<void(std::span<const PixelRun> row, std::uint32_t times)>;
+
+/// Rasterises the closed rings of all parts at one height, row by row. Area covered by several parts counts
+/// once. Open chains are ignored; everything outside the image is clipped. Returns the covered area in pixels
+/// before rounding to values. Throws Error{usage} for a grid or options that define no image.
+///
+/// O(p + c log c + r) for p points, r rows and c crossings of contours with rows (or with strips of rows),
+/// with memory for the points and one row. With `winds_once` O(p + c + r), with memory for a few rows.
+double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
+                 const RowSink& sink);
+
+/// An image in memory, row after row.
+struct GreyImage {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<std::uint8_t> values;
+
+    [[nodiscard]] std::span<const std::uint8_t> row(std::uint32_t r) const noexcept {
+        return std::span(values).subspan(std::size_t{r} * width, width);
+    }
+};
+
+/// Does the same and returns the whole image.
+[[nodiscard]] GreyImage paint(std::span<const Layer> parts, const PixelGrid& grid,
+                              const RasterOptions& options = {});
+
+} // namespace lamella
+LAMELLA_API_END

@@ -1,0 +1,31 @@
+#pragma once
+
+// A part of a file that several processes write.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace lamella {
+
+/// Writes consecutive bytes into an existing file from an offset on. Throws Error{output}. For one thread.
+class FileChunk {
+  public:
+    /// `name` is the name of the file in errors: the user does not know its temporary path.
+    FileChunk(const std::string& path, std::uint64_t offset, std::string name);
+    ~FileChunk();
+    FileChunk(const FileChunk&) = delete;
+    FileChunk& operator=(const FileChunk&) = delete;
+
+    void append(std::string_view bytes);
+
+    /// Makes sure that all bytes have reached the file. To be called once, at the end.
+    void finish();
+
+  private:
+    std::string name_;
+    std::uint64_t offset_; ///< offset of the next byte
+    int descriptor_ = -1;
+};
+
+} // namespace lamella

@@ -1,0 +1,42 @@
+#pragma once
+
+// Layers as PNG files, in memory.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/raster/image.hpp"
+
+#include "container/zip_writer.hpp"
+#include "write/byte_buffer.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace lamella {
+
+struct LayerImage {
+    std::shared_ptr<const ByteBuffer> file;
+    std::uint32_t crc = 0; ///< of the file
+    double covered = 0;    ///< pixels
+
+    [[nodiscard]] ZipChunk in_zip() const { return {file->view(), file->view().size(), crc}; }
+};
+
+/// Makes images with the same grid and options, for any number of threads.
+class LayerImages {
+  public:
+    LayerImages(const PixelGrid& grid, const RasterOptions& options);
+
+    /// Draws all parts into one image.
+    [[nodiscard]] LayerImage image(std::span<const Layer> all) const;
+
+    [[nodiscard]] const PixelGrid& grid() const noexcept { return grid_; }
+    [[nodiscard]] const RasterOptions& options() const noexcept { return options_; }
+
+  private:
+    PixelGrid grid_;
+    RasterOptions options_;
+    std::shared_ptr<BufferPool> buffers_ = std::make_shared<BufferPool>();
+};
+
+} // namespace lamella

@@ -1,0 +1,203 @@
+"""lamella slice and convert to pictures: folders, archives, jobs for resin printers."""
+
+import io
+import json
+import os
+import zipfile
+
+from png_image import Image
+from program import UNPRIVILEGED, ProgramTest, binary_stl, main, open_box
+
+
+class Images(ProgramTest):
+    def archive(self, name):
+        archive = zipfile.ZipFile(io.BytesIO(self.bytes_of(name)))
+        self.assertIsNone(archive.testzip())
+        return archive
+
+    def settings(self, archive, name):
+        lines = archive.read(name).decode().splitlines()
+        self.assertEqual(lines, sorted(lines))
+        return dict(line.split(" = ", 1) if " = " in line else (line.rstrip(" ="), "") for line in lines)
+
+    def test_nothing_else_may_lie_in_a_folder_that_is_made(self):
+        self.box()
+        for option, name in [("--stats", "./out/x.json"), ("--report", "./out/x.html")]:
+            self.fail_with(2, f"--output and {option} contradict each other: {name} would lie in the folder", "slice",
+                           "box.stl", "-o", "out", "--format", "png", option, name)
+
+    def test_a_job_needs_no_options(self):
+        self.succeed("slice", self.box(), "-o", "part.sl1")
+        archive = self.archive("part.sl1")
+        images = [f"part{i:05}.png" for i in range(100)]
+        thumbnails = ["thumbnail/thumbnail400x400.png", "thumbnail/thumbnail800x480.png"]
+        self.assertEqual(archive.namelist(), images + ["config.ini", "prusaslicer.ini"] + thumbnails)
+        config = self.settings(archive, "config.ini")
+        self.assertEqual(int(config["numSlow"]) + int(config["numFast"]), 100)
+        self.assertEqual([config[key] for key in ("action", "jobDir", "printerModel")], ["print", "part", "SL1"])
+        self.assertEqual([config[key] for key in ("layerHeight", "expTime", "expTimeFirst")],
+                         ["0.1", "7.5", "35"])
+        self.assertEqual(config["fileCreationTimestamp"], "1970-01-01 at 00:00:00 UTC")
+        self.assertAlmostEqual(float(config["usedMaterial"]), 6, delta=0.01)
+        # Three first layers, ten that fade, the rest; five seconds between two.
+        exposures = 3 * 35 + sum(35 - i / 11 * 27.5 for i in range(1, 11)) + 87 * 7.5
+        self.assertAlmostEqual(float(config["printTime"]), exposures + 100 * 5, places=3)
+        profile = self.settings(archive, "prusaslicer.ini")
+        self.assertEqual([profile["display_" + key] for key in
+                          ("width", "height", "pixels_x", "pixels_y", "orientation", "mirror_x", "mirror_y")],
+                         ["120.96", "68.04", "2560", "1440", "portrait", "1", "0"])
+        image = Image(archive.read("part00050.png"))
+        self.assertEqual((image.width, image.height), (1440, 2560))
+        self.assertEqual(image.chunks, ["IHDR", "IDAT", "IEND"])
+        self.assertAlmostEqual(image.covered() * 0.04725 ** 2, 600, delta=0.5)
+
+    def test_images_given_for_a_mesh_or_for_contours_are_reported(self):
+        for name in ("part.sl1", "part.zip"):
+            self.succeed("slice", self.box(), "-o", name, *(["--format", "png-zip"] if name == "part.zip" else []))
+            for command in (["slice", name, "-o", "x.cli"], ["convert", name, "x.cli"], ["info", name], ["view", name]):
+                with self.subTest(command):
+                    self.fail_with(3, name + ": holds pictures of layers, .*: it is sliced already", *command)
+
+    def test_the_sl1s_has_a_display_of_its_own(self):
+        self.succeed("slice", self.box(), "-o", "part.sl1s", "--layer-height", "1")
+        archive = self.archive("part.sl1s")
+        self.assertEqual(self.settings(archive, "config.ini")["printerModel"], "SL1S")
+        image = Image(archive.read("part00003.png"))
+        self.assertEqual((image.width, image.height), (1620, 2560))
+        self.assertAlmostEqual(image.covered() * 0.05 ** 2, 600, delta=0.01)
+
+    def test_a_job_gives_the_answer_of_its_program(self):
+        self.succeed("slice", self.box(), "-o", "my part.sl1", "--layer-height", "0.5",
+                     "--first-layer-height", "1", "--exposure", "3", "--first-exposure", "20", "--fade-layers", "2", "--gamma", "1.5",
+                     "--display-size", "40,40", "--resolution", "200x100", "--orientation", "landscape",
+                     "--mirror", "y", env={**os.environ, "SOURCE_DATE_EPOCH": "1700000000"})
+        archive = self.archive("my part.sl1")
+        self.assertEqual(archive.namelist()[0], "my_part00000.png")
+        config = self.settings(archive, "config.ini")
+        self.assertEqual((config["expTime"], config["expTimeFirst"], config["numFade"]), ("3", "20", "2"))
+        self.assertEqual(config["fileCreationTimestamp"], "2023-11-14 at 22:13:20 UTC")
+        profile = self.settings(archive, "prusaslicer.ini")
+        self.assertEqual((profile["initial_layer_height"], profile["layer_height"]), ("1", "0.5"))
+        self.assertEqual([profile["display_" + key] for key in ("orientation", "mirror_x", "mirror_y")],
+                         ["landscape", "0", "1"])
+        self.assertEqual(profile["gamma_correction"], "1.5")
+        image = Image(archive.read("my_part00000.png"))
+        self.assertEqual((image.width, image.height), (200, 100))
+
+    def test_a_layer_that_covers_more_than_half_the_display_is_a_slow_one(self):
+        for size, slow in (("20,9.9,1", "0"), ("20,10.1,1", "10")):
+            self.succeed("slice", self.box(size=size), "-o", "part.sl1", "--display-size", "20,20",
+                         "--resolution", "200x200")
+            config = self.settings(self.archive("part.sl1"), "config.ini")
+            self.assertEqual(config["numSlow"], slow)
+
+    def test_folder_and_archive_hold_the_same(self):
+        self.succeed("slice", self.box(), "-o", "out", "--format", "png", "--layer-height", "1")
+        self.succeed("slice", "box.stl", "-o", "out.zip", "--layer-height", "1")
+        archive = self.archive("out.zip")
+        self.assertEqual(sorted(archive.namelist()), sorted(p.name for p in self.path("out").iterdir()))
+        for name in archive.namelist():
+            self.assertEqual(archive.read(name), self.bytes_of(f"out/{name}"))
+        manifest = json.loads(archive.read("manifest.json"))
+        self.assertEqual([layer["file"] for layer in manifest["layers"]], [f"{i:05}.png" for i in range(10)])
+        self.assertEqual((manifest["width"], manifest["height"]), (400, 600))
+        for layer in manifest["layers"]:
+            self.assertAlmostEqual(layer["area_mm2"], 600, places=6)
+        image = Image(archive.read("00000.png"))
+        self.assertEqual(set(b"".join(image.rows)), {255})
+
+    def test_images_are_the_same_for_any_threads(self):
+        self.succeed("make", "rook", "-o", "rook.stl")
+        for name in ("sl1", "zip"):
+            for threads in (1, 2, 5):
+                self.succeed("slice", "rook.stl", "-o", f"a{threads}.{name}",
+                             "--layer-height", "0.7", "--threads", threads)
+            archives = [self.archive(f"a{threads}.{name}") for threads in (1, 2, 5)]
+            contents = [[archive.read(entry) for entry in archive.namelist() if entry.endswith(".png")]
+                        for archive in archives]
+            self.assertEqual(contents[0], contents[1])
+            self.assertEqual(contents[0], contents[2])
+
+    def test_images_can_be_made_of_a_slice_file(self):
+        self.succeed("slice", self.box(), "-o", "part.cli", "--layer-height", "1")
+        self.succeed("convert", "part.cli", "part.zip", "--pixel-size", "0.1,0.2", "--antialias", "1")
+        manifest = json.loads(self.archive("part.zip").read("manifest.json"))
+        self.assertEqual((manifest["width"], manifest["height"], manifest["antialias"]), (200, 150, 1))
+
+    def test_standard_output_takes_a_job(self):
+        result = self.succeed("slice", self.box(), "-o", "-", "--format", "sl1", "--layer-height", "5")
+        self.assertEqual(zipfile.ZipFile(io.BytesIO(result.out)).namelist()[0], "layers00000.png")
+
+    def test_what_does_not_fit_is_refused(self):
+        self.box(size="130,30,2")
+        self.fail_with(2, r"part measures 130 x 30 mm and the display of the SL1 only 120\.96 x 68\.04 mm",
+                       "slice", "box.stl", "-o", "part.sl1")
+        self.fail_with(2, "need 1.3e\\+06 pixels of 0.0001 mm, and 65535 are the most",
+                       "slice", "box.stl", "-o", "part.zip", "--pixel-size", "0.0001")
+
+    def test_options_that_make_no_sense_are_refused(self):
+        self.box()
+        for options, pattern in [
+                (["--pixel-size", "0"], "not a length or two"),
+                (["--pixel-size", "nan"], "--pixel-size"),
+                (["--pixel-size", "1,2,3"], "not a length or two"),
+                (["--resolution", "100"], "such as 2560x1440"),
+                (["--resolution", "0x5"], "columns and of rows"),
+                (["--resolution", "70000x5"], "up to 65535"),
+                (["--display-size", "-1,1"], "not a length or two"),
+                (["--antialias", "0"], '"0" is not a whole number from 1 to 64'),
+                (["--antialias", "65"], '"65" is not a whole number from 1 to 64'),
+                (["--antialias", "5000000000"], '--antialias: "5000000000" is not a whole number from 1 to 64'),
+                (["--antialias", "99999999999999999999999"], '"99999999999999999999999" is not a whole number from 1'),
+                (["--fade-layers", "5000000000"], '"5000000000" is not a whole number from 0 to 4294967295'),
+                (["--gamma", "0"], "above 0"),
+                (["--mirror", "z"], "--mirror"),
+                (["--orientation", "upside"], "--orientation"),
+                (["--exposure", "3"], "sl1, sl1s, not with png-zip"),
+                (["--pixel-size", "1", "--display-size", "10.5,40"], "no whole number"),
+                (["--pixel-size", "1", "--display-size", "40,40", "--resolution", "40x50"],
+                 "are 50 mm, not the 40 mm")]:
+            self.fail_with(2, pattern, "slice", "box.stl", "-o", "part.zip", *options)
+        self.fail_with(2, "--antialias goes with the formats png, png-zip, sl1, sl1s, not with cli",
+                       "slice", "box.stl", "-o", "part.cli", "--antialias", "4")
+        self.fail_with(2, "SOURCE_DATE_EPOCH is \"soon\"", "slice", "box.stl", "-o", "part.sl1",
+                       env={**os.environ, "SOURCE_DATE_EPOCH": "soon"})
+
+    def test_heights_that_differ_make_no_job(self):
+        self.write("z.txt", "1\n2\n2.5\n")
+        self.box()
+        self.fail_with(2, "one layer height", "slice", "box.stl", "-o", "part.sl1", "--z-list", "z.txt")
+
+    def test_open_contours_are_reported_and_cover_nothing(self):
+        self.write("open.stl", binary_stl(open_box(10, 10, 10)))
+        result = self.succeed("slice", "open.stl", "-o", "part.zip", "--layer-height", "5")
+        self.assertIn("open chain", result.err)
+        self.assertEqual(Image(self.archive("part.zip").read("00000.png")).covered(), 0)
+
+    def test_what_cannot_be_looked_at_is_not_removed(self):
+        self.box()
+        for name in ["png", "svg-layers"]:
+            with self.subTest(name):
+                out = self.path(name)
+                out.mkdir()
+                (out / "thesis.txt").write_text("years")
+                out.chmod(0o444)
+                result = self.run_program("slice", "box.stl", "-o", name, "--format", name, **UNPRIVILEGED)
+                out.chmod(0o700)
+                self.assertEqual(result.code, 6, result.err)
+                self.assertIn("holds something else", result.err)
+                self.assertEqual((out / "thesis.txt").read_text(), "years")
+
+    def test_a_folder_that_may_not_be_searched(self):
+        self.box()
+        locked = self.path("locked")
+        locked.mkdir()
+        locked.chmod(0)
+        self.addCleanup(locked.chmod, 0o700)
+        result = self.run_program("slice", "box.stl", "-o", "locked/x", "--format", "png", **UNPRIVILEGED)
+        self.assertEqual(result.code, 6)
+        self.assertIn("no permission in the folder 'locked'", result.err)
+
+
+if __name__ == "__main__":
+    main()
