@@ -301,7 +301,7 @@ std::string summary(const FileJob& job, const FileResult& result) {
     text += fmt::format("sliced   {} from z = {} to {} mm: {}, {}{}\n",
                         counted(result.report.layers, "layer"), height(result.bottom), height(result.top),
                         counted(result.report.contours, "contour"), counted(result.report.points, "point"),
-                        result.ranges == 0 ? "" : fmt::format(", in {}", counted(result.ranges, "slab")));
+                        result.ranges == 0 ? "" : fmt::format(", in {}", counted(result.ranges, "range")));
     if (job.shard)
         text += fmt::format("shard    {} of {}: layers {} to {} of {}\n", job.shard->number, job.shard->count,
                             result.shard.begin, result.shard.end - 1, result.planned_layers);

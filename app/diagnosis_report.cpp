@@ -271,9 +271,9 @@ std::string mesh_text(const MeshFile& file, const Diagnosis& found, const Plate&
     text += defects.empty() ? result_line("defects", "none") : defects;
     if (found.self_intersections) {
         const std::string intersections =
-            defects_text("meetings", intersections_of(*found.self_intersections));
+            defects_text("intersections", intersections_of(*found.self_intersections));
         text += intersections.empty()
-                    ? result_line("meetings", "none: no two triangles cross, overlap or touch")
+                    ? result_line("intersections", "none: no two triangles cross, overlap or touch")
                     : intersections;
         std::uint64_t pairs = 0;
         for (const PartIntersections& part : found.self_intersections->parts)
@@ -298,7 +298,7 @@ Json mesh_json(const MeshFile& file, const Diagnosis& found, const Plate& plate)
                                          "shells", "cavities"})));
     json["defects"] = std::move(defects);
     json["boundary_length_mm"] = found.boundary_length_mm;
-    json["locations"] = locations_json(found);
+    json["places"] = locations_json(found);
     json["shell_list"] = shells_json(found);
     json["self_intersections"] =
         found.self_intersections ? intersections_json(*found.self_intersections) : Json();

@@ -368,7 +368,7 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
     stats["peak_rss_bytes"] = peak_rss_bytes();
     stats.update(as_json(picked(run, {"points", "contours", "open_chains", "volume_mm3"})));
     if (result.ranges != 0)
-        stats["slabs"] = result.ranges;
+        stats["ranges"] = result.ranges;
     if (result.changes) {
         Json changes = {{"changed_layers", result.changes->changed_layers}};
         changes.update(changes_json(*result.changes));

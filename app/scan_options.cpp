@@ -111,7 +111,7 @@ ScanStrategy ScanArguments::strategy() const {
 }
 
 OptionGroup scan_options(ScanArguments& target, std::vector<Option> first) {
-    OptionGroup group{"Scan vectors; hatch options apply to all regions, which a strategy can distinguish",
+    OptionGroup group{"Scan vectors; hatch options apply to all regions, unlike those of a strategy",
                       std::move(first)};
     group.options.push_back(input_file(
         "strategy", "a file of contours, hatches, skins and powers; see lamella strategy show", target.file));

@@ -31,7 +31,7 @@ def main(program, folder):
     if shutil.which("rsvg-convert"):
         run("rsvg-convert", "--zoom", "2", "--output", image.with_suffix(".png"), image)
         image = image.with_suffix(".png")
-    print(f"The slice files are in {folder}/; for a picture open {picture}.")
+    print(f"The slice files are in {folder}/; for an image open {image}.")
     page = folder / "rook.html"
     if view(program, folder / "rook.stl", page):
         print(f"To look at all layers, open {page} with a browser.")

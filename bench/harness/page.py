@@ -26,7 +26,7 @@ class Table:
 
     def add(self, *cells):
         if len(cells) != len(self.header):
-            raise ValueError(f"{len(cells)} cells in a table of {len(self.head)} columns")
+            raise ValueError(f"{len(cells)} cells in a table of {len(self.header)} columns")
         self.rows.append([str(cell) for cell in cells])
 
 

@@ -75,27 +75,27 @@ class Bench:
         outcome = self.run(self.options.lamella, "slice", mesh, "-o", output, "--stats", stats, "--threads",
                            self.options.threads, "--layer-height", self.options.layer_height, *limit)
         told = json.loads(stats.read_text(encoding="utf-8"))
-        return {"seconds": outcome.seconds, "slabs": told.get("slabs", 0), "peak_rss_bytes": outcome.peak_rss_bytes,
+        return {"seconds": outcome.seconds, "ranges": told.get("ranges", 0), "peak_rss_bytes": outcome.peak_rss_bytes,
                 "seconds_of": told["seconds"], "layers": told["layers"], "output": output,
                 "output_bytes": output.stat().st_size}
 
     def ratio(self):
         """Slices a mesh that fits into memory, whole and in ranges of planes, alternately."""
         mesh = self.make(self.options.fitting_cells)
-        times = {"whole": [], "slabs": []}
+        times = {"whole": [], "ranges": []}
         self.slice(mesh)  # fills the cache
         for _ in range(self.options.rounds):
             whole = self.slice(mesh)
             ranges = self.slice(mesh, self.options.fitting_memory)
-            if whole["slabs"] != 0 or ranges["slabs"] < 2:
+            if whole["ranges"] != 0 or ranges["ranges"] < 2:
                 raise SystemExit("the one that should fit does not, or the one that should not does")
             if whole["layers"] != ranges["layers"]:
                 raise SystemExit("the layers differ")
             times["whole"].append(whole["seconds"])
-            times["slabs"].append(ranges["seconds"])
+            times["ranges"].append(ranges["seconds"])
         seconds = {name: statistics.median(all_) for name, all_ in times.items()}
-        told = {"seconds": seconds, "ratio": seconds["slabs"] / seconds["whole"], "slabs": ranges["slabs"],
-                "peak_rss_bytes": {"whole": whole["peak_rss_bytes"], "slabs": ranges["peak_rss_bytes"]}}
+        told = {"seconds": seconds, "ratio": seconds["ranges"] / seconds["whole"], "ranges": ranges["ranges"],
+                "peak_rss_bytes": {"whole": whole["peak_rss_bytes"], "ranges": ranges["peak_rss_bytes"]}}
         print(f"whole: {seconds['whole']:.2f} s, {whole['peak_rss_bytes'] / 1e6:.0f} MB; with "
               f"{self.options.fitting_memory} in {slabs['slabs']} slabs: {seconds['slabs']:.2f} s, "
               f"{slabs['peak_rss_bytes'] / 1e6:.0f} MB: {told['ratio']:.2f} times the time", flush=True)
@@ -116,7 +116,7 @@ class Bench:
         self.remove(mesh, sliced["output"])
         if sliced["peak_rss_bytes"] > 1.1 * limit:
             raise SystemExit("more memory than was allowed")
-        told = {key: sliced[key] for key in ("seconds", "seconds_of", "slabs", "peak_rss_bytes", "output_bytes")}
+        told = {key: sliced[key] for key in ("seconds", "seconds_of", "ranges", "peak_rss_bytes", "output_bytes")}
         return dict(told, layers=len(sliced["layers"]), largest_area_error=worst)
 
     def check(self, mesh, layers):

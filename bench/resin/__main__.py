@@ -117,8 +117,8 @@ def build_page(cells, done, present, here, options):
              "is the same part as a slice file without pictures: what pictures cost lies between the two.",
              f"{here['processor']}, {here['threads']} threads, {here['memory']}; {here['system']}; {here['date']}; "
              + ", ".join(f"{slicer.title} {version}" for slicer, version in present if slicer.images) + ".",
-             f"{pictures.LOOKED_AT} pictures of each job are compared, pixel by pixel; a time counts when there are as many "
-             f"pictures, or one fewer, and differences add up to less than {pictures.MOST_APART:g} of the covered area, and "
+             f"{images.LOOKED_AT} images of each job are compared, pixel by pixel; a time counts when there are as many "
+             f"images, or one fewer, and differences add up to less than {images.MOST_APART:g} of the covered area, and "
              "stands in brackets otherwise. The last layer is not looked at: where the part ends within it, programs cut it "
              "elsewhere.")
     for part in done:

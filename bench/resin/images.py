@@ -28,10 +28,10 @@ class Agreement:
 
     def text(self):
         if not self.as_many:
-            return f"{self.pictures} pictures instead of {self.expected}"
+            return f"{self.images} images instead of {self.expected}"
         if not self.same_size:
             return "pictures of another size"
-        return f"{self.pictures}; pixels differ by at most {self.largest} of 255, in all by {self.apart:.1g} of the area"
+        return f"{self.images}; pixels differ by at most {self.largest} of 255, in all by {self.apart:.1g} of the area"
 
 
 def names(archive):

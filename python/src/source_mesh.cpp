@@ -297,7 +297,7 @@ void bind_meshes(py::module_& module) {
              [](const SourceMesh& self, const Matrix& rows, unsigned threads) {
                  return transformed(self, transform_of(rows), "transform", threads);
              })
-        .def("_turned",
+        .def("_rotated",
              [](const SourceMesh& self, const std::array<double, 3>& d, unsigned threads) {
                  return transformed(self, upright({d[0], d[1], d[2]}), "direction", threads);
              })

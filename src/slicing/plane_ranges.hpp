@@ -150,8 +150,8 @@ struct RangeMemory {
     [[nodiscard]] std::uint64_t bytes(const RangeNeeds& range) const noexcept;
 };
 
-/// Divides the planes into exactly `slabs` ranges with the smallest possible largest work. The result is the
-/// same on every machine. Throws Error{usage} if there are fewer planes than ranges, or if `slabs` is 0.
+/// Divides the planes into exactly `ranges` ranges with the smallest possible largest work. The result is the
+/// same on every machine. Throws Error{usage} if there are fewer planes than ranges, or if `ranges` is 0.
 [[nodiscard]] std::vector<PlaneRange> divide_evenly(const RangeSurvey& survey, std::uint32_t ranges);
 
 /// Divides the planes into the fewest ranges that take at most `most_bytes` each; among these divisions,

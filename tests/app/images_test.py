@@ -56,7 +56,7 @@ class Images(ProgramTest):
             self.succeed("slice", self.box(), "-o", name, *(["--format", "png-zip"] if name == "part.zip" else []))
             for command in (["slice", name, "-o", "x.cli"], ["convert", name, "x.cli"], ["info", name], ["view", name]):
                 with self.subTest(command):
-                    self.fail_with(3, name + ": holds pictures of layers, .*: it is sliced already", *command)
+                    self.fail_with(3, name + ": holds images of layers, .*: it is sliced already", *command)
 
     def test_the_sl1s_has_a_display_of_its_own(self):
         self.succeed("slice", self.box(), "-o", "part.sl1s", "--layer-height", "1")

@@ -1,4 +1,4 @@
-"""lamella slice --max-memory: files that do not fit give the same bytes slab by slab, and leave nothing behind."""
+"""lamella slice --max-memory: files that do not fit give the same bytes range by range, and leave nothing behind."""
 
 import json
 import os
@@ -11,7 +11,7 @@ import threading
 
 from program import PROGRAM, ProgramTest, binary_stl, main, open_box
 
-# The program and its threads take some of each limit; what is left makes many slabs of these small meshes.
+# The program and its threads take some of each limit; what is left makes many ranges of these small meshes.
 TIGHT = {1: "39M", 2: "52M", 7: "116M"}
 MEASURED = """
 import resource, subprocess, sys
@@ -41,12 +41,12 @@ class Memory(ProgramTest):
     def check(self, *arguments, name="cli", least_ranges=2, stdin=b"", threads=(1, 2, 7)):
         """The bytes and hashes of a run in memory, for all numbers of threads."""
         whole = self.slice(*arguments, "-o", f"whole.{name}", stdin=stdin)
-        self.assertNotIn("slabs", whole)
+        self.assertNotIn("ranges", whole)
         for n in threads:
-            stats = self.slice(*arguments, "-o", f"slabs.{name}", "--threads", n, "--max-memory", TIGHT[n],
+            stats = self.slice(*arguments, "-o", f"ranges.{name}", "--threads", n, "--max-memory", TIGHT[n],
                                stdin=stdin)
-            self.assertGreaterEqual(stats["slabs"], least_ranges)
-            self.assertEqual(self.bytes_of(f"slabs.{name}"), self.bytes_of(f"whole.{name}"))
+            self.assertGreaterEqual(stats["ranges"], least_ranges)
+            self.assertEqual(self.bytes_of(f"ranges.{name}"), self.bytes_of(f"whole.{name}"))
             self.assertEqual(stats["layers"], whole["layers"])
             for key in ["points", "contours", "open_chains", "volume_mm3"]:
                 self.assertEqual(stats[key], whole[key])
@@ -220,7 +220,7 @@ class Memory(ProgramTest):
         plate = ["sheet.stl", "--copies", 3, "--layer-height", 0.005]
         whole = self.slice(*plate)
         windows = self.slice(*plate, "--max-memory", "140M", "--threads", 2)
-        self.assertNotIn("slabs", list(windows))
+        self.assertNotIn("ranges", list(windows))
         self.assertEqual(windows["layers"], whole["layers"])
         self.assertEqual(windows["parts"], whole["parts"])
         self.assertGreater(16 * whole["parts"][0]["points"], 1.5 * 140e6)
@@ -323,9 +323,9 @@ class Memory(ProgramTest):
             self.environment["TMPDIR"] = str(self.spill)
             whole = self.slice(name, *options, "-o", "whole.cli")
             self.environment["TMPDIR"] = "/nowhere"
-            ranges = self.slice(name, *options, "-o", "slabs.cli", "--max-memory", "120M", "--threads", 2)
-            self.assertGreater(ranges["slabs"], 1)
-            self.assertEqual(self.bytes_of("slabs.cli"), self.bytes_of("whole.cli"))
+            ranges = self.slice(name, *options, "-o", "ranges.cli", "--max-memory", "120M", "--threads", 2)
+            self.assertGreater(ranges["ranges"], 1)
+            self.assertEqual(self.bytes_of("ranges.cli"), self.bytes_of("whole.cli"))
             self.assertEqual(ranges["volume_mm3"], whole["volume_mm3"])
 
     def test_a_run_that_is_stopped_leaves_nothing(self):
@@ -353,7 +353,7 @@ class Memory(ProgramTest):
         self.write("open.stl", binary_stl(open_box(20, 30, 10) * 30000))
         whole = self.slice("open.stl", "--layer-height", "2")
         ranges = self.slice("open.stl", "--layer-height", "2", "--max-memory", "160M", "--threads", 2)
-        self.assertIn("slabs", ranges)
+        self.assertIn("ranges", ranges)
         self.assertEqual(whole["layers"], ranges["layers"])
 
 

@@ -97,7 +97,7 @@ class Repair(ProgramTest):
         self.assertEqual(repair["orient"]["flipped_triangles"], 3)
         text = self.succeed("slice", "broken.stl", "--orient", "--drop-duplicates", "-o", "x.cli").text
         self.assertRegex(text, r"dropped +3 triangles repeated")
-        self.assertRegex(text, r"oriented +3 triangles turned")
+        self.assertRegex(text, r"oriented +3 triangles flipped")
 
     def test_strict_looks_at_the_mesh_before_it_is_mended(self):
         self.write("twice.stl", binary_stl(box_triangles(20, 30, 10) + box_triangles(20, 30, 10)))

@@ -97,7 +97,7 @@ class Shard(ProgramTest):
             self.succeed("slice", "part.stl", "-o", "a.cli", "--shard", f"{i}/3")
             self.succeed("slice", "part.stl", "-o", "b.cli", "--shard", f"{i}/3", "--max-memory", "55M", "--threads", 2,
                          "--stats", "b.json")
-            self.assertIn("slabs", json.loads(self.bytes_of("b.json")))
+            self.assertIn("ranges", json.loads(self.bytes_of("b.json")))
             self.assertEqual(self.bytes_of("a.cli"), self.bytes_of("b.cli"))
 
     def test_finished_shards_are_skipped(self):

@@ -181,7 +181,7 @@ class View(ProgramTest):
             notes = element(self.page(name), "notes")
             places = notes["places"]
             facts = {fact["name"]: fact["value"] for section in notes["sections"] for fact in section["facts"]}
-            self.assertEqual((facts["Boundary edges"], facts["Crowded edges"]), ("4", "none"))
+            self.assertEqual((facts["Boundary edges"], facts["Non-manifold edges"]), ("4", "none"))
             self.assertIn(" 4 boundary edges: the surface has holes", self.succeed("info", "open.stl").text)
             self.assertIn("the surface has holes", places[0]["text"])
             self.assertEqual([(place["kind"], place["found"]) for place in places], [("boundary loop", 1)])

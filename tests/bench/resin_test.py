@@ -41,7 +41,7 @@ class Jobs(unittest.TestCase):
     def test_layers_that_are_missing_are_reported(self):
         agreement = images.compare(self.job(), self.job("--layers", "0:3"))
         self.assertFalse(agreement.good)
-        self.assertEqual(agreement.text(), "3 pictures instead of 5")
+        self.assertEqual(agreement.text(), "3 images instead of 5")
 
     def test_a_thin_last_layer_may_be_missing(self):
         self.assertTrue(images.compare(self.job(), self.job("--layers", "0:4")).good)

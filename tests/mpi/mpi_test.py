@@ -178,7 +178,7 @@ class Failures(MpiTest):
             with self.subTest(victim):
                 # Millions of layers: minutes of work, had it been left alone.
                 process = subprocess.Popen(self.command(3, MPI_PROGRAM, "slice", "part.stl", "-o", "out.cli",
-                                                        "--layer-height", "0.000003"), cwd=self.folder,
+                                                        "--layer-height", "0.00003"), cwd=self.folder,
                                            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
                 self.addCleanup(process.stderr.close)
                 self.addCleanup(process.kill)

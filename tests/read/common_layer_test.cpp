@@ -286,7 +286,7 @@ TEST(ReadCommonLayer, StatedDirectionHoldsAgainstTheOrderOfPoints) {
     const LayerFile file = read(ascii("$$LAYER/0\n$$LAYER/50\n$$POLYLINE/1,0,4,0,0,10,0,10,10,0,0\n"));
     EXPECT_LT(measure(file.parts.at(0).layers.front()).area_mm2, 0);
     ASSERT_EQ(file.warnings.size(), 1U);
-    EXPECT_NE(file.warnings.front().find("turned round"), std::string::npos);
+    EXPECT_NE(file.warnings.front().find("reversed"), std::string::npos);
 }
 
 TEST(ReadCommonLayer, UnclosedRingsAreClosedAndSlightOnesDropped) {

@@ -75,15 +75,15 @@ TEST(Stl, NamesTheFormatOfAForeignFile) {
     says("<?xml version=\"1.0\"?>", "XML");
     says("version https://git-lfs.github.com/spec/v1\n", "git lfs pull");
     says(std::string("\xFF\xFEs\0o\0l\0", 8), "UTF-16");
-    says("\x89PNG\r\n\x1A\n", "a picture");
-    says("\xFF\xD8\xFF\xE0", "a picture");
+    says("\x89PNG\r\n\x1A\n", "an image");
+    says("\xFF\xD8\xFF\xE0", "an image");
     says("%PDF-1.7", "PDF");
     says("\x7F"
          "ELF\2",
          "a program");
     says("\xFD"
          "7zXZ",
-         "unpack it first");
+         "decompress it first");
     says("EOS 1993 SLI FILE   ", "export CLI instead");
     says("ISO-10303-21;\nHEADER;\n", "surfaces without triangles");
     says("\xD0\xCF\x11\xE0\xA1\xB1", "surfaces without triangles");

@@ -59,7 +59,7 @@ struct FileJob {
     /// A limit of reading; `strict` below holds for it, too.
     std::uint64_t max_triangles = 0;
     /// Bytes that the run may take, with all threads, in each process; 0: three quarters of the memory there
-    /// is. STL files that could not be sliced whole with that are sliced slab by slab, by way of a temporary
+    /// is. STL files that could not be sliced whole with that are sliced range by range, by way of a temporary
     /// file without a name in $TMPDIR, else /var/tmp, with the same result. What can only be done with the
     /// whole mesh is Error{limit} then: inspection, strict, the repairs that change a mesh, adaptive layers,
     /// engines that weld, and formats other than STL. Without an explicit limit these still run.
