@@ -177,7 +177,7 @@ TEXTS = [
     (lambda: lamella.slice(box_arrays(), transform=np.full((4, 4), np.nan)), ValueError,
      "transform: expected finite numbers, found nan or inf"),
     (lambda: lamella.slice(box_arrays(), transform=np.diag([1, 1, 1, 2])), ValueError,
-     "transform: the last row of a transform must be 0, 0, 0, 1, and this one is 0, 0, 0, 2: meshes are moved, turned and "
+     "transform: the last row of a transform must be 0, 0, 0, 1, and this one is 0, 0, 0, 2: meshes are moved, rotated and "
      "scaled, but not projected"),
     (lambda: lamella.slice(box_arrays(), offsets=[1, 3, 2]), ValueError,
      "offsets: 2 is not above the one before it, 3; the list must ascend"),
