@@ -27,7 +27,7 @@ namespace lamella {
 
 namespace {
 
-/// Adds up sides that lie upon one another.
+/// Adds up coincident sides.
 void merge(Arrangement& arrangement) {
     std::vector<Side>& sides = arrangement.sides;
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
@@ -45,16 +45,16 @@ void merge(Arrangement& arrangement) {
     std::erase_if(sides, [](const Side& side) { return side.step == SideCount{}; });
 }
 
-/// How close sides can be that others are drawn to when these are cut: each end and each piece moves by less
-/// than the diagonal of a unit square.
+/// Largest distance at which sides can be drawn to another side when these are cut: each end and each piece
+/// moves by less than the diagonal of a unit square.
 constexpr double reach_of_cuts = 4;
-/// The same if sides were joined to bundles before: see `join_bundles`.
+/// The same if sides were joined to bundles before; see `join_bundles`.
 constexpr double reach_of_bundles = 12;
 
-/// The sides of rings, not yet cut.
+/// The sides of rings before they are cut.
 class Uncut {
   public:
-    /// `reach`: from how close on sides are cut.
+    /// `reach` is the distance below which sides count as close.
     Uncut(std::span<const RingWithWinding> rings, const ClippingGrid& grid, double reach) {
         std::vector<Point2> positions;
         for (const RingWithWinding& ring : rings) {
@@ -72,8 +72,8 @@ class Uncut {
         merge(arrangement);
     }
 
-    Arrangement arrangement; ///< of sides that may come close to others
-    std::vector<Side> alone; ///< the rest
+    Arrangement arrangement; ///< sides that may come close to others
+    std::vector<Side> alone; ///< all other sides
 
   private:
     void add(const RingWithWinding& ring, std::size_t number, OpenRuns& runs) {
@@ -101,7 +101,7 @@ class Uncut {
                 ++i;
                 continue;
             }
-            std::size_t last = i; // of the sides that go the same way
+            std::size_t last = i; // last of the sides with the same x-direction
             while (last + 1 < n && !close(last + 1) && rightwards(last + 1) == rightwards(i))
                 ++last;
             const auto first = static_cast<std::uint32_t>(arrangement.corners.size());
@@ -118,20 +118,20 @@ class Uncut {
         }
     }
 
-    Layer layer_; ///< of places
+    Layer layer_; ///< points are grid positions
     std::vector<bool> close_;
 };
 
-// Snap rounding (Hobby 1999; Guibas and Marimont 1998). The plane is tiled by unit squares around the places
-// of the grid, each with its lower and its left border. Squares in which sides end or cross are hot, and each
-// side is drawn to the places of all hot squares that it comes into. Sides may come to lie upon one another
-// then, but never cross: outside of hot squares they did not, and each square shrinks to its place. That is
-// so for the sides as they are given, all at once, and decided exactly: sides that are bent first and looked
-// at again may drift from place to place.
+// Snap rounding (Hobby 1999; Guibas and Marimont 1998). Unit squares around the grid positions tile the
+// plane. Each square includes its lower and its left border. A square is hot if sides end or cross in it, and
+// each side is drawn to the centres of all hot squares that it enters. Sides may then coincide, but never
+// cross: they did not cross outside of hot squares, and each square shrinks to its centre. This holds if all
+// given sides are tested at once and exactly; sides that are bent first and then tested again may drift from
+// position to position.
 
 __extension__ using Wide = __int128;
 
-/// A difference of places, at most 2^38.
+/// Converts a difference of positions, at most 2^38.
 std::int64_t whole(double number) noexcept {
     return static_cast<std::int64_t>(number);
 }
@@ -149,18 +149,18 @@ Wide cross(const GridVector& a, const GridVector& b) noexcept {
     return Wide{a.x} * b.y - Wide{a.y} * b.x;
 }
 
-/// The place in whose square two sides cross properly.
+/// Returns the position in whose square two sides cross properly.
 Point2 crossing_point(const Segment& a, const Segment& b) noexcept {
     const GridVector u = from_to(a.lo, a.hi);
     const GridVector v = from_to(b.lo, b.hi);
     Wide of = cross(u, v);
-    Wide share = cross(from_to(a.lo, b.lo), v); // of u, up to the crossing
+    Wide share = cross(from_to(a.lo, b.lo), v); // fraction of u up to the crossing, times `of`
     if (of < 0) {
         of = -of;
         share = -share;
     }
     assert(of > 0 && share > 0 && share < of);
-    const auto nearest = [&](std::int64_t way) { // halves upwards
+    const auto nearest = [&](std::int64_t way) { // rounds halves upwards
         const Wide twice = 2 * share * way + of;
         const Wide floor = twice / (2 * of) - (twice % (2 * of) < 0 ? 1 : 0);
         return static_cast<double>(static_cast<std::int64_t>(floor));
@@ -168,7 +168,7 @@ Point2 crossing_point(const Segment& a, const Segment& b) noexcept {
     return {a.lo.x + nearest(u.x), a.lo.y + nearest(u.y)};
 }
 
-/// Whether a side comes into the square of a place that is not one of its ends.
+/// Returns whether a side enters the square of a position that is not one of its ends.
 bool comes_into(const Segment& s, const Point2& position) noexcept {
     const auto [low, high] = std::minmax(s.lo.y, s.hi.y);
     if (position.x < s.lo.x || position.x > s.hi.x || position.y < low || position.y > high)
@@ -176,13 +176,12 @@ bool comes_into(const Segment& s, const Point2& position) noexcept {
     const GridVector way = from_to(s.lo, s.hi);
     const Wide twice = 2 * cross(way, from_to(s.lo, position));
     const Wide reach = Wide{way.x} + (way.y < 0 ? -way.y : way.y);
-    // The corners at either end of the borders that belong to the square do not, but for the one between
-    // them.
+    // The end points of the two included borders are not part of the square, except their common point.
     return -reach < twice && (twice < reach || (twice == reach && way.y < 0));
 }
 
-/// Positions, no two of them the same, sorted into cells; those of a cell that has many into cells of its
-/// own: where sides run through one point, crossings of all pairs lie close together.
+/// Distinct positions, sorted into cells. Cells with many positions are divided again: where sides run
+/// through one point, the crossings of all pairs lie close together.
 class Positions {
   public:
     explicit Positions(std::vector<Point2> positions)
@@ -191,7 +190,7 @@ class Positions {
         [[maybe_unused]] const bool sorted =
             cells_.sort(numbers, positions_.size(),
                         [this](std::uint32_t i, const auto& visit) { visit(cells_.cell(positions_[i])); });
-        assert(sorted); // each place is in one cell
+        assert(sorted); // each position is in one cell
         if (size_ <= least_size)
             return;
         for (std::size_t cell = 0; cell < cells_.cells(); ++cell) {
@@ -206,8 +205,8 @@ class Positions {
         }
     }
 
-    /// Calls visit(place) for those, but for the ends of the segment, for which `on(segment, place)`; they
-    /// lie within two units of it.
+    /// Calls visit(position) for each position with `on(segment, position)`, except the ends of the segment;
+    /// they lie within two units of it.
     template <class On, class Visit>
     void for_points_on(const Segment& s, const On& on, const Visit& visit) const {
         cells_.for_cells_along(s, [&](std::size_t cell) {
@@ -228,8 +227,8 @@ class Positions {
 
   private:
     static constexpr std::size_t crowd = 128;
-    /// Of cells so large that a segment's margin covers the unit squares into which it comes, and those
-    /// beside them.
+    /// Size of cells at which a segment's margin covers the unit squares that the segment enters, and their
+    /// neighbours.
     static constexpr double least_size = 2 / Grid::margin;
 
     static double cell_size(std::span<const Point2> positions) {
@@ -241,7 +240,7 @@ class Positions {
     double size_;
     Grid cells_;
     std::vector<std::size_t> full_cells_; ///< ascending
-    std::vector<Positions> crowds_;       ///< of each of them
+    std::vector<Positions> crowds_;       ///< one for each full cell
 };
 
 Positions distinct(std::vector<Point2> positions) {
@@ -259,7 +258,7 @@ static_assert(bytes_of_crossing == 4 * sizeof(Side) + 8 * sizeof(Point2));
 
 using CrossingPairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// Of more than `most` crossings, more than `most`.
+/// Returns all crossings; if there are more than `most`, any number above `most` of them.
 CrossingPairs crossings_of(std::span<const Side> sides, std::uint64_t most, const LayerBudget& budget) {
     std::vector<Segment> lines;
     lines.reserve(sides.size());
@@ -277,17 +276,17 @@ CrossingPairs all_crossings_of(std::span<const Side> sides, const LayerBudget& b
     return pairs;
 }
 
-/// From how many on, crossings and cuts are too many to be those of most layers.
+/// Number of crossings and cuts above which a layer is treated as exceptional.
 std::uint64_t many(std::span<const Side> sides) noexcept {
     return 16 * sides.size() + 65536;
 }
 
-/// Sides that lie within 1.5 units of the longest of them, between its ends. Their own ends are places on it.
+/// Sides that lie within 1.5 units of the longest of them, between its ends. Their own ends are on it.
 struct Bundle {
-    /// What lies between a place and the next one, as the difference from what lies before.
+    /// The count between a position and the next one, minus the count before.
     struct Step {
         SideCount step;
-        std::int64_t forth = 0; ///< of steps to the left, those above 0, and below
+        std::int64_t forth = 0; ///< sum of the positive `left` of the steps; `back` that of the negative ones
         std::int64_t back = 0;
     };
     std::vector<Point2> positions;
@@ -316,11 +315,11 @@ bool is_beside(const Segment& s, const Point2& position) noexcept {
                reach_of_bundle * std::sqrt(static_cast<double>(squared));
 }
 
-/// Where thousands of sides lie on one line but for the rounding to the grid, each crosses most of the others
-/// anywhere. Here each is led through the ends of the others that it lies beside: as they all are then, what
-/// lies upon one another adds up as in `join_collinear`. A side moves by at most twice the reach of a bundle,
-/// with its ends where they were, so rings stay closed. O(n log n) for n sides in few bundles; in the worst
-/// case, some cuts for each.
+/// Bundles nearly collinear sides. If thousands of sides lie on one line except for rounding to the grid,
+/// each crosses most of the others at arbitrary points. Each side is led through those ends of other sides
+/// that lie beside it, so that coincident sides add up as in `join_collinear`. A side moves by at most twice
+/// the reach of a bundle and its ends do not move, so rings stay closed. O(n log n) for n sides in few
+/// bundles; a number of cuts for each side in the worst case.
 void join_bundles(Arrangement& arrangement, const LayerBudget& budget) {
     std::vector<Side>& sides = arrangement.sides;
     const auto squared_length = [](const Side& side) {
@@ -412,10 +411,10 @@ void join_bundles(Arrangement& arrangement, const LayerBudget& budget) {
     merge(arrangement);
 }
 
-/// A line through places of the grid: sides on it have the same one, exactly.
+/// A line through grid positions. Sides on it have exactly the same one.
 struct CarryingLine {
-    GridVector direction; ///< from left to right, in lowest terms
-    Wide height;          ///< cross product of the direction with any of its places
+    GridVector direction; ///< from left to right, reduced to lowest terms
+    Wide height;          ///< cross product of the direction with any position of the line
 
     explicit CarryingLine(const Segment& s) noexcept : direction(from_to(s.lo, s.hi)) {
         const std::int64_t divisor = std::gcd(direction.x, direction.y);
@@ -425,8 +424,8 @@ struct CarryingLine {
     [[nodiscard]] auto key() const noexcept { return std::tie(direction.x, direction.y, height); }
 };
 
-/// Cuts sides that overlap on one line at one another's ends and adds up what lies upon one another there, so
-/// that n of them become 2 n pieces at most. Cut one by one, they would be cut at each end within each.
+/// Cuts sides that overlap on one line at one another's ends and adds up the coincident pieces, so that n
+/// sides become at most 2 n pieces. Cut one by one, each side would be cut at every end within it.
 void join_collinear(Arrangement& arrangement) {
     struct End {
         CarryingLine line;
@@ -445,7 +444,7 @@ void join_collinear(Arrangement& arrangement) {
         return a.line.key() != b.line.key() ? a.line.key() < b.line.key() : a.at < b.at;
     });
     std::vector<Side> sides;
-    SideCount here; // of those over the way to the next end
+    SideCount here; // sum over the sides up to the next end
     std::int64_t forth = 0;
     std::int64_t back = 0;
     std::size_t open = 0;
@@ -464,8 +463,8 @@ void join_collinear(Arrangement& arrangement) {
     arrangement.sides = std::move(sides);
 }
 
-/// Pieces of sides. Those that lie upon one another are mostly made one shortly after the other, and are
-/// added up then: thousands of sides that run along one another take no more memory than what comes of them.
+/// Pieces of sides. Most coincident pieces are made shortly after one another and are added up at once:
+/// thousands of sides that run along one another take no more memory than their sums.
 class Pieces {
   public:
     explicit Pieces(std::size_t sides) : last_(std::bit_ceil(4 * sides + 1024), none) {}
@@ -473,7 +472,7 @@ class Pieces {
     void add(const Point2& a, const Point2& b, const SideCount& step) {
         assert(a != b);
         if (b < a)
-            return add(b, a, -1 * step); // turned upright
+            return add(b, a, -1 * step); // reversed to run from left to right
         std::uint32_t& last = last_[hash(a, b) & (last_.size() - 1)];
         std::vector<Side>& sides = all_.sides;
         if (last != none && sides[last].line.lo == a && sides[last].line.hi == b) {
@@ -497,11 +496,11 @@ class Pieces {
     }
 
     Arrangement all_;
-    std::vector<std::uint32_t> last_; ///< by hash: the number of the piece that was added last
+    std::vector<std::uint32_t> last_; ///< by hash: the index of the piece that was added last
 };
 
-/// Cuts the sides at those of the places for which `on(segment, place)`. False where that takes more than
-/// `most` cuts; then nothing is cut.
+/// Cuts the sides at the positions for which `on(segment, position)` is true. Returns false without cutting
+/// if that takes more than `most` cuts.
 template <class On>
 bool try_to_cut(Arrangement& arrangement, const Positions& positions, const On& on, std::uint64_t most,
                 bool& any, const LayerBudget& budget) {
@@ -520,7 +519,7 @@ bool try_to_cut(Arrangement& arrangement, const Positions& positions, const On& 
         made += cuts.size() + 1;
         if (made > most)
             return false;
-        // In the order in which it comes into their squares.
+        // In the order in which the side enters their squares.
         const bool falls = side.line.hi.y < side.line.lo.y;
         std::sort(cuts.begin(), cuts.end(), [&](const Point2& a, const Point2& b) {
             return a.x != b.x ? a.x < b.x : falls ? a.y > b.y : a.y < b.y;
@@ -545,16 +544,16 @@ bool try_to_cut(Arrangement& arrangement, const Positions& positions, const On& 
     return true;
 }
 
-/// What takes some ten seconds.
+/// Number of pieces that take some ten seconds.
 constexpr std::uint64_t most_pieces = std::uint64_t{1} << 27;
 
-/// Whether there was anything to cut.
+/// Returns whether any side was cut.
 template <class On>
 bool cut(Arrangement& arrangement, const Positions& positions, const On& on, const LayerBudget& budget) {
     bool any = false;
     if (try_to_cut(arrangement, positions, on, many(arrangement.sides), any, budget))
         return any;
-    join_collinear(arrangement); // which cuts what would be cut anyway
+    join_collinear(arrangement); // makes cuts that are needed anyway
     if (!try_to_cut(arrangement, positions, on, most_pieces, any, budget))
         throw Error(
             ErrorKind::limit,
@@ -564,7 +563,7 @@ bool cut(Arrangement& arrangement, const Positions& positions, const On& on, con
     return true;
 }
 
-/// Finds what is below each side, by a sweep from left to right. The sides meet in their ends only.
+/// Finds the counts below each side by a sweep from left to right. The sides meet only at their ends.
 void wind(Arrangement& arrangement, const LayerBudget& budget) {
     std::vector<Side>& sides = arrangement.sides;
     const SideCount around{arrangement.around, 0};
@@ -573,7 +572,7 @@ void wind(Arrangement& arrangement, const LayerBudget& budget) {
     for (const Side& side : sides)
         lines.push_back(side.line);
     std::vector<std::uint32_t> next_corner(sides.size(), 0);
-    // The line of a side over a place that the sweep has come to, and did not before.
+    // Returns the segment of a side over a position of the sweep. Positions must ascend.
     const auto along = [&arrangement, &next_corner](std::uint32_t i, const Point2& at) -> Segment {
         const Side& side = arrangement.sides[i];
         const std::span<const Corner> corners = arrangement.corners_of(side);
@@ -592,7 +591,7 @@ void wind(Arrangement& arrangement, const LayerBudget& budget) {
             continue;
         }
         budget.check();
-        // Sides that begin in one point are placed together, for each takes its number from the one below.
+        // Sides that begin at one point are inserted together, as each takes its count from the one below.
         const Point2 at = event->at;
         std::uint32_t side = event->segment;
         for (; event != events.end() && event->begins && event->at == at; ++event)
@@ -613,11 +612,11 @@ void wind(Arrangement& arrangement, const LayerBudget& budget) {
     assert(status.empty());
 }
 
-/// Whether rings of which `winding` tells how often they wind around a place bound the material, up to areas
-/// that rounding to the grid can make.
+/// Returns whether rings bound the material, up to areas that rounding to the grid can create. `winding`
+/// returns how many times the rings wind around a point.
 template <class Winding>
 bool bounds(const Arrangement& arrangement, const Material& material, const Winding& winding) {
-    double excess = 0; // the integral of by how much they do not
+    double excess = 0; // integral of the deviation from the material
     double length = 0;
     const std::int64_t outside =
         (material(arrangement.around) ? 1 : 0) - winding(SideCount{arrangement.around, 0});
@@ -658,7 +657,7 @@ Arrangement arranged(std::span<const RingWithWinding> rings, const Windings& aro
         for (const auto& [a, b] : pairs)
             hot.push_back(crossing_point(arrangement.sides[a].line, arrangement.sides[b].line));
         if (cut(arrangement, distinct(std::move(hot)), comes_into, budget) && !arrangement.sides.empty()) {
-            // What was bent may run through ends that it did not come near to.
+            // A bent side may run through ends that it was not close to before.
             std::vector<Point2> ends;
             add_ends(arrangement.sides, ends);
             cut(

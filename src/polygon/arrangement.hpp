@@ -1,6 +1,6 @@
 #pragma once
 
-// Rings cut where they meet, and the winding numbers on both sides of every piece.
+// Rings cut at their intersections, and the winding numbers on both sides of every piece.
 
 #include "lamella/contour/layer.hpp"
 
@@ -16,16 +16,16 @@
 
 namespace lamella {
 
-/// A ring, and what it adds where it runs counter-clockwise: to the windings of its inside, and to how often
-/// what is left of it winds around that: 1 for a ring that is to stay, -1 for one that is to be turned round,
-/// 0 for one that is to go.
+/// A ring and its contribution to the points that it encloses counter-clockwise. `turn` is added to their
+/// winding numbers. `left` is added to the winding number of the remaining rings: 1 if the ring remains, -1
+/// if it remains reversed, 0 if it is removed.
 struct RingWithWinding {
     std::span<const Point2> points;
     Windings turn{1, 0};
     std::int64_t left = 0;
 };
 
-/// What changes across a piece of the boundary, from below to above, or what is there.
+/// The change across a piece of the boundary from below to above, or the counts at a point.
 struct SideCount {
     Windings windings;
     std::int64_t left = 0;
@@ -42,50 +42,50 @@ struct SideCount {
     friend bool operator==(const SideCount&, const SideCount&) = default;
 };
 
-/// A corner of a ring, and where that is on the grid.
+/// A corner of a ring and its position on the grid.
 struct Corner {
     Point2 position;
     Point2 point;
 };
 
-/// A piece of the boundary, on the grid, in the order of a sweep from left to right: a line that other sides
-/// may come close to, or some of a ring's that no others do. All numbers are whole.
+/// A piece of the boundary on the grid, from left to right: a single segment that other sides may come close
+/// to, or consecutive segments of a ring that no other sides come close to. All coordinates are integers.
 struct Side {
-    Segment line; ///< from its first place to its last one
+    Segment line; ///< from its first position to its last
     SideCount step;
     SideCount below = {};
     bool alone = false;
-    std::uint32_t first = 0; ///< its corners but for the ends, in Arrangement::corners; of a line, none
+    std::uint32_t first = 0; ///< corners without the ends, in Arrangement::corners; none for a segment
     std::uint32_t corners = 0;
 
     [[nodiscard]] SideCount above() const noexcept { return below + step; }
 };
 
-/// Sides that meet in their ends only.
+/// Sides that meet only at their ends.
 struct Arrangement {
     std::vector<Side> sides;
-    std::vector<Corner> corners;     ///< of sides but for their ends, each from left to right
-    std::vector<Corner> end_corners; ///< of rings where sides end
-    Windings around;                 ///< outside of all
-    /// Whether rings that are left run along one another there and back, so that nothing lies between them.
+    std::vector<Corner> corners;     ///< of the sides without their ends, each from left to right
+    std::vector<Corner> end_corners; ///< of rings, where sides end
+    Windings around;                 ///< outside of all rings
+    /// True if remaining rings run along one another in opposite directions, with no area between them.
     bool walls = false;
-    bool crossed = false; ///< whether the rings do, before their corners are put on the grid
+    bool crossed = false; ///< true if the rings cross before their corners are rounded to the grid
 
     [[nodiscard]] std::span<const Corner> corners_of(const Side& side) const noexcept {
         return std::span(corners).subspan(side.first, side.corners);
     }
 
-    /// Whether the rings as they are bound the material, up to areas that rounding to the grid can make. Not
-    /// known of rings of both operands.
+    /// Returns whether the unchanged rings bound the material, up to the areas that rounding to the grid can
+    /// create. Meaningless for rings of both operands.
     [[nodiscard]] bool bounded_by_all(const Material& material) const;
-    /// Whether what is left of them does.
+    /// Returns the same for the remaining rings.
     [[nodiscard]] bool bounded_by_rest(const Material& material) const;
 };
 
-/// The rings, in any order and each starting anywhere, cut on the grid where they meet. `around`: the
-/// windings outside of all of them. O(n + (m + k) log m) for n points, m sides that come close to others or
-/// turn, and k crossings, as far as these are found in that.
-/// Throws Error{limit} for more crossings or pieces than the budget has room for, and Error{cancelled}.
+/// Cuts the rings on the grid at their intersections. The rings may come in any order and start at any point.
+/// `around` holds the winding numbers outside of all rings. Throws Error{limit} for more crossings or pieces
+/// than the budget allows, and Error{cancelled}. O(n + (m + k) log m) for n points, k crossings, and m sides
+/// that come close to others or reverse in x, if these are found in that time.
 [[nodiscard]] Arrangement arranged(std::span<const RingWithWinding> rings, const Windings& around,
                                    const ClippingGrid& grid, const LayerBudget& budget = {});
 

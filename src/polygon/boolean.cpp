@@ -23,7 +23,7 @@ namespace {
 
 using Rings = std::vector<std::span<const Point2>>;
 
-/// The rings of two layers in normal form: those that both have, bit for bit, and those of either alone.
+/// The rings of two layers in normal form: those in both, bit for bit, and those in one layer only.
 struct Shares {
     Shares(const Layer& a, const Layer& b) {
         std::size_t i = 0;
@@ -48,8 +48,8 @@ struct Shares {
     Rings second;
 };
 
-/// Leaves out rings of both layers that have nothing to do with those of one alone. Outside of the box of
-/// these, either layer winds as the other does.
+/// Removes common rings that are irrelevant to the rings of one layer only. Outside of the box of the latter,
+/// the winding numbers of both layers are equal.
 void drop_far(Shares& rings) {
     std::optional<Box2> box;
     for (const Rings* alone : {&rings.first, &rings.second})
@@ -63,7 +63,7 @@ void drop_far(Shares& rings) {
     });
 }
 
-/// Of a layer without hatches.
+/// Builds a layer without hatches.
 Layer with_header_and_chains_of(const Layer& first, const Rings& rings) {
     Layer layer{.index = first.index, .z = first.z, .bottom = first.bottom, .top = first.top};
     std::vector<Point2> points;
@@ -80,7 +80,7 @@ Layer with_header_and_chains_of(const Layer& first, const Rings& rings) {
     return layer;
 }
 
-/// `least`: as of `Material`.
+/// `least` has the meaning that it has for `Material`.
 Layer combined(const Layer& first, const Layer& second, BooleanOperation operation, std::int64_t least,
                const LayerLimits& limits) {
     const Layer a = normal_form(first);
@@ -89,7 +89,7 @@ Layer combined(const Layer& first, const Layer& second, BooleanOperation operati
     const bool same = shares.first.empty() && shares.second.empty();
     if (operation == BooleanOperation::subtract || operation == BooleanOperation::exclude) {
         if (least == 1)
-            drop_far(shares); // what both layers have cancels there, whatever is around it
+            drop_far(shares); // common rings cancel there, whatever is around them
     } else if (same) {
         Layer layer = fill(a, FillRule::positive, limits).layer;
         layer.hatches = {};

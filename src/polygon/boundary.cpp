@@ -18,8 +18,8 @@ namespace {
 struct Directed {
     Point2 from;
     Point2 to;
-    Point2 second; ///< place of it: the next one after `from`
-    Point2 last;   ///< the one before `to`
+    Point2 second; ///< position that follows `from`
+    Point2 last;   ///< position before `to`
     const Side* side;
 };
 
@@ -32,7 +32,7 @@ Directed directed(const Arrangement& arrangement, const Side& side, bool rightwa
                       : Directed{hi, lo, next_to_hi, next_to_lo, &side};
 }
 
-/// Whether, turning clockwise about v from the direction to u, a comes before b.
+/// Returns whether a comes before b when turning clockwise about v, beginning at the direction to u.
 bool clockwise_before(const Point2& v, const Point2& u, const Point2& a, const Point2& b) noexcept {
     const auto half = [&](const Point2& p) {
         const int turn = orientation(v, u, p);
@@ -45,11 +45,11 @@ bool clockwise_before(const Point2& v, const Point2& u, const Point2& a, const P
     return half_a != half_b ? half_a < half_b : orientation(v, a, b) < 0;
 }
 
-/// For each point where sides begin, those that no ring has yet, clockwise about it. Where thousands begin in
-/// one point, the next one is found without a look at all of them.
+/// For each point where sides begin, the sides that are not yet in a ring, clockwise about it. Where
+/// thousands begin at one point, the next one is found without a search through all of them.
 class SidesAhead {
   public:
-    /// Sorted by where they begin. They are to outlive this.
+    /// `sides` are sorted by their beginnings and must outlive this object.
     explicit SidesAhead(std::span<const Directed> sides)
         : sides_(sides), clockwise_(sides.size()), position_(sides.size()), left_(sides.size() + 1) {
         std::iota(clockwise_.begin(), clockwise_.end(), std::size_t{0});
@@ -67,7 +67,7 @@ class SidesAhead {
 
     void take(std::size_t side) noexcept { left_[position_[side]] = position_[side] + 1; }
 
-    /// The first one, clockwise from the direction back along a side, of those that begin where it ends.
+    /// Returns the first side that begins where this one ends, clockwise from the direction back along it.
     [[nodiscard]] std::size_t after(const Directed& side) {
         const Point2& v = side.to;
         const auto begin =
@@ -75,7 +75,7 @@ class SidesAhead {
                                                           [&](const Directed& s) { return s.from < v; }) -
                                      sides_.begin());
         const std::size_t end = end_of(begin);
-        assert(begin < end); // as many sides begin in a point as end there
+        assert(begin < end); // equal numbers of sides begin and end at a point
         const Point2& first = sides_[begin].second;
         const auto next = std::partition_point(position(begin), position(end), [&](std::size_t i) {
             return !clockwise_before(v, first, side.last, sides_[i].second);
@@ -91,7 +91,7 @@ class SidesAhead {
     [[nodiscard]] std::vector<std::size_t>::iterator position(std::size_t i) {
         return clockwise_.begin() + static_cast<std::ptrdiff_t>(i);
     }
-    /// Of those that begin in the same point as a side.
+    /// Returns the end of the sides that begin at the same point.
     [[nodiscard]] std::size_t end_of(std::size_t side) const noexcept {
         std::size_t end = side;
         std::size_t step = 1;
@@ -114,12 +114,12 @@ class SidesAhead {
     }
 
     std::span<const Directed> sides_;
-    std::vector<std::size_t> clockwise_; ///< of each point from where its first side leads to
-    std::vector<std::size_t> position_;  ///< of a side in that order
-    std::vector<std::size_t> left_;      ///< links to the next position of one that is left
+    std::vector<std::size_t> clockwise_; ///< for each point, beginning at the direction of its first side
+    std::vector<std::size_t> position_;  ///< position of a side in that order
+    std::vector<std::size_t> left_;      ///< links to the next position of an unused side
 };
 
-/// Joins sides to rings; where several meet, so that each keeps its own wedge of material.
+/// Joins sides to rings. Where several meet, each ring keeps its own wedge of material.
 std::vector<std::vector<Directed>> joined(std::vector<Directed> sides) {
     std::sort(sides.begin(), sides.end(), [](const Directed& a, const Directed& b) {
         return std::tie(a.from, a.second) < std::tie(b.from, b.second);
@@ -158,7 +158,7 @@ std::vector<Ring> boundary(const Arrangement& arrangement, const Material& mater
     std::sort(ends.begin(), ends.end(), [](const Corner& a, const Corner& b) {
         return std::tie(a.position, a.point) < std::tie(b.position, b.point);
     });
-    // Of several corners in a place the smallest, and where there is none the place itself.
+    // The smallest of the corners at a position, or the position itself if there are none.
     const auto end_at = [&](const Point2& position) {
         const auto corner = std::partition_point(ends.begin(), ends.end(),
                                                  [&](const Corner& c) { return c.position < position; });
@@ -184,7 +184,7 @@ std::vector<Ring> boundary(const Arrangement& arrangement, const Material& mater
             in_run = !side.side->alone;
         }
     }
-    const bool crossed = std::move(runs).crossed(); // by corners that were put back
+    const bool crossed = std::move(runs).crossed(); // by corners that got their coordinates back
     std::vector<Ring> result;
     for (const std::vector<Corner>& corners_of_ring : found) {
         Ring& ring = result.emplace_back();

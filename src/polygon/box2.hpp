@@ -32,13 +32,13 @@ struct Box2 {
     [[nodiscard]] double largest_coordinate() const noexcept {
         return std::max({std::abs(x0), std::abs(y0), std::abs(x1), std::abs(y1)});
     }
-    /// Touching counts.
+    /// Returns whether the boxes overlap or touch.
     [[nodiscard]] bool meets(const Box2& other) const noexcept {
         return x0 <= other.x1 && other.x0 <= x1 && y0 <= other.y1 && other.y0 <= y1;
     }
 };
 
-/// The box of some points, at least one.
+/// Returns the box of at least one point.
 template <class Points>
 [[nodiscard]] Box2 box_of(const Points& points) noexcept {
     assert(points.begin() != points.end());

@@ -70,7 +70,7 @@ bool ChainGrid::surrounded(const Point2& p, std::uint32_t ring) const noexcept {
                        [&](std::uint32_t i) { return pieces_[i].ring != ring && boxes_[i].meets(at); });
 }
 
-/// False where the pieces reach into too many cells, or extents are beyond numbers.
+/// Returns false if the pieces overlap too many cells, or if extents overflow.
 bool ChainGrid::sort() {
     double extents = 0;
     for (const Box2& box : boxes_)
@@ -86,7 +86,7 @@ bool ChainGrid::sort() {
 }
 
 bool ChainGrid::full() const noexcept {
-    std::uint64_t pairs = 0; // of pieces in a cell, over all cells
+    std::uint64_t pairs = 0; // pairs of pieces in a cell, summed over all cells
     for (std::size_t cell = 0; cell < cells_->cells(); ++cell) {
         const std::uint64_t here = cells_->in_cell(cell).size();
         pairs += here * here;

@@ -11,16 +11,16 @@ namespace lamella {
 
 using Ring = std::vector<Point2>;
 
-/// A square grid whose unit is a power of two, at most 2^-36 of the layer's extent (about 1e-9 mm for 100 mm)
+/// A square grid. Its unit is a power of two, at most 2^-36 of the layer's extent (about 1e-9 mm for 100 mm)
 /// or, far from the origin, the last place of the largest coordinate.
 class ClippingGrid {
   public:
-    /// `margin` is by how much results may reach beyond the points. Throws Error{limit} when coordinates are
+    /// `margin` is the largest distance of results from the points. Throws Error{limit} if coordinates are
     /// too large.
     explicit ClippingGrid(std::span<const Point2> points, double margin = 0);
 
     [[nodiscard]] double unit() const noexcept { return unit_; }
-    /// The nearest place: whole numbers, at most some 2^37.
+    /// Returns the nearest grid position: integers of at most about 2^37.
     [[nodiscard]] Point2 position(const Point2& p) const noexcept;
     [[nodiscard]] Point2 point(const Point2& position) const noexcept {
         return {(origin_.x + position.x) * unit_ + 0.0, (origin_.y + position.y) * unit_ + 0.0};

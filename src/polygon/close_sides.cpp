@@ -15,7 +15,7 @@ namespace lamella {
 
 namespace {
 
-/// Whether t lies on one side of the line of s, farther from it than `reach`.
+/// Returns whether t lies on one side of the line of s, farther from it than `reach`.
 bool beside(const Segment& s, const Segment& t, double reach) noexcept {
     const double dx = s.hi.x - s.lo.x;
     const double dy = s.hi.y - s.lo.y;
@@ -45,8 +45,8 @@ class CloseSides {
     }
 
   private:
-    /// Sides of one chain that do not follow each other are close only where those between are short, and
-    /// these are found here.
+    /// Non-consecutive sides of one chain are close only if the sides between them are short, and those are
+    /// found here.
     void compare_neighbours(std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t i = begin; i < end; ++i) {
             const std::uint64_t next = i + 1 < end ? i + 1 : begin;
@@ -58,7 +58,7 @@ class CloseSides {
         }
     }
 
-    /// False when it would take too long.
+    /// Returns false if the search would take too long.
     bool search(const ChainGrid& grid) {
         work_budget_ = 64 * (grid.pieces().size() + layer_.points.size()) + 4096;
         for (const Chain& piece : grid.pieces())
@@ -77,7 +77,7 @@ class CloseSides {
                 for (std::size_t b = a + 1; b < here.size(); ++b) {
                     const Box2& s = grid.box(here[a]);
                     const Box2& t = grid.box(here[b]);
-                    // Boxes may meet in many cells: one of them will do.
+                    // Boxes may meet in many cells: the pair is compared in one of them.
                     if (s.meets(t) && i == cells.cell({std::max(s.x0, t.x0), std::max(s.y0, t.y0)}))
                         for (const Chain& chain : grid.chains(grid.pieces()[here[a]]))
                             for (const Chain& other : grid.chains(grid.pieces()[here[b]]))
@@ -94,7 +94,7 @@ class CloseSides {
 
     void compare(const Chain& a, const Chain& b) { compare(a, 0, a.segments, b, 0, b.segments); }
 
-    /// The segments [a0, a1) of chain a with the segments [b0, b1) of b.
+    /// Compares the segments [a0, a1) of chain a with the segments [b0, b1) of b.
     void compare(const Chain& a, std::uint32_t a0, std::uint32_t a1, const Chain& b, std::uint32_t b0,
                  std::uint32_t b1) {
         if (!take(1) || !Box2::of(chains_.point(a, a0), chains_.point(a, a1))

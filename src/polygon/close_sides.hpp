@@ -1,6 +1,6 @@
 #pragma once
 
-// Which sides of rings come close to others.
+// Finds sides of rings that come close to other sides.
 
 #include "lamella/contour/layer.hpp"
 
@@ -8,11 +8,10 @@
 
 namespace lamella {
 
-/// For each point of a layer that has rings only, whether the side that begins there may come as close as
-/// `reach` to another one; of two sides that follow each other, beside the end that both have. A side that
-/// does is never left out, some others are not either. Rings of one point count for nobody else. O(points)
-/// for rings of which few sides are close; where it would take many steps for each point, all sides are told
-/// to be close.
+/// Returns for each point of a layer whether the side that begins there may come within `reach` of another
+/// side. Consecutive sides are compared apart from their common end. Every close side is marked; some others
+/// are marked, too. Rings of one point are ignored. Requires a layer without open chains. O(points) for rings
+/// with few close sides; if it would take many steps for each point, all sides are marked.
 [[nodiscard]] std::vector<bool> close_sides(const Layer& rings, double reach);
 
 } // namespace lamella

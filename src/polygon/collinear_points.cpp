@@ -23,14 +23,14 @@ double cross(const Point2& v, const Point2& w) noexcept {
     return v.x * w.y - v.y * w.x;
 }
 
-/// A straight way from a point to another one, on which points between them were left out.
+/// A straight segment between two points; the points between them are removed.
 class Way {
   public:
     Way(const Point2& from, const Point2& to) : from_(from), to_(to) {}
 
     [[nodiscard]] const Point2& to() const noexcept { return to_; }
 
-    /// Whether it can go on straight to p: then it does, and its end is left out.
+    /// Extends the segment to p if it stays straight, and removes its former end. Returns whether it did.
     bool go_on_to(const Point2& p, double tolerance) noexcept {
         const Point2 v = between(from_, to_);
         const Point2 w = between(from_, p);
@@ -40,7 +40,7 @@ class Way {
             return false;
         if (left_out_ && (cross(right_, w) < 0 || cross(w, left_) < 0))
             return false;
-        // Ways to the right and to the left of which the end would be too far off.
+        // Directions to the right and to the left in which the end would be too far away.
         const double shift = tolerance / std::sqrt(square);
         const Point2 right{v.x + shift * v.y, v.y - shift * v.x};
         const Point2 left{v.x - shift * v.y, v.y + shift * v.x};
@@ -57,11 +57,11 @@ class Way {
     Point2 from_;
     Point2 to_;
     bool left_out_ = false;
-    Point2 right_; ///< the directions between which the way must stay for the points that were left out
+    Point2 right_; ///< limits of the direction for the points that were removed
     Point2 left_;
 };
 
-/// Puts the ring without its straight points; as it is where too few would be left.
+/// Appends the ring without its collinear points, or unchanged if too few points would remain.
 void put_ring(std::span<const Point2> ring, double tolerance, std::vector<Point2>& out) {
     const std::size_t begin = out.size();
     out.push_back(ring[0]);

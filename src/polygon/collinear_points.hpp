@@ -1,16 +1,16 @@
 #pragma once
 
-// Points that say nothing about a ring.
+// Removes collinear points of rings.
 
 #include "lamella/contour/layer.hpp"
 
 namespace lamella {
 
-/// The layer without points of rings that lie on the straight way between others, to within `tolerance` mm:
-/// where a mesh has two triangles in one plane, a section through it has such a point on the edge between
-/// them. No point of a ring that is left out is farther than that from the new one. First points of rings
-/// remain, open chains stay as they are; so do rings of which fewer than three points would be left, and
-/// layers so small or large that squares of their lengths could be beyond numbers. O(points).
+/// Returns the layer without collinear points of its rings, to within `tolerance` mm. Where a mesh has two
+/// triangles in one plane, a section through it has such a point on their common edge. No removed point is
+/// farther than `tolerance` from the new ring. The first points of rings remain. Unchanged are open chains,
+/// rings of which fewer than three points would remain, and layers so small or large that squares of their
+/// lengths could underflow or overflow. O(points).
 [[nodiscard]] Layer remove_collinear_points(const Layer& layer, double tolerance);
 
 } // namespace lamella

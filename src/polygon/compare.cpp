@@ -26,7 +26,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// How far the format may have moved a point of these layers.
+/// Returns the largest distance by which the format may have moved a point of these layers.
 double moved_points(const RoundedLayers& stack) {
     double most = 0;
     for (const Layer& layer : stack.layers)
@@ -34,7 +34,7 @@ double moved_points(const RoundedLayers& stack) {
     return most;
 }
 
-/// Pairs the layers of two stacks, which both ascend. `tolerance_mm`: of heights, beside rounding.
+/// Pairs the layers of two stacks, which both ascend. `tolerance_mm` is added to the rounding of heights.
 std::vector<ComparedPlane> paired(const RoundedLayers& first, const RoundedLayers& second,
                                   double tolerance_mm) {
     const auto z = [](const RoundedLayers& stack, std::size_t i) {
@@ -67,8 +67,8 @@ std::vector<ComparedPlane> paired(const RoundedLayers& first, const RoundedLayer
     return planes;
 }
 
-/// The largest way from a corner of `from` to the contours of the other, where it is larger than what was
-/// found before.
+/// Raises `largest` to the largest squared distance from a corner of `from` to the contours of the other
+/// layer, if that is larger.
 void farthest(const Layer& from, const EdgeTree& to, double& largest, Point2& where) {
     for (const Point2& p : from.points) {
         const double distance = to.empty() ? infinity : to.distance_squared(p, largest);
@@ -79,11 +79,11 @@ void farthest(const Layer& from, const EdgeTree& to, double& largest, Point2& wh
     }
 }
 
-/// The same of all points of an edge, to a thousandth.
+/// Does the same for all points of an edge, to a thousandth.
 void farthest(const Point2& a, const Point2& b, const EdgeTree& to, double& largest, Point2& where) {
     const Point2 middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
     const auto [s, t] = to.nearest(middle);
-    // From an edge on which points move evenly, distances to another one are convex: the ends are farthest.
+    // Along an edge, the distance to another edge is convex, so the ends are farthest.
     if (std::max(distance_squared(a, s, t), distance_squared(b, s, t)) <= 1.002 * largest)
         return;
     const double squared = distance_squared(middle, s, t);
@@ -107,7 +107,7 @@ void farthest_between_corners(const Layer& from, const EdgeTree& to, double& lar
     }
 }
 
-/// How much area has to move across the box of both layers to make their first moments so different.
+/// Returns the area that has to move across the box of both layers to explain their first moments.
 double displaced(const Layer& first, const Layer& second, const Box2& box) {
     const Point2 middle{box.x0 + box.width() / 2, box.y0 + box.height() / 2};
     const AreaMoments one = area_moments(first, middle);
@@ -118,7 +118,7 @@ double displaced(const Layer& first, const Layer& second, const Box2& box) {
     return std::max(per(one.x_mm3 - other.x_mm3, box.width()), per(one.y_mm3 - other.y_mm3, box.height()));
 }
 
-/// Distances up to the tolerance are those of corners.
+/// Compares two layers. Distances up to the tolerance are those of corners.
 LayerDifference compare_beyond(const Layer& first, const Layer& second, double tolerance_mm) {
     LayerDifference difference;
     difference.same = same_contours(first, second);
@@ -134,8 +134,7 @@ LayerDifference compare_beyond(const Layer& first, const Layer& second, double t
     if (!first_edges.empty() && !second_edges.empty()) {
         Box2 box = box_of(first.points);
         box.add(box_of(second.points));
-        const double least =
-            std::max(tolerance_mm, 0x1p-36 * box.largest_coordinate()); // what arithmetic moves
+        const double least = std::max(tolerance_mm, 0x1p-36 * box.largest_coordinate()); // rounding errors
         const double known = std::max(largest, least * least);
         double between = known;
         farthest_between_corners(first, second_edges, between, difference.where);
@@ -148,7 +147,7 @@ LayerDifference compare_beyond(const Layer& first, const Layer& second, double t
     return difference;
 }
 
-/// Whether the lowest layers lie between the same heights and are not cut at the same one.
+/// Returns whether the lowest layers lie between the same heights and are cut at different ones.
 bool lowest_cut_apart(const RoundedLayers& first, const RoundedLayers& second) {
     if (first.layers.empty() || second.layers.empty())
         return false;

@@ -17,7 +17,7 @@ namespace lamella {
 
 namespace {
 
-/// Disjoint sets of rings; a set is marked once a contact was found in it.
+/// Disjoint sets of rings. A set is marked when a contact is found in it.
 class Groups {
   public:
     explicit Groups(std::size_t rings) : parent_(rings), marked_(rings, false) {
@@ -28,11 +28,11 @@ class Groups {
             i = parent_[i] = parent_[parent_[i]];
         return i;
     }
-    /// Whether a contact between the two would be news.
+    /// Returns whether a contact between the two would change the sets or marks.
     [[nodiscard]] bool open(std::uint32_t i, std::uint32_t j) noexcept {
         return i == j ? !marked_[find(i)] : find(i) != find(j);
     }
-    /// Counts what was connected.
+    /// Returns the number of calls of `connect`.
     [[nodiscard]] std::uint64_t merges() const noexcept { return merges_; }
     void connect(std::uint32_t i, std::uint32_t j) noexcept {
         ++merges_;
@@ -68,8 +68,8 @@ void group_by_boxes(const MonotoneChains& chains, Groups& groups) {
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         return std::tie(chains.box(a).x0, a) < std::tie(chains.box(b).x0, b);
     });
-    // What is open at the sweep's abscissa, by the groups' intervals of y: disjoint, or they would be
-    // one.
+    // Groups open at the x of the sweep, by their intervals of y. The intervals are disjoint; otherwise the
+    // groups would be one.
     struct Open {
         double y0;
         double y1;
@@ -108,9 +108,9 @@ class ContactSearch {
     }
 
   private:
-    /// False when it would take too long.
+    /// Returns false if the search would take too long.
     bool search(const ChainGrid& grid) {
-        // Long chains side by side, as those of a ring and the same ring moved, are gone along once.
+        // Long chains side by side, such as those of a ring and the same ring moved, are traversed once.
         work_budget_ = 64 * (grid.pieces().size() + all_.all().size()) + 8 * layer_.points.size() + 4096;
         for (const Chain& piece : grid.pieces())
             if (ChainGrid::whole_ring(piece))
@@ -132,7 +132,7 @@ class ContactSearch {
                 for (std::size_t b = a + 1; b < here.size(); ++b) {
                     const Box2& s = grid.box(here[a]);
                     const Box2& t = grid.box(here[b]);
-                    // Boxes may meet in many cells: one of them will do.
+                    // Boxes may meet in many cells: the pair is examined in one of them.
                     if (s.meets(t) && i == cells.cell({std::max(s.x0, t.x0), std::max(s.y0, t.y0)}))
                         look_into(grid, here[a], here[b]);
                 }
@@ -141,7 +141,7 @@ class ContactSearch {
         return work_budget_ > 0;
     }
 
-    /// Whether the pieces are all of one group already, such as the spikes of one star.
+    /// Returns whether all pieces are in one marked group already, such as the spikes of one star.
     [[nodiscard]] bool no_merges_among(const ChainGrid& grid, std::span<const std::uint32_t> pieces) {
         return std::none_of(pieces.begin(), pieces.end(), [&](std::uint32_t i) {
             return groups_.open(grid.pieces()[i].ring, grid.pieces()[pieces.front()].ring) ||
@@ -149,7 +149,7 @@ class ContactSearch {
         });
     }
 
-    /// Of a ring of few chains each with each.
+    /// Examines all pairs of chains of a ring of few chains.
     void look_into(std::uint32_t ring) {
         const std::span<const Chain> chains = all_.of_ring(ring);
         for (std::size_t a = 0; a < chains.size(); ++a)
@@ -157,7 +157,7 @@ class ContactSearch {
                 look_into(chains[a], chains[b]);
     }
 
-    /// Piece a comes before piece b.
+    /// Examines two pieces. Piece a comes before piece b.
     void look_into(const ChainGrid& grid, std::uint32_t a, std::uint32_t b) {
         const std::span<const Chain> chains = grid.chains(grid.pieces()[a]);
         const std::span<const Chain> others = grid.chains(grid.pieces()[b]);
@@ -171,7 +171,7 @@ class ContactSearch {
         }
     }
 
-    /// a comes before b in the layer.
+    /// Examines two chains. a comes before b in the layer.
     void look_into(const Chain& a, const Chain& b) {
         if (work_budget_ == 0 || !groups_.open(a.ring, b.ring) || !a.box().meets(b.box()))
             return;
@@ -183,9 +183,9 @@ class ContactSearch {
 
     bool in_contact(const Chain& a, const Chain& b) {
         if (continues(a, b)) {
-            // The one begins where the other one ends. If it goes the same way, they meet nowhere else.
-            // If it turns in x alone, one lies above that point and the other one below it, but for level
-            // pieces right beside it: these fold. The same for y.
+            // One chain begins where the other ends. If both have the same directions, they meet nowhere
+            // else. If only the x-direction changes, one lies above the common point and the other below it,
+            // unless level edges next to the point coincide: these fold. The same holds for y.
             const unsigned ways = a.ways | b.ways;
             if (!way::turns_in_y(ways))
                 return way::turns_in_x(ways) && last_but_one(a).y == a.back.y && second(b).y == b.front.y;
@@ -195,14 +195,14 @@ class ContactSearch {
         return in_contact(a, 0, a.segments, b, 0, b.segments);
     }
 
-    /// Whether b begins where a ends.
+    /// Returns whether b begins where a ends.
     [[nodiscard]] bool continues(const Chain& a, const Chain& b) const noexcept {
         const std::uint64_t end = a.first + a.segments;
         return a.ring == b.ring &&
                (end == layer_.offsets[a.ring + 1] ? layer_.offsets[a.ring] : end) == b.first;
     }
 
-    /// The second point of a chain, and the last but one, points that repeat aside.
+    /// The second point of a chain, and the last but one, ignoring repeated points.
     [[nodiscard]] const Point2& second(const Chain& chain) const noexcept {
         std::uint32_t i = 1;
         while (i < chain.segments && all_.point(chain, i) == chain.front)
@@ -216,7 +216,7 @@ class ContactSearch {
         return all_.point(chain, i);
     }
 
-    /// Whether the segments [a0, a1) of chain a are in contact with the segments [b0, b1) of b.
+    /// Returns whether the segments [a0, a1) of chain a are in contact with the segments [b0, b1) of b.
     bool in_contact(const Chain& a, std::uint32_t a0, std::uint32_t a1, const Chain& b, std::uint32_t b0,
                     std::uint32_t b1) {
         work_budget_ -= work_budget_ > 0 ? 1 : 0;
@@ -234,7 +234,7 @@ class ContactSearch {
         return in_contact(a, a0, a1, b, b0, middle) || in_contact(a, a0, a1, b, middle, b1);
     }
 
-    /// The segments that begin at the points of these numbers.
+    /// Returns the same for the segments that begin at the points with these indices.
     [[nodiscard]] bool in_contact(std::uint32_t ring_a, std::uint32_t i, std::uint32_t ring_b,
                                   std::uint32_t j) const {
         const Point2& a0 = layer_.points[i];
@@ -242,7 +242,7 @@ class ContactSearch {
         const Point2& b0 = layer_.points[j];
         const Point2& b1 = layer_.points[following(ring_b, j)];
         if (a0 == a1 || b0 == b1)
-            return false; // its point belongs to the segments beside it, too
+            return false; // its point belongs to the adjacent segments, too
         if (ring_a == ring_b) {
             if (follows(ring_a, i, j))
                 return folds(a0, a1, b1);
@@ -256,7 +256,7 @@ class ContactSearch {
         return static_cast<std::uint32_t>(i + 1 == layer_.offsets[ring + 1] ? layer_.offsets[ring] : i + 1);
     }
 
-    /// Whether segment j comes next after segment i, points that repeat aside.
+    /// Returns whether segment j follows segment i, ignoring repeated points.
     [[nodiscard]] bool follows(std::uint32_t ring, std::uint32_t i, std::uint32_t j) const noexcept {
         const Point2& end = layer_.points[following(ring, i)];
         for (std::uint32_t next = following(ring, i); next != i; next = following(ring, next)) {
@@ -268,12 +268,12 @@ class ContactSearch {
         return false;
     }
 
-    /// Whether the way from a to b goes back upon itself to c.
+    /// Returns whether the path from a over b to c doubles back on itself.
     static bool folds(const Point2& a, const Point2& b, const Point2& c) noexcept {
         return orientation(a, b, c) == 0 && (a < b) == (c < b);
     }
 
-    /// If any two segments are in contact, two that are neighbours on the line of a sweep are found to be.
+    /// If any two segments are in contact, two neighbours on the line of the sweep are found to be.
     [[nodiscard]] bool free_of_contacts() const {
         std::vector<Segment> segments;
         struct Origin {
@@ -297,7 +297,7 @@ class ContactSearch {
                    in_contact(origins[lower].ring, origins[lower].first, origins[upper].ring,
                               origins[upper].first);
         };
-        // Beginnings first: what begins where another one ends is in contact with it.
+        // Beginnings come first: a segment that begins where another one ends is in contact with it.
         for (const auto& [at, i, begins] : sweep_events(segments, SweepOrder::begins_first)) {
             budget_.check();
             if (begins) {
@@ -320,7 +320,7 @@ class ContactSearch {
     const MonotoneChains& all_;
     const LayerBudget& budget_;
     Groups groups_;
-    std::uint64_t work_budget_ = 0; // steps until the grid is given up
+    std::uint64_t work_budget_ = 0; // steps until the grid is abandoned
     bool found_ = false;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Which sides cross, for who cuts them there.
+// Pairs of crossing sides, for code that cuts them.
 
 #include "lamella/contour/layer.hpp"
 
@@ -15,21 +15,21 @@
 
 namespace lamella {
 
-/// Returns the numbers of the segments of each pair that crosses properly, the smaller one first, in no
-/// order; of more than `most` pairs, more than `most`, but not all. Costs as `find_crossings`.
+/// Returns the segments of each pair that crosses properly, the smaller index first, in no order. If there
+/// are more than `most`, returns some, more than `most`. Costs as much as `find_crossings`.
 [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>>
 crossing_pairs(std::span<const Segment> segments, std::uint64_t most, const LayerBudget& budget);
 
-/// How often sides of contours of a layer may cross: what takes less than a minute to cut at one another.
+/// Returns the largest number of crossings between contours of a layer that takes less than a minute to cut.
 [[nodiscard]] constexpr std::uint64_t most_crossings(std::uint64_t sides) noexcept {
     return (std::uint64_t{1} << 22) + 64 * sides;
 }
 
-/// What cutting takes for each crossing: its place on the grid, and the pieces of both sides.
+/// Memory for cutting at one crossing: its position on the grid and the pieces of both sides.
 inline constexpr std::uint64_t bytes_of_crossing = 512;
 
-/// Throws Error{limit} if the rings of a layer cross more often than `most_crossings` or than the budget has
-/// room for. Segments that lie on one line except for rounding do not count.
+/// Throws Error{limit} if the rings of a layer cross more often than `most_crossings` or the budget allows.
+/// Crossings of segments that are collinear except for rounding do not count.
 void check_crossings(const Layer& layer, const LayerBudget& budget);
 
 /// Throws Error{limit} for more than `most_crossings`.

@@ -27,15 +27,15 @@ namespace lamella {
 
 namespace {
 
-using SegmentId = std::uint32_t; // the number of its first point in the layer
+using SegmentId = std::uint32_t; // index of its first point in the layer
 
-/// Local coordinates: measured from the lower left corner of the layer, in a unit that makes them at most 4,
-/// so that nothing overflows and a part far from the origin loses no digits. They only decide in which cell
-/// something is looked for; whether segments cross is decided on the points as they are.
+/// Local coordinates: relative to the lower left corner of the layer, in a unit that makes them at most 4, so
+/// that nothing overflows and a part far from the origin loses no digits. They only select the cells to
+/// search; whether segments cross is decided on the original points.
 struct Frame {
     double unit = 1; ///< a power of two
     Point2 origin;   ///< in that unit
-    Point2 corner;   ///< the upper right one
+    Point2 corner;   ///< upper right corner
 
     explicit Frame(const Box2& box) {
         const double largest = box.largest_coordinate();
@@ -51,8 +51,8 @@ struct Frame {
     }
 };
 
-/// About where two segments cross: within some rounding errors of both. It is computed along the shorter one,
-/// where an error of the parameter moves it least.
+/// Returns the approximate crossing of two segments, within a few rounding errors of both. It is computed
+/// along the shorter segment, where an error of the parameter moves it least.
 Point2 point_of_crossing(Segment s, Segment t) noexcept {
     const auto squared_length = [](const Segment& of) {
         return (of.hi.x - of.lo.x) * (of.hi.x - of.lo.x) + (of.hi.y - of.lo.y) * (of.hi.y - of.lo.y);
@@ -64,9 +64,9 @@ Point2 point_of_crossing(Segment s, Segment t) noexcept {
         return along.x * (p.y - t.lo.y) - along.y * (p.x - t.lo.x);
     };
     double share = height(s.lo) / (height(s.lo) - height(s.hi));
-    share = share == share ? std::clamp(share, 0.0, 1.0) : 0.5; // it is not a number for 0 / 0
-    // Where the two are all but parallel the share means little, but then they are all but the same as far as
-    // they run side by side, which is as far as their boxes overlap.
+    share = share == share ? std::clamp(share, 0.0, 1.0) : 0.5; // 0 / 0 gives NaN
+    // If the two are nearly parallel, the parameter is inaccurate, but then they nearly coincide where their
+    // boxes overlap.
     const auto within = [](double value, double a, double b, double c, double d) {
         const double first = std::max(std::min(a, b), std::min(c, d));
         return std::max(first, std::min(value, std::min(std::max(a, b), std::max(c, d))));
@@ -75,15 +75,15 @@ Point2 point_of_crossing(Segment s, Segment t) noexcept {
             within(s.lo.y + share * (s.hi.y - s.lo.y), s.lo.y, s.hi.y, t.lo.y, t.hi.y)};
 }
 
-/// Some of the segments, of which every crossing has one: when two neighbours on the line of a sweep cross,
-/// both are set aside. They are at most twice as many as the fewest segments without which there would be no
-/// crossing, so that one stray segment through a thousand walls costs two rounds, not a thousand. None where
-/// nothing crosses.
+/// Selects segments such that every crossing has at least one of them: if two neighbours on the line of a
+/// sweep cross, both are set aside. These are at most twice the smallest number of segments whose removal
+/// removes all crossings, so that one stray segment through a thousand walls costs two passes, not a
+/// thousand. Returns an empty vector if nothing crosses.
 std::vector<bool> one_of_each_crossing(std::span<const Segment> segments) {
     SweepStatus status(segments);
     std::vector<bool> set_aside(segments.size(), false);
     bool any_set_aside = false;
-    // Tests two neighbours, and then those on both sides of the gap that they make.
+    // Tests two neighbours, then the new neighbours at the gap that they leave.
     const auto test_neighbours = [&](std::uint32_t lower, std::uint32_t upper) {
         while (lower != SweepStatus::none && upper != SweepStatus::none &&
                cross(segments[lower], segments[upper])) {
@@ -118,19 +118,19 @@ std::vector<bool> one_of_each_crossing(std::span<const Segment> segments) {
 }
 
 /// All proper crossings of a layer. A grid divides the segments into cells with a few of them; cells with
-/// many are divided again. Where most segments are long for their cell no grid parts them (many walls side by
-/// side, aslant); there a sweep finds in O(m log m) that nothing crosses, or a few segments that have a part
-/// in every crossing. Those are tested against the segments beside them (`LineTree`).
+/// many are divided again. If most segments are long for their cell, such as many diagonal walls side by
+/// side, no grid separates them. A sweep then finds in O(m log m) that nothing crosses, or a few segments
+/// that have a part in every crossing. Those are tested against the segments beside them (`LineTree`).
 ///
-/// Two segments can meet in several cells: a crossing counts in the one cell, half open, that holds its
-/// computed place.
+/// Two segments can meet in several cells: a crossing counts in the half-open cell that contains its computed
+/// location.
 class CrossingSearch {
   public:
     using Pair = std::pair<SegmentId, SegmentId>;
 
-    /// Of the segments of these numbers, in a box. Counts all crossings, up to `enough` and a few more, and
-    /// keeps the first `keep` of them. `clear`: only of segments whose ends lie farther than this from each
-    /// other's line.
+    /// Searches the segments with these indices in a box. Counts all crossings, up to slightly more than
+    /// `enough`, and keeps the first `keep` of them. If `clear` is above 0, only pairs count in which each
+    /// end lies farther than this from the other segment's line.
     CrossingSearch(std::span<const Segment> segments, std::span<const SegmentId> ids, const Box2& box,
                    std::size_t keep, std::uint64_t enough, const LayerBudget& budget, double clear = 0)
         : segments_(segments), keep_(keep), enough_(enough), budget_(budget), frame_(box), clear_(clear) {
@@ -143,9 +143,9 @@ class CrossingSearch {
     }
 
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-    /// Those kept, in no order.
+    /// Returns the crossings that were kept, in no order.
     [[nodiscard]] std::vector<Pair>& pairs() noexcept { return first_; }
-    /// About where a pair crosses.
+    /// Returns the approximate location of a crossing.
     [[nodiscard]] Point2 crossing_at(const Pair& pair) const noexcept {
         const Point2 at = position(pair);
         return {(at.x + frame_.origin.x) / frame_.unit, (at.y + frame_.origin.y) / frame_.unit};
@@ -181,7 +181,7 @@ class CrossingSearch {
         }
     }
 
-    /// False where the segments reach into too many cells.
+    /// Returns false if the segments overlap too many cells.
     bool search_by_grid(const Box2& whole, double size, std::span<const SegmentId> ids) {
         Grid grid(whole, size);
         const bool sorted =
@@ -200,7 +200,7 @@ class CrossingSearch {
         return {frame_.local(s.lo), frame_.local(s.hi)};
     }
 
-    /// In local coordinates.
+    /// Returns the location in local coordinates.
     [[nodiscard]] Point2 position(const Pair& pair) const noexcept {
         return point_of_crossing(local(segments_[pair.first]), local(segments_[pair.second]));
     }
@@ -261,7 +261,7 @@ class CrossingSearch {
             search_side_by_side(cell, ids, set_aside);
     }
 
-    /// Tests those set aside against all others that may reach them.
+    /// Tests the segments set aside against all others that may reach them.
     void search_side_by_side(const Box2& cell, std::span<const SegmentId> ids,
                              const std::vector<bool>& set_aside) {
         const auto turned = [](const Segment& s) {
@@ -293,25 +293,25 @@ class CrossingSearch {
 
     static constexpr std::size_t few = 24;
     static constexpr std::size_t few_for_a_sweep = 128;
-    /// Below this share of the layer's extent, cells are not divided: positions have 2^-52 of it, and slopes
-    /// within a row may magnify that by some 2^20.
+    /// Cells below this fraction of the layer's extent are not divided: positions have a resolution of 2^-52
+    /// of the extent, and slopes within a row may magnify that by about 2^20.
     static constexpr double smallest_cell = 0x1p-24;
 
     std::span<const Segment> segments_;
     std::size_t keep_;
-    std::uint64_t enough_; // crossings: the search may stop at so many
+    std::uint64_t enough_; // the search may stop at this many crossings
     const LayerBudget& budget_;
     Frame frame_;
     double clear_;
     std::uint64_t count_ = 0;
-    std::vector<Pair> first_; // and some more, until they are twice as many as to be kept
+    std::vector<Pair> first_; // up to twice as many as to be kept
 };
 
-/// Of contours of a layer for which chosen(c) is true. Segments have the numbers of their first points.
+/// Searches the contours c for which chosen(c) is true. A segment has the index of its first point.
 template <class Chosen>
 Crossings search(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough) {
-    std::vector<Segment> segments(layer.points.size()); // not all of them are there
-    std::vector<SegmentId> ids;                         // of those that are
+    std::vector<Segment> segments(layer.points.size()); // by index; entries without a segment are unused
+    std::vector<SegmentId> ids;                         // indices in use
     ids.reserve(layer.points.size());
     for (std::size_t c = 0; c < layer.contours(); ++c) {
         if (!chosen(c))
@@ -354,7 +354,7 @@ Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
     if (layer.points.size() > std::numeric_limits<SegmentId>::max())
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967295 points; crossings are found in smaller ones");
-    // Rings that touch nothing, as most do, are known for that in a small part of the time.
+    // Most rings touch nothing, which is found in a small fraction of the time.
     if (layer.open_chains() == 0) {
         const MonotoneChains chains(layer);
         if (const std::optional<ChainGrid> grid = ChainGrid::of(chains)) {
@@ -411,7 +411,7 @@ void check_crossings(const Layer& layer, const LayerBudget& budget) {
     std::vector<SegmentId> ids(segments.size());
     std::iota(ids.begin(), ids.end(), SegmentId{0});
     const Box2 box = box_of(layer.points.span());
-    // Sides that lie on one line but for rounding are joined before they are cut.
+    // Sides that are collinear except for rounding are joined before they are cut.
     const double clear = 0x1p-28 * std::max(box.x1 - box.x0, box.y1 - box.y0);
     const std::uint64_t most = most_crossings(segments.size());
     const std::uint64_t room = std::min(budget.room(bytes_of_crossing), most);

@@ -9,7 +9,7 @@ namespace lamella {
 
 namespace {
 
-/// The edge of a chain over the abscissa x and a little more, which the chain reaches over.
+/// Returns the edge of a chain over x and slightly beyond. The chain must reach over x.
 Segment edge_over(double x, const MonotoneChains& chains, const Chain& chain) {
     const bool rightwards = (chain.ways & way::right) != 0;
     std::uint32_t low = 0; // point `low` is on the near side of x, point `high` on the far side
@@ -55,7 +55,7 @@ EdgeBelow edge_below(const Point2& p, std::uint32_t own, const MonotoneChains& c
                 }
             }
         }
-        // What was not seen yet lies in lower rows from end to end.
+        // Edges not yet seen lie entirely in lower rows.
         if (found.ring != Nesting::none && cells.row(std::min(highest.lo.y, highest.hi.y)) >= row)
             break;
     }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What lies next below a point.
+// Finds the highest edge below a point.
 
 #include "lamella/polygon/nesting.hpp"
 
@@ -13,13 +13,13 @@
 namespace lamella {
 
 struct EdgeBelow {
-    std::uint32_t ring = Nesting::none; ///< none where no edge passes below
+    std::uint32_t ring = Nesting::none; ///< none if no edge passes below
     bool rightwards = true;             ///< the direction of the edge in its ring
-    bool sure = true; ///< false where edges of rings in contact may be the highest ones: none is told then
+    bool sure = true; ///< false if edges of rings in contact may be the highest; then `ring` is none
 };
 
-/// The highest edge that passes below p just to the right of it. p is the lower left end of ring `own`, which
-/// is in contact with none, and none of whose edges pass below it. Exact. It takes the cells down from p to
+/// Returns the highest edge that passes below p just to the right of it. p is the lower left end of ring
+/// `own`, which is in contact with no ring and has no edge below p. Exact. Examines the cells from p down to
 /// that edge.
 [[nodiscard]] EdgeBelow edge_below(const Point2& p, std::uint32_t own, const MonotoneChains& chains,
                                    const ChainGrid& grid, const Contacts& contacts);

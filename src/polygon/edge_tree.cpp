@@ -19,7 +19,7 @@ double squared(double dx, double dy) noexcept {
     return dx * dx + dy * dy;
 }
 
-/// How far boxes are apart along an axis.
+/// Returns the distance of boxes along an axis.
 double gap(double least, double most, double other_least, double other_most) noexcept {
     return std::max({other_least - most, 0.0, least - other_most});
 }
@@ -60,7 +60,7 @@ void EdgeTree::build(std::size_t begin, std::size_t end) {
     const auto position = [&](std::size_t i) {
         return edges_.begin() + static_cast<std::ptrdiff_t>(i);
     };
-    // The middles of long walls side by side lie on a line across them, along which they are far apart.
+    // The midpoints of long walls side by side lie on a line across the walls and spread along it.
     const bool along_x = middles.width() >= middles.height();
     std::nth_element(position(begin), position(middle), position(end), [&](const Edge& s, const Edge& t) {
         return along_x ? s.middle().x < t.middle().x : s.middle().y < t.middle().y;
@@ -127,8 +127,8 @@ double EdgeTree::distance_squared(const Segment& s, double enough) const {
     Point2 normal;
     if (length > 0)
         normal = {(s.lo.y - s.hi.y) / length, (s.hi.x - s.lo.x) / length};
-    // At least how far a box is, squared, from the line of the segment: of a slanting one, its own box says
-    // little.
+    // A lower bound of the squared distance of a box from the line of the segment: for a diagonal segment,
+    // its own box is a poor bound.
     const auto squared_from_line = [&](const Box2& box) {
         const double middle =
             normal.x * ((box.x0 + box.x1) / 2 - s.lo.x) + normal.y * ((box.y0 + box.y1) / 2 - s.lo.y);
@@ -168,7 +168,7 @@ std::int64_t EdgeTree::winding_below(std::size_t at, const Point2& p) const {
         if ((edge.a.y > p.y) == (edge.b.y > p.y))
             continue;
         const int step = edge.b.y > edge.a.y ? 1 : -1;
-        if (orientation(edge.a, edge.b, p) == step) // p is to the left of it
+        if (orientation(edge.a, edge.b, p) == step) // p is to the left of the edge
             around += step;
     }
     return around;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Edges of contours by where they are: how far something is from them, and how they wind around it.
+// A tree of contour edges: distances from them, and their winding numbers.
 
 #include "lamella/contour/layer.hpp"
 
@@ -14,25 +14,25 @@
 
 namespace lamella {
 
-/// A balanced tree of boxes, split where the middles of edges are farthest apart.
+/// A balanced tree of boxes, split along the axis on which the midpoints of edges spread most.
 class EdgeTree {
   public:
-    /// All edges of a layer; a contour of one point is an edge of no length. O(n log n).
+    /// Holds all edges of a layer; a contour of one point is an edge of length 0. O(n log n).
     explicit EdgeTree(const Layer& layer);
 
     [[nodiscard]] bool empty() const noexcept { return edges_.empty(); }
 
-    /// The square of the distance to the nearest edge; where that is below `enough`, anything below it.
-    /// Infinite where there are none.
+    /// Returns the squared distance to the nearest edge; if it is below `enough`, possibly another value
+    /// below `enough`. Infinite if there are no edges.
     [[nodiscard]] double distance_squared(const Point2& p, double enough) const;
-    /// The same from all of a segment: 0 where it meets an edge.
+    /// Returns the same for the distance from a segment: 0 if it meets an edge.
     [[nodiscard]] double distance_squared(const Segment& s, double enough) const;
 
-    /// The nearest edge, from end to end. There is one.
+    /// Returns the ends of the nearest edge. Requires at least one edge.
     [[nodiscard]] std::pair<Point2, Point2> nearest(const Point2& p) const;
 
-    /// How often the edges go around p, of rings alone. Exact; of a point on an edge counts what is above it,
-    /// or to the right of it. It takes the edges to the right of p that it is beside.
+    /// Returns the winding number of the edges around p; requires rings only. Exact. For a point on a level
+    /// edge the side above counts, on others the right side. Examines the edges to the right of p at its y.
     [[nodiscard]] std::int64_t winding(const Point2& p) const;
 
   private:
@@ -48,7 +48,7 @@ class EdgeTree {
         Box2 box;
         std::size_t begin;
         std::size_t end;
-        std::size_t right; ///< the left child is the next node; 0: a leaf
+        std::size_t right; ///< the left child is the next node; 0 for a leaf
     };
 
     void build(std::size_t begin, std::size_t end);

@@ -11,7 +11,7 @@ namespace lamella {
 
 namespace {
 
-/// True when s lies nowhere above t, as far as both exist from left to right.
+/// Returns whether s is nowhere above t on their common interval of x.
 bool nowhere_above(const Segment& s, const Segment& t) noexcept {
     const int left = s.lo.x > t.lo.x ? side(t, s.lo) : -side(s, t.lo);
     const int right = s.hi.x < t.hi.x ? side(t, s.hi) : -side(s, t.hi);
@@ -41,13 +41,13 @@ void EdgeColumn::order(double x) {
         if (std::isfinite(height) && std::isfinite(slope))
             keys.push_back({height, slope, i});
         else
-            loose_.push_back(edges[i]); // coordinates near the end of the number range
+            loose_.push_back(edges[i]); // coordinates near the limits of double
     }
     std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
         return std::tie(a.height, a.slope, a.i) < std::tie(b.height, b.slope, b.i);
     });
-    // The order by rounded heights is right but for edges that cross or all but touch. Where two
-    // neighbours are not in order, both are set aside: what remains is in order.
+    // The order by rounded heights is correct except for edges that cross or nearly touch. If two neighbours
+    // are out of order, both are set aside; the remaining edges are in order.
     for (const Key& key : keys) {
         const RingEdge& edge = edges[key.i];
         if (ordered_.empty() || nowhere_above(ordered_.back().line, edge.line)) {

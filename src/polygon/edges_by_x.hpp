@@ -1,6 +1,6 @@
 #pragma once
 
-// Edges of rings that may touch, coincide and cross: which are below a place, and how they wind around it.
+// Edges of rings that may touch, coincide and cross: the edges below a point and their winding numbers.
 
 #include "polygon/orientation.hpp"
 #include "polygon/windings.hpp"
@@ -11,33 +11,33 @@
 
 namespace lamella {
 
-/// An edge of a ring that is not vertical.
+/// A non-vertical edge of a ring.
 struct RingEdge {
     Segment line;
     std::uint32_t ring = 0; ///< a representative, see `RingCopies`
-    Windings step;          ///< how they change from below to above
-    /// Orders edges that coincide, as if they lay upon one another: rings that end at the edge first, the
-    /// inner ones before those around them, then rings that begin there, the outer ones first. Not negative
-    /// where the ring's inside is above.
+    Windings step;          ///< change of the winding numbers from below to above
+    /// Orders coincident edges as if they were stacked: first rings that end at the edge, inner ones before
+    /// those around them, then rings that begin there, outer ones first. Not negative if the inside of the
+    /// ring is above.
     std::int64_t order = 0;
 };
 
-/// Edges that all reach from one abscissa to another one and beyond.
+/// Edges that all span a common interval of x.
 class EdgeColumn {
   public:
     void add(const RingEdge& edge) { ordered_.push_back(edge); }
-    /// To be called once, after the last edge; x is an abscissa that all reach over.
+    /// Sorts the edges. Call it once, after the last edge. All edges span x.
     void order(double x);
 
     [[nodiscard]] bool empty() const noexcept { return ordered_.empty() && loose_.empty(); }
-    /// How many edges have no order: each question looks at all of these.
+    /// Returns the number of edges without an order; each query examines all of them.
     [[nodiscard]] std::size_t loose() const noexcept { return loose_.size(); }
 
-    /// The windings below the edge at x, as far as this column has a part in them.
+    /// Returns the contribution of this column to the winding numbers below the edge at x.
     [[nodiscard]] Windings winding_below(double x, const RingEdge& edge) const;
-    /// Makes `best` the highest edge below `edge`, if that is higher than it.
+    /// Raises `best` to the highest edge of this column below `edge`, if that is higher.
     void raise(double x, const RingEdge& edge, const RingEdge*& best) const;
-    /// How many edges coincide with `edge`, to the right of x, and have its place in that order.
+    /// Returns the number of edges that coincide with `edge` to the right of x and have the same `order`.
     [[nodiscard]] std::int64_t count_equal(double x, const RingEdge& edge) const;
 
   private:
@@ -45,30 +45,30 @@ class EdgeColumn {
 
     std::vector<RingEdge> ordered_; ///< from below to above
     std::vector<Windings> winding_; ///< above the first i of them
-    std::vector<RingEdge> loose_;   ///< those that cross others, in no order
+    std::vector<RingEdge> loose_;   ///< edges that cross others, in no order
 };
 
-/// A segment tree over some abscissae: each edge is kept in few nodes, and those with the edges above and
-/// below a place at one of the abscissae are the ancestors of one leaf.
+/// A segment tree over values of x: each edge is kept in few nodes, and the nodes with the edges above and
+/// below a point at one of these values are the ancestors of one leaf.
 ///
-/// Why neither the status of a sweep nor a grid takes its place. A question is for the sum of the steps of
-/// all edges below a place, where edges coincide and cross. A status knows its neighbours, and the sum below
-/// an edge only as long as no edge is put in or taken out below it, which edges that lie upon one another do
-/// between two questions. A grid would sum up edge by edge all the way down, for each of many rings within
-/// one another all of those around it.
+/// Neither the status of a sweep nor a grid could replace it. A query asks for the sum of the steps of all
+/// edges below a point, where edges coincide and cross. A status knows the neighbours of an edge, and the sum
+/// below it only as long as no edge is inserted or erased below, which coincident edges do between two
+/// queries. A grid would add up edge by edge all the way down: for each of many nested rings, all rings
+/// around it.
 class EdgesByX {
   public:
     explicit EdgesByX(std::vector<double> abscissae);
 
-    /// The number of abscissae below x; `near` is a guess.
+    /// Returns the number of values below x; `near` is a guess.
     [[nodiscard]] std::size_t leaf(double x, std::size_t near) const;
 
-    /// Adds an edge that reaches over the leaves [first, end).
+    /// Adds an edge that spans the leaves [first, end).
     void add(const RingEdge& edge, std::size_t first, std::size_t end);
-    /// To be called once, after the last edge.
+    /// Sorts all columns. Call it once, after the last edge.
     void order();
 
-    /// Calls visit(column) for the columns with edges over the abscissa x.
+    /// Calls visit(column) for the columns with edges over x.
     template <class Visit>
     void for_columns_at(double x, const Visit& visit) const {
         for (std::size_t node = leaves_ + leaf(x, 0); node > 0; node /= 2)

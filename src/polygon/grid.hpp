@@ -1,6 +1,6 @@
 #pragma once
 
-// What lies near what: things of the plane, sorted into square cells.
+// A grid of square cells that finds objects close to each other.
 
 #include "polygon/box2.hpp"
 #include "polygon/orientation.hpp"
@@ -17,7 +17,7 @@
 
 namespace lamella {
 
-/// The numbers from 0 to size() - 1, where all things there are go into a grid.
+/// The indices from 0 to size() - 1, if all objects go into a grid.
 struct NumbersBelow {
     std::uint32_t end = 0;
 
@@ -25,12 +25,12 @@ struct NumbersBelow {
     std::uint32_t operator[](std::size_t k) const noexcept { return static_cast<std::uint32_t>(k); }
 };
 
-/// Square cells over a box, and for each cell the numbers of the things that reach into it. Things are boxes,
-/// segments or points: whoever sorts them in says which cells a thing reaches into.
+/// Square cells over a box, and for each cell the indices of the objects that overlap it. Objects are boxes,
+/// segments or points: the caller of `sort` specifies the cells of each object.
 class Grid {
   public:
-    /// The size of cells for `count` things, at least one, whose extents add up to `length`: about as many
-    /// cells as things, but none shorter than half the mean thing, so that there are a few entries for each.
+    /// Returns the size of cells for `count` objects, at least one, whose extents add up to `length`: about
+    /// as many cells as objects, but none shorter than half the mean object, so that each has few entries.
     [[nodiscard]] static double cell_size(const Box2& whole, double count, double length) noexcept {
         const double width = whole.width();
         const double height = whole.height();
@@ -38,8 +38,8 @@ class Grid {
                          std::max(width, height) / largest_side});
     }
 
-    /// `size` is above 0 and at least 2^-15 of the box's sides; the size of cells that are larger than the
-    /// box may be infinite.
+    /// `size` must be above 0 and at least 2^-15 of the box's sides. If it exceeds the box, it may be
+    /// infinite.
     Grid(const Box2& whole, double size)
         : whole_(whole), size_(size), scale_(1 / size),
           columns_(static_cast<std::size_t>(whole.width() * scale_) + 1),
@@ -49,7 +49,7 @@ class Grid {
     }
 
     [[nodiscard]] std::size_t cells() const noexcept { return columns_ * rows_; }
-    /// The cell of a point of the box. Rounding keeps the order of numbers, so boxes that meet have a cell in
+    /// Returns the cell of a point of the box. Rounding is monotonic, so boxes that meet have a cell in
     /// common.
     [[nodiscard]] std::size_t cell(const Point2& p) const noexcept { return cell_at(column(p.x), row(p.y)); }
     [[nodiscard]] std::size_t column(double x) const noexcept { return along(x - whole_.x0, columns_); }
@@ -59,8 +59,8 @@ class Grid {
         return row * columns_ + column;
     }
 
-    /// The box of a cell. Neighbours compute their common border from the same numbers: taken as half open,
-    /// boxes of cells neither overlap nor gape.
+    /// Returns the box of a cell. Neighbours compute their common border from the same numbers: as half-open
+    /// boxes, cells have neither overlaps nor gaps.
     [[nodiscard]] Box2 box(std::size_t cell) const noexcept {
         const std::size_t column = cell % columns_;
         const std::size_t row = cell / columns_;
@@ -72,7 +72,7 @@ class Grid {
                 border(whole_.y0, whole_.y1, row + 1, rows_)};
     }
 
-    /// Calls visit(cell) for every cell that the box meets. It lies within that of the grid.
+    /// Calls visit(cell) for every cell that the box meets. The box must lie within that of the grid.
     template <class Visit>
     void for_cells(const Box2& box, const Visit& visit) const {
         const std::size_t last_column = column(box.x1);
@@ -82,8 +82,8 @@ class Grid {
                 visit(cell_at(i, j));
     }
 
-    /// Calls visit(cell) once for every cell that the segment meets or comes closer to than `margin` of a
-    /// cell: far more than all rounding errors. The segment may reach beyond the grid.
+    /// Calls visit(cell) once for every cell that the segment meets or approaches closer than `margin` of a
+    /// cell, which is far more than all rounding errors. The segment may reach beyond the grid.
     template <class Visit>
     void for_cells_along(const Segment& s, const Visit& visit) const {
         double u0 = (s.lo.x - whole_.x0) * scale_;
@@ -101,7 +101,7 @@ class Grid {
         const double last_v = std::min(static_cast<double>(rows_ - 1), std::floor(v1 + margin));
         if (first_u > last_u || first_v > last_v)
             return;
-        // A flat segment meets at most two rows; a slope computed from a small height could be far off.
+        // A flat segment meets at most two rows, and a slope computed from a small height is inaccurate.
         const bool whole_rows = first_v == last_v || first_u == last_u || v1 - v0 < 0.25;
         const double slope = whole_rows ? 0 : (u1 - u0) / (v1 - v0);
         for (double v = first_v; v <= last_v; ++v) {
@@ -118,8 +118,8 @@ class Grid {
         }
     }
 
-    /// Sorts numbers into the cells: for_cells_of(number, visit) calls visit(cell) for those of a thing.
-    /// False, and nothing is sorted, where that makes more than `most` entries. O(cells + entries).
+    /// Sorts indices into the cells: for_cells_of(index, visit) calls visit(cell) for each cell of an object.
+    /// Returns false and sorts nothing if that makes more than `most` entries. O(cells + entries).
     template <class Numbers, class ForCellsOf>
     [[nodiscard]] bool sort(const Numbers& numbers, std::uint64_t most, const ForCellsOf& for_cells_of) {
         most = std::min<std::uint64_t>(most, std::numeric_limits<std::uint32_t>::max());
@@ -137,12 +137,12 @@ class Grid {
         for (std::uint32_t& end : ends_)
             end = sum += end;
         entries_.resize(sum);
-        for (std::size_t k = numbers.size(); k-- > 0;) // backwards, so that cells have them in order
+        for (std::size_t k = numbers.size(); k-- > 0;) // backwards, so that indices ascend within cells
             for_cells_of(numbers[k], [&](std::size_t cell) { entries_[--ends_[cell]] = numbers[k]; });
         assert(ends_.front() == 0 && ends_.back() == entries);
         return true;
     }
-    /// The numbers in a cell, in the order in which they were given.
+    /// Returns the indices in a cell, in the order in which they were given.
     [[nodiscard]] std::span<const std::uint32_t> in_cell(std::size_t cell) const noexcept {
         assert(cell + 1 < ends_.size());
         return std::span(entries_).subspan(ends_[cell], ends_[cell + 1] - ends_[cell]);
@@ -163,7 +163,7 @@ class Grid {
     double scale_;
     std::size_t columns_;
     std::size_t rows_;
-    std::vector<std::uint32_t> ends_; ///< of cell i the places [ends_[i], ends_[i + 1]) in entries_
+    std::vector<std::uint32_t> ends_; ///< cell i has the entries [ends_[i], ends_[i + 1])
     std::vector<std::uint32_t> entries_;
 };
 

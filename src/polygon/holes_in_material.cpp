@@ -18,8 +18,8 @@ namespace lamella {
 
 namespace {
 
-/// By the corner at the smallest point of the ring, where it begins: 1 counter-clockwise, -1 clockwise, 0 not
-/// known.
+/// Returns the direction of a ring by the corner at its smallest point, where it begins: 1 counter-clockwise,
+/// -1 clockwise, 0 unknown.
 int direction_at_begin(std::span<const Point2> ring) noexcept {
     std::size_t next = 1;
     while (next < ring.size() && ring[next] == ring.front())
@@ -36,7 +36,7 @@ std::size_t number_of_blocks(std::span<const Point2> ring) noexcept {
     return (ring.size() + block - 1) / block;
 }
 
-/// The boxes of the edges of a ring, block by block. Returns that of all.
+/// Finds the boxes of consecutive `block` edges of a ring. Returns the box of all.
 LAMELLA_VECTOR_CLONES Box2 find_block_boxes(std::span<const Point2> ring, Box2* boxes) noexcept {
     using Four = Vector<4>::Doubles; // two points
     Box2 all = Box2::of(ring.front());
@@ -65,7 +65,7 @@ LAMELLA_VECTOR_CLONES Box2 find_block_boxes(std::span<const Point2> ring, Box2* 
 
 constexpr std::size_t many_points = 64;
 
-/// The box of some points of a ring, evenly spread: to read all of them takes as long as to cut them.
+/// Returns the box of evenly spread points of a ring. To read all points takes as long as slicing them.
 Box2 sampled_box(std::span<const Point2> ring, std::size_t samples) noexcept {
     Box2 box = Box2::of(ring.front());
     for (std::size_t i = 1; i < samples; ++i)
@@ -73,19 +73,19 @@ Box2 sampled_box(std::span<const Point2> ring, std::size_t samples) noexcept {
     return box;
 }
 
-/// What the ring is likely to lie in, by that box.
+/// Returns a box that probably contains the ring, grown from the box of samples.
 Box2 likely_box(const Box2& sampled, double margin) noexcept {
     return sampled.grown(margin * std::max(sampled.width(), sampled.height()));
 }
 
-/// Heights in rows of equal height.
+/// Divides heights into rows of equal height.
 class Rows {
   public:
     Rows(double y0, double y1, std::size_t count) noexcept
         : y0_(y0), per_mm_(y1 > y0 ? static_cast<double>(count) / (y1 - y0) : 0), last_(count - 1) {}
 
     [[nodiscard]] std::size_t count() const noexcept { return last_ + 1; }
-    /// Ascends with y. Heights beyond belong to the first row and the last.
+    /// Ascends with y. Heights beyond the ends belong to the first or the last row.
     [[nodiscard]] std::size_t row(double y) const noexcept {
         const double row = (y - y0_) * per_mm_;
         return !(row > 0) ? 0 : row < static_cast<double>(last_) ? static_cast<std::size_t>(row) : last_;
@@ -97,7 +97,7 @@ class Rows {
     std::size_t last_;
 };
 
-/// How often the way from a to b, which is to the left of p, winds around it.
+/// Returns the contribution to the winding number of p of the segment a b, which is to the left of p.
 int crossing(const Point2& a, const Point2& b, const Point2& p) noexcept {
     return (a.y > p.y) == (b.y > p.y) ? 0 : b.y < a.y ? 1 : -1;
 }
@@ -106,14 +106,14 @@ int crossing(const Point2& a, const Point2& b, const Point2& p) noexcept {
 struct Hole {
     std::uint32_t ring;
     Box2 box;                ///< of some of its points
-    std::int32_t around = 0; ///< the winding number just left of its left end
-    bool contained = false;  ///< whether that box lies in that of a counter-clockwise ring around it
+    std::int32_t around = 0; ///< winding number just left of its left end
+    bool contained = false;  ///< true if that box lies in the box of a counter-clockwise ring around it
 };
 
-/// A ring whose box has the left end of a hole.
+/// A ring whose box contains the left end of a hole.
 struct Candidate {
     std::uint32_t ring;
-    std::uint32_t hole; ///< its number among the holes
+    std::uint32_t hole; ///< index among the holes
 };
 
 class HoleCheck {
@@ -134,7 +134,7 @@ class HoleCheck {
                                             [](const Hole& hole, std::uint32_t i) { return hole.ring < i; });
         return found != holes_.end() && found->ring == ring;
     }
-    /// Whether there is enough left. A layer that takes more is looked into otherwise.
+    /// Returns whether the remaining budget suffices. More expensive layers need another method.
     [[nodiscard]] bool spend(std::size_t work) noexcept {
         const bool enough = work <= work_left_;
         work_left_ -= enough ? work : work_left_;
@@ -156,7 +156,7 @@ class HoleCheck {
         return true;
     }
 
-    /// Of all rings, and together.
+    /// Finds the boxes of all rings, and returns their common box.
     Box2 find_boxes() {
         boxes_.reserve(layer_.rings);
         first_blocks_.reserve(layer_.rings);
@@ -180,8 +180,8 @@ class HoleCheck {
         return all;
     }
 
-    /// From left to right, in the order of the normal form. Rings that were met are kept in rows, high ones
-    /// in a list of their own; where a hole looks for rings, those that end to the left of it are left out.
+    /// Visits rings from left to right, the order of the normal form. Visited rings are kept in rows, high
+    /// ones in a list of their own. A search for the rings around a hole removes those that end to its left.
     bool find_candidates() {
         constexpr std::size_t few = 4; // rows
         const Box2 all = find_boxes();
@@ -239,7 +239,7 @@ class HoleCheck {
         return true;
     }
 
-    /// Adds to each hole what its candidates wind around it.
+    /// Adds the contributions of its candidates to the winding number of each hole.
     bool wind() {
         std::vector<std::uint32_t> ends(layer_.rings + 1, 0);
         for (const Candidate& candidate : candidates_)
@@ -257,8 +257,8 @@ class HoleCheck {
         return true;
     }
 
-    /// One ring around the left ends of these holes. Block by block: those holes that lie in the rows of a
-    /// block are looked at.
+    /// Adds the winding of one ring around the left ends of these holes. For each `block` of edges, only
+    /// holes in its rows are examined.
     bool wind(std::uint32_t number, std::span<const std::uint32_t> holes) {
         double y0 = left_end(holes_[holes.front()]).y;
         double y1 = y0;
@@ -305,7 +305,7 @@ class HoleCheck {
                 if (position.at.y < box.y0 || position.at.y > box.y1 || position.at.x < box.x0)
                     continue;
                 const std::size_t last = std::min((i + 1) * block, ring.size());
-                if (position.at.x > box.x1) // all edges from end to end are to the left of it
+                if (position.at.x > box.x1) // all these edges are to the left of it
                     position.around +=
                         crossing(ring[i * block], ring[last == ring.size() ? 0 : last], position.at);
                 else if (!spend(block) || !wind(ring, i * block, last, position.at, position.around))
@@ -323,7 +323,7 @@ class HoleCheck {
         return true;
     }
 
-    /// The edges [begin, end) of a ring around p. False where p lies on one.
+    /// Adds the winding of the edges [begin, end) of a ring around p. Returns false if p lies on one of them.
     static bool wind(std::span<const Point2> ring, std::size_t begin, std::size_t end, const Point2& p,
                      std::int32_t& around) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -351,7 +351,7 @@ class HoleCheck {
     }
 
     static constexpr std::uint32_t none = 0xffffffff;
-    /// A ring in a row, and the next one in that.
+    /// A ring in a row, and the next entry of that row.
     struct Entry {
         std::uint32_t ring;
         std::uint32_t next;
@@ -361,11 +361,11 @@ class HoleCheck {
     const Rounding& rounding_;
     std::size_t work_left_;
     std::vector<Hole> holes_;
-    std::vector<Box2> boxes_;               ///< of all rings; of holes of many points likely ones
-    std::vector<bool> rough_;               ///< of which rings these are as large as few points ask for
-    std::vector<Box2> blocks_;              ///< of the edges of counter-clockwise rings
-    std::vector<std::size_t> first_blocks_; ///< of each ring its first one among these
-    std::vector<std::uint32_t> first_;      ///< of each row an entry, or none
+    std::vector<Box2> boxes_;               ///< of all rings; estimates for holes of many points
+    std::vector<bool> rough_;               ///< true for rings whose box is estimated from few points
+    std::vector<Box2> blocks_;              ///< boxes of consecutive edges of counter-clockwise rings
+    std::vector<std::size_t> first_blocks_; ///< for each ring its first box in blocks_
+    std::vector<std::uint32_t> first_;      ///< for each row its first entry, or none
     std::vector<Entry> entries_;
     std::vector<Candidate> candidates_;
 };

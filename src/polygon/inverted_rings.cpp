@@ -27,7 +27,7 @@ Layer with_rings_reversed(const Layer& layer) {
 
 } // namespace
 
-// Where rings wind a negative number of times, the same rings reversed have their material.
+// Rings with a negative winding number, when reversed, bound material there.
 InvertedRings inverted_rings(const Layer& layer, const Rounding& rounding, InversionSearch search,
                              const LayerLimits& limits) {
     const Rounding at_least{.step_mm = rounding.step_mm, .single_precision = true};

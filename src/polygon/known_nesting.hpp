@@ -1,6 +1,6 @@
 #pragma once
 
-// Nesting for who has looked at the layer before, also where its rings are those of two operands.
+// Nesting with intermediate results that the caller already has, also for the rings of two operands.
 
 #include "lamella/polygon/nesting.hpp"
 
@@ -14,8 +14,8 @@
 
 namespace lamella {
 
-/// The nesting by both operands together, and for each ring the windings of either just outside of its left
-/// end, just inside, and below it, whatever other rings share its lowest edge there.
+/// The nesting of the rings of both operands together, and for each ring both winding numbers just outside of
+/// its left end, just inside, and below it, regardless of other rings that share its lowest edge there.
 struct NestingWithWindings {
     Nesting nesting;
     std::vector<Windings> outside;
@@ -23,12 +23,11 @@ struct NestingWithWindings {
     std::vector<Windings> below;
 };
 
-/// The same as `nesting(layer)`, but what that begins with is there already: the chains of the layer, their
-/// grid (where there is one), and its contacts, with a group or `none` for each ring. Rings in contact
-/// with none, and not over such that are, take little time: O(log c) for c rings, and a short way down the
-/// grid.
+/// Returns the same as `nesting(layer)`, given its first results: the chains of the layer, their grid (if
+/// there is one), and its contacts, with a group or `none` for each ring. A ring without contacts, and not
+/// above rings with contacts, costs O(log c) for c rings and a short search down the grid.
 ///
-/// `turns`: what each ring adds to the windings; for a layer of one operand, 1 to the first.
+/// `turns` is each ring's contribution to the winding numbers; for one operand, 1 to the first.
 [[nodiscard]] NestingWithWindings nesting(const Layer& layer, const MonotoneChains& chains,
                                           const std::optional<ChainGrid>& grid, const Contacts& contacts,
                                           std::span<const Windings> turns, const LayerBudget& budget = {});

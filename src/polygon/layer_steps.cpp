@@ -39,7 +39,7 @@ LayerChanges& LayerChanges::operator+=(const LayerChanges& other) noexcept {
 }
 
 void check_steps(const LayerSteps& steps) {
-    const Layer none; // the steps look at what they are asked before they look at a layer
+    const Layer none; // steps check their parameters before they examine a layer
     if (steps.offset_mm != 0)
         static_cast<void>(offset(none, steps.offset_mm, steps.offset_corners));
     if (steps.min_area_mm2 != 0)

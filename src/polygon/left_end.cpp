@@ -12,7 +12,7 @@ namespace lamella {
 
 namespace {
 
-/// Whether all points lie on the line through the smallest and the largest of them.
+/// Returns whether all points lie on the line through the smallest and the largest of them.
 bool collinear(std::span<const Point2> ring) noexcept {
     const auto ends = std::minmax_element(ring.begin(), ring.end());
     return std::all_of(ring.begin(), ring.end(),
@@ -27,7 +27,7 @@ LeftEnd left_end(const Layer& layer, const MonotoneChains& chains, std::size_t n
     LeftEnd result;
     result.smallest = ring.front();
     bool found = false;
-    bool folded = false; // an edge that runs there and back says nothing about the direction of the ring
+    bool folded = false; // a folded edge does not show the direction of the ring
     const auto look_at = [&](const Segment& line, bool rightwards) {
         const int order = !found                          ? -1
                           : line.lo.y != result.line.lo.y ? (line.lo.y < result.line.lo.y ? -1 : 1)
@@ -46,7 +46,7 @@ LeftEnd left_end(const Layer& layer, const MonotoneChains& chains, std::size_t n
         const bool rightwards = chain.front.x == left;
         if (!rightwards && chain.back.x != left)
             continue;
-        // From the end that is at the left, along what is vertical there, to the first point beyond.
+        // From the left end along vertical edges to the first point beyond.
         for (std::uint32_t k = 0; k <= chain.segments; ++k) {
             const Point2& p = chains.point(chain, rightwards ? k : chain.segments - k);
             if (p.x > left) {

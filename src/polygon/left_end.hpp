@@ -1,6 +1,6 @@
 #pragma once
 
-// Where a ring begins, and which way round it runs.
+// Finds the left end of a ring and its direction there.
 
 #include "lamella/contour/layer.hpp"
 
@@ -11,16 +11,16 @@
 
 namespace lamella {
 
-/// Where a ring begins, from left to right: the lowest of its edges at its left end.
+/// The left end of a ring: the lowest of its edges there.
 struct LeftEnd {
-    Segment line;           ///< of a ring whose points lie on a vertical: level, and without an end
-    bool rightwards = true; ///< the direction of that edge: counter-clockwise rings run rightwards there
-    bool flat = false;      ///< all points of the ring lie on a line
-    Point2 smallest;        ///< of the ring's points
+    Segment line;           ///< if all points lie on a vertical: level and unbounded
+    bool rightwards = true; ///< direction of that edge; true for counter-clockwise rings
+    bool flat = false;      ///< all points of the ring are collinear
+    Point2 smallest;        ///< smallest point of the ring
 };
 
-/// Of a ring that has points. O(chains of the ring) and the points that are as far to the left as any, unless
-/// its lowest edge there is folded: then O(points).
+/// Returns the left end of a ring that has points. O(chains of the ring + points at its left end), unless its
+/// lowest edge there is folded: then O(points).
 [[nodiscard]] LeftEnd left_end(const Layer& layer, const MonotoneChains& chains, std::size_t ring);
 
 } // namespace lamella

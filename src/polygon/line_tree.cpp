@@ -10,7 +10,7 @@ namespace lamella {
 namespace {
 
 constexpr std::uint32_t few = 8;
-/// Far more than the rounding errors of heights of at most some 16.
+/// Far above the rounding errors of heights of at most about 16.
 constexpr double rounding = 0x1p-44;
 
 double at(double left, double right, double share) noexcept {
@@ -43,8 +43,8 @@ LineTree::Probe LineTree::probe(const Segment& s) const noexcept {
     return {true, {}, {share(s.lo.x), s.lo.y}, {share(s.hi.x), s.hi.y}};
 }
 
-/// Whether none of the lines within the bounds comes close to the probe: all of them are elsewhere, or above
-/// both ends of what the two have in common, or below both. Abscissae keep their order when they are rounded.
+/// Returns whether no line within the bounds comes close to the probe: all of them are outside of its
+/// x-interval, or above both ends of the common interval, or below both. Rounding keeps the order of x.
 bool LineTree::apart(const Bounds& bounds, const Probe& probe) noexcept {
     const auto above = [&](const Point2& p) {
         const double lowest =

@@ -1,6 +1,6 @@
 #pragma once
 
-// Long segments by the lines that they lie on: which of them a given one may cross.
+// A tree of long segments by their lines: finds segments that a given one may cross.
 
 #include "polygon/orientation.hpp"
 
@@ -11,12 +11,12 @@
 
 namespace lamella {
 
-/// A tree of segments that are no steeper than 1, by the heights of their lines at both borders of a stretch
-/// of abscissae. Segments side by side are neighbours in it whether they are parallel or fan out.
+/// A tree of segments of slopes up to 1, by the heights of their lines at both borders of an interval of x.
+/// Segments side by side are neighbours in it, both parallel ones and those that fan out.
 ///
-/// Why there is no grid in its place: long segments side by side are in the same cells of every grid. Of
-/// 20,000 lines that fan out, each across the one beside it, crossings are found in 8 ms; without the tree,
-/// which leaves all pairs, in 1,570 ms.
+/// A grid could not replace it: long segments side by side are in the same cells of every grid. For 20,000
+/// lines that fan out, each across its neighbour, crossings are found in 8 ms; without the tree, by a test of
+/// all pairs, in 1,570 ms.
 class LineTree {
   public:
     struct Item {
@@ -24,12 +24,12 @@ class LineTree {
         std::uint32_t number;
     };
 
-    /// For what happens between the abscissae x0 and x1 alone. O(n log n).
+    /// Only the interval from x0 to x1 counts. O(n log n).
     LineTree(double x0, double x1, std::span<const Item> items);
 
-    /// Calls visit(number) for every segment that comes closer to `s` between x0 and x1 than rounding
-    /// errors, and for some others. O(log n) and a little for each segment beside it; at worst O(sqrt(n)) and
-    /// as much for each.
+    /// Calls visit(number) for every segment that comes closer to `s` between x0 and x1 than rounding errors,
+    /// and for some others. O(log n) and a small number of steps for each segment beside it; in the worst
+    /// case O(sqrt(n)), and as much for each.
     template <class Visit>
     void for_close_to(const Segment& s, Visit visit) const {
         if (!nodes_.empty())
@@ -37,29 +37,29 @@ class LineTree {
     }
 
   private:
-    /// A segment as two heights of its line, and what part of it counts.
+    /// A segment as two heights of its line, and the part of the interval over which it extends.
     struct Line {
-        double left;  ///< the height at x0
-        double right; ///< and at x1
-        double begin; ///< abscissae, as shares of the way from x0 to x1
+        double left;  ///< height at x0
+        double right; ///< height at x1
+        double begin; ///< ends of the segment, as fractions of the interval from x0 to x1
         double end;
         std::uint32_t number;
     };
-    /// What lines, or a node of them, reach.
+    /// Bounds of the lines in a node.
     struct Bounds {
         double left0, left1, right0, right1, begin, end;
     };
     struct Node {
         Bounds bounds;
-        std::uint32_t first; ///< of the lines in it
+        std::uint32_t first; ///< range of the lines in it
         std::uint32_t last;
-        std::uint32_t above; ///< the node of its second half, 0 for a leaf; that of the first half is next
+        std::uint32_t above; ///< node of the second half, 0 for a leaf; the first half is the next node
     };
-    /// What is looked for: a flat segment as a line, a steep one by its ends.
+    /// The segment of a query: a flat one as a line, a steep one by its ends.
     struct Probe {
         bool steep;
         Line line;
-        Point2 low; ///< of a steep one, x as a share
+        Point2 low; ///< ends of a steep one, x as a fraction
         Point2 high;
     };
 
@@ -86,7 +86,7 @@ class LineTree {
     double x0_;
     double width_;
     std::vector<Line> lines_;
-    std::vector<Node> nodes_; ///< each before those below it
+    std::vector<Node> nodes_; ///< each before its descendants
 };
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where material is, by winding numbers: of one layer by a rule, of two by an operation.
+// Defines material by winding numbers: of one layer by a rule, of two layers by an operation.
 
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/fill.hpp"
@@ -11,17 +11,16 @@ namespace lamella {
 
 class Material {
   public:
-    /// Of one operand: its union with nothing.
+    /// For one operand.
     explicit Material(FillRule rule) noexcept : rule_(rule) {}
-    /// `least`: how often rings of the second operand wind at least around what counts as its material.
+    /// `least` is the smallest winding number of the second operand that counts as its material.
     explicit Material(BooleanOperation operation, std::int64_t least = 1) noexcept
         : operation_(operation), least_(least) {}
 
     [[nodiscard]] bool operator()(const Windings& w) const noexcept {
         return made_of(of_rule(w.first), of_rule(w.second - least_ + 1));
     }
-    /// Whether it is known to be everywhere or nowhere where the windings are off `around` by at most
-    /// `rings`.
+    /// Returns whether all winding numbers that differ from `around` by at most `rings` have the same answer.
     [[nodiscard]] bool alike(const Windings& around, const Windings& rings) const noexcept;
 
   private:

@@ -14,20 +14,20 @@ unsigned ways_between(const Point2& a, const Point2& b) noexcept {
            (b.y < a.y ? way::down : 0);
 }
 
-/// For up to 64 segments, from the highest bit down, which of them go which way.
+/// The directions of up to 64 segments, one bit each, from the highest bit down.
 struct Ways {
     std::uint64_t right = 0;
     std::uint64_t left = 0;
     std::uint64_t up = 0;
     std::uint64_t down = 0;
 
-    /// The ways of the first n segments together; n is at least 1.
+    /// Returns the directions of the first n segments together; n is at least 1.
     [[nodiscard]] unsigned of_first(unsigned n) const noexcept {
         const std::uint64_t first = ~std::uint64_t{0} << (64 - n);
         return ((right & first) != 0 ? way::right : 0) | ((left & first) != 0 ? way::left : 0) |
                ((up & first) != 0 ? way::up : 0) | ((down & first) != 0 ? way::down : 0);
     }
-    /// How many segments a chain can take that has gone `ways` so far; 64 when it never turns.
+    /// Returns how many segments a chain of directions `ways` can be extended by; 64 if it never reverses.
     [[nodiscard]] unsigned before_turn(unsigned ways) const noexcept {
         const auto first = [ways](std::uint64_t bits, unsigned way) {
             return (ways & way) != 0 ? 0 : std::countl_zero(bits);
@@ -41,7 +41,8 @@ struct Ways {
     }
 };
 
-/// The ways of the n segments between n + 1 points, x and y side by side in a register. n is 1 to 64.
+/// Returns the directions of the n segments between n + 1 points, 1 <= n <= 64. Uses one register for x and
+/// y.
 Ways ways_along(const Point2* points, std::size_t n) noexcept {
     using Pair = double __attribute__((vector_size(16)));
     using Bits = std::int64_t __attribute__((vector_size(16)));

@@ -18,66 +18,74 @@ namespace lamella {
 
 namespace {
 
-// What a moved ring has to be. Let every side sweep a strip from where it was to where it is moved, and let
-// every corner where two strips part sweep a wedge between them. To grow material is to add all strips and
-// wedges, to shrink it is to take them away.
+// How a moved ring is built, and why it bounds the material.
 //
-// A ring that goes along each moved side, around each wedge, and where strips overlap, in a corner that is
-// concave as seen from the side to which it is moved, back to the corner and out again along the next strip,
-// winds around each place as the old ring does, and once more (less) for each strip and wedge there. So where
-// the winding number is above 0 is the material, exactly, whatever overlaps.
+// Strips and wedges. Every side sweeps a strip between its old and its moved location. Every corner at which
+// two strips part sweeps a wedge between them. Growing adds all strips and wedges to the material; shrinking
+// removes them.
 //
-// Such loops would make every ring with a concave corner meet itself. In place of the loop the ring goes
-// through the point where both moved sides meet, as long as on each side what is cut off at both ends does
-// not overlap. That takes the winding of a kite away: of two right-angled triangles, each in the strip of one
-// of the two sides. No two triangles of a strip overlap, so no more is taken from a place than its strips
-// have added; and not all of it: what side is nearest to a place that is not material, or what wedge, has no
-// triangle there. (The distance to the other side of a concave corner is convex, that to its own line is
-// linear, and in the corners of the triangle the former is not larger.) So the sign stays right everywhere.
+// Loops. Let C be a corner between sides s and t whose strips overlap: C is concave as seen from the moving
+// side. Let N be the end of moved side s, P the beginning of moved side t, and M the intersection of both.
+// Consider a ring that follows each moved side, goes around each wedge, and goes N C P at each such corner.
+// It winds around a point as often as the old ring, plus once for each strip and wedge that contains the
+// point (minus once, when shrinking). So the material is exactly where the winding number is above 0,
+// whatever overlaps.
 //
-// Where a side is too short for what is cut off at its ends, such as those of a fillet whose radius is below
-// the distance, it goes, and the sides beside it meet instead, as long as their point lies beyond the moved
-// side that went: then its strip lies in those of the others and in what lies between them and that point. In
-// a row of concave corners this takes one pass with a stack, as the lower envelope of lines does. Where that
-// fails the ring goes by the corners, as above.
+// Kites. Such loops would make every ring with a concave corner meet itself. So the ring goes through M
+// instead of N C P, if the lengths cut off at both ends of each side do not overlap. This removes the winding
+// of the kite C N M P, which consists of the right-angled triangles CNM in the strip of s and CMP in the
+// strip of t. The sign of the winding stays right everywhere:
+// 1. A point loses at most what its strips have added, because the triangles within one strip do not overlap.
+// 2. A point q in strips or wedges, outside of the old material (inside, when shrinking), does not lose all
+//    of them. Let s be the side or corner nearest to q, whose strip or wedge then contains q. A wedge has no
+//    triangles. If s is a side and q were inside of CNM, then t would be nearer: let f be the distance to t
+//    and g that to the line of s. On CNM f is convex and g linear. At C both are 0, at M both are the offset
+//    distance, at N g is that and f is less. So f < g inside. The same holds for CMP with s and t exchanged.
+//
+// Short sides. A side can be too short for the lengths cut off at its ends, such as those of a fillet whose
+// radius is below the distance. It is dropped and its neighbours are extended to their intersection, if this
+// lies beyond the dropped moved side: its strip is then covered by the strips of the neighbours and the area
+// between these and the intersection. In a row of concave corners, one pass with a stack finds the remaining
+// sides, as for the lower envelope of lines. If that fails, the ring makes the loops N C P.
 
 /// A side between two different points.
 struct MovedSide {
-    Point2 from;      ///< where it begins, not moved
+    Point2 from;      ///< beginning before the move
     Point2 direction; ///< of length 1
     double length = 0;
 };
 
-/// Between a side and the next one.
+/// The turn between a side and the next one.
 struct Turn {
     double sine; ///< positive to the left
     double cosine;
-    double mitre; ///< 1 / (1 + cosine), infinite for a fold: parallels meet at that times both normals
+    double mitre; ///< 1 / (1 + cosine), infinite for a fold; moved sides meet at this times the sum of both
+                  ///< normals
 
-    /// Whether sides all but run back along one another: then the turn is mostly rounding error.
+    /// Returns whether the sides nearly run back along one another: then the turn is mostly rounding error.
     [[nodiscard]] bool folds() const noexcept { return !(1 + cosine > 1e-6); }
 };
 
-/// Where a moved side ends.
+/// The end of a moved side.
 enum class SideEnd : std::uint8_t {
     at_corner,    ///< by the rule of the corner
-    intersection, ///< where it meets the next side that is left
-    gone,         ///< the side itself is not left
+    intersection, ///< at the intersection with the next remaining side
+    gone,         ///< none: the side is dropped
 };
 
-/// Where two moved sides meet, and how far that is from where they begin, as they were.
+/// The intersection of two moved sides, and its distance from the beginning of each of them along the side.
 struct SideIntersection {
     Point2 at;
     double before;
     double after;
 };
 
-/// A side of a row that is left so far.
+/// A side of a row that remains so far.
 struct RowSide {
     std::size_t side;
-    double start;             ///< how much is cut off at its beginning
-    Point2 intersection = {}; ///< with the one before it in the row
-    double end_before = 0;    ///< where that one ends, from its beginning
+    double start;             ///< length cut off at its beginning
+    Point2 intersection = {}; ///< with the side before it in the row
+    double end_before = 0;    ///< end of that side, from its beginning
 };
 
 Point2 operator+(const Point2& a, const Point2& b) noexcept {
@@ -88,7 +96,7 @@ Point2 operator*(double factor, const Point2& p) noexcept {
     return {factor * p.x, factor * p.y};
 }
 
-/// To the right of a direction.
+/// Returns the vector to the right of a direction.
 Point2 right_of(const Point2& direction) noexcept {
     return {direction.y, -direction.x};
 }
@@ -108,8 +116,8 @@ MovedSide side_between(const Point2& a, const Point2& b) noexcept {
     return {a, {dx / length, dy / length}, length * unit};
 }
 
-/// Chords finer than the grid on which crossings are rounded would only add points. The unit of that grid is
-/// at least 2^-37 of the layer's extent, which is at least twice the distance.
+/// Returns the tolerance of chords. Chords finer than the grid to which crossings are rounded would only add
+/// points. Its unit is at least 2^-37 of the layer's extent, which is at least twice the distance.
 double arc_tolerance(double reach, const OffsetCorners& corners) noexcept {
     return std::max(corners.arc_tolerance_mm, reach * 0x1p-36);
 }
@@ -118,7 +126,7 @@ Point2 with_length(double length, const Point2& p) noexcept {
     return (length / std::sqrt(p.x * p.x + p.y * p.y)) * p;
 }
 
-/// What a moved ring does around the wedges of its corners.
+/// Moved rings around the wedges of corners.
 class Wedges {
   public:
     Wedges(double reach, const OffsetCorners& corners)
@@ -126,7 +134,7 @@ class Wedges {
           least_mitre_(2 / (corners.longest_mitre() * corners.longest_mitre())),
           tolerance_(arc_tolerance(reach, corners)) {}
 
-    /// Puts the way from corner + n to corner + m. u and v: the directions of both sides.
+    /// Appends the path from corner + n to corner + m. u and v are the directions of both sides.
     void go_around(const Point2& corner, const Point2& n, const Point2& m, const Point2& u, const Point2& v,
                    const Turn& turn, std::vector<Point2>& out) const {
         const double cosine = turn.cosine;
@@ -135,7 +143,7 @@ class Wedges {
                 out.push_back(corner + turn.mitre * (n + m));
                 return;
             }
-            // The tangent of a quarter of the turn: how far along it to where the sides are cut off.
+            // Tangent of a quarter of the turn: along each side, the distance to the cut of the mitre.
             const double along = std::sqrt(std::max(0.0, 1 - cosine)) /
                                  (std::sqrt(2.0) + std::sqrt(std::max(0.0, 1 + cosine)));
             out.push_back(corner + n + reach_ * along * u);
@@ -158,8 +166,8 @@ class Wedges {
     }
 
   private:
-    /// The points between corner + n and corner + m on the arc around the corner. `cosine`: of the angle
-    /// between them.
+    /// Appends the points between corner + n and corner + m on the arc around the corner. `cosine` is that of
+    /// the angle between them.
     void add_arc(const Point2& corner, const Point2& n, const Point2& m, double cosine,
                  std::vector<Point2>& out) const {
         const double half = std::sqrt((1 + cosine) / 2);
@@ -177,7 +185,7 @@ class Wedges {
     double tolerance_;   ///< of chords
 };
 
-/// The sides of a ring, and how it turns between them: what is the same for all distances.
+/// The sides of a ring and the turns between them, common to all distances.
 class RingSides {
   public:
     void look_at(std::span<const Point2> ring) {
@@ -201,7 +209,7 @@ class RingSides {
 
     [[nodiscard]] std::size_t size() const noexcept { return sides_.size(); }
     [[nodiscard]] const MovedSide& operator[](std::size_t i) const noexcept { return sides_[i]; }
-    /// Behind a side.
+    /// Returns the turn after a side.
     [[nodiscard]] const Turn& turn(std::size_t i) const noexcept { return turns_[i]; }
     [[nodiscard]] std::size_t after(std::size_t i) const noexcept {
         return i + 1 == sides_.size() ? 0 : i + 1;
@@ -218,8 +226,8 @@ class RingSides {
     }
 
   private:
-    /// Of a fold the sign of the sine decides whether strips part, so it has to be right, and 1 + cosine has
-    /// no digits left.
+    /// The sign of a fold's sine decides whether strips part, so it must be exact, and 1 + cosine has no
+    /// digits left.
     void look_at_fold(std::size_t i) {
         const std::size_t next = after(i);
         const int side = orientation(sides_[i].from, sides_[next].from, sides_[after(next)].from);
@@ -232,16 +240,16 @@ class RingSides {
     std::vector<Turn> turns_;
 };
 
-/// Moves rings by one distance, each as it was last looked at.
+/// Moves the last examined ring by one distance.
 class RingMover {
   public:
-    /// `rounding`: how far off places may be.
+    /// `rounding` is the largest error of coordinates.
     RingMover(const RingSides& sides, double distance, const OffsetCorners& corners, double rounding,
               const LayerBudget& budget)
         : sides_(sides), budget_(budget), distance_(distance), reach_(std::abs(distance)),
           shape_(corners.shape), wedges_(reach_, corners), rounding_(rounding) {}
 
-    /// The ring of the sides as they are now.
+    /// Appends the moved ring of the current sides.
     void move(std::vector<Point2>& out) {
         if (sides_.size() < 2)
             return;
@@ -263,7 +271,7 @@ class RingMover {
   private:
     [[nodiscard]] std::size_t after(std::size_t i) const noexcept { return sides_.after(i); }
 
-    /// Positive where strips part behind a side.
+    /// Returns a positive number if strips part after a side.
     [[nodiscard]] double parting(std::size_t i) const noexcept {
         return distance_ > 0 ? sides_.turn(i).sine : -sides_.turn(i).sine;
     }
@@ -272,12 +280,12 @@ class RingMover {
         cuts_.resize(sides_.size());
         for (std::size_t i = 0; i < sides_.size(); ++i) {
             const double sine = parting(i);
-            // All but infinite for a fold.
+            // Nearly infinite for a fold.
             cuts_[i] = sine < 0 ? reach_ * -sine * sides_.turn(i).mitre : 0;
         }
     }
 
-    /// Whether what is cut off a side at both ends leaves some of it.
+    /// Returns whether the cuts at both ends leave part of a side.
     [[nodiscard]] bool stays(std::size_t i) const noexcept {
         return cuts_[sides_.before(i)] + cuts_[i] <= sides_[i].length;
     }
@@ -289,13 +297,13 @@ class RingMover {
         return true;
     }
 
-    /// Whether strips do not part after a side, or by no more than rounding.
+    /// Returns whether strips do not part after a side, or by no more than rounding.
     [[nodiscard]] bool goes_on(std::size_t i) const noexcept {
         const double sine = parting(i);
         return sine < 0 || (sides_.turn(i).cosine > 0 && reach_ * sine <= rounding_);
     }
 
-    /// Looks for rows of sides between corners where strips part.
+    /// Finds rows of sides between corners where strips part.
     void find_rows() {
         const std::size_t n = sides_.size();
         std::size_t first = 0;
@@ -320,7 +328,7 @@ class RingMover {
         }
     }
 
-    /// Finds which sides of a row are left, and where these meet.
+    /// Finds the remaining sides of a row and their intersections.
     void shorten_row(std::size_t begin, std::size_t count) {
         row_.clear();
         row_.push_back({begin, 0});
@@ -351,7 +359,7 @@ class RingMover {
         }
     }
 
-    /// Where two moved sides of a row meet.
+    /// Returns the intersection of two moved sides of a row.
     [[nodiscard]] std::optional<SideIntersection> meet(std::size_t i, std::size_t j) const noexcept {
         const MovedSide& a = sides_[i];
         const MovedSide& b = sides_[j];
@@ -366,7 +374,7 @@ class RingMover {
         const double sine = a.direction.x * b.direction.y - a.direction.y * b.direction.x;
         if (!((distance_ > 0 ? sine : -sine) < -1e-6))
             return std::nullopt;
-        const Point2 corner = sides_[after(i)].from; // the end of the first one
+        const Point2 corner = sides_[after(i)].from; // the end of the first side
         const Point2 way = (b.from + m) + -1 * (corner + n);
         const double along_a = (way.x * b.direction.y - way.y * b.direction.x) / sine;
         const double along_b = (way.x * a.direction.y - way.y * a.direction.x) / sine;
@@ -375,7 +383,7 @@ class RingMover {
         return SideIntersection{b.from + m + along_b * b.direction, a.length + along_a, along_b};
     }
 
-    /// Whether the sides of the row that are not left lie below where those around them meet.
+    /// Returns whether each dropped side of the row lies below the intersection of its remaining neighbours.
     [[nodiscard]] bool swallowed_lie_below() const noexcept {
         for (std::size_t k = 0; k + 1 < row_.size(); ++k)
             for (std::size_t i = after(row_[k].side); i != row_[k + 1].side; i = after(i)) {
@@ -388,7 +396,7 @@ class RingMover {
         return true;
     }
 
-    /// From the longest side on, and from its middle, if that is left: so no loop is at the ends of the ring.
+    /// Appends the ring, from the middle of the longest side if that remains, so that no loop is at its ends.
     void put_ends(std::vector<Point2>& out) {
         const std::size_t longest = sides_.longest();
         const MovedSide& side = sides_[longest];
@@ -418,13 +426,13 @@ class RingMover {
         put_middle();
         const auto begin = static_cast<std::ptrdiff_t>(out.size());
         add_without_swallowtails(ring_, corner_points_, distance_, out);
-        if (from_middle) { // it is a straight point
+        if (from_middle) { // it is a collinear point
             out.pop_back();
             out.erase(out.begin() + begin);
         }
     }
 
-    /// Whether the middle of a moved side is left: what is cut off at both ends does not go beyond it.
+    /// Returns whether the middle of a moved side remains: the cuts at both ends do not reach it.
     [[nodiscard]] bool reaches_middle(std::size_t i) const noexcept {
         const MovedSide& side = sides_[i];
         const auto beyond = [&](const Point2& p) {
@@ -440,7 +448,7 @@ class RingMover {
         return ends_[before] != SideEnd::intersection || beyond(intersections_[before]) < 0;
     }
 
-    /// Puts what follows the moved side i, up to the beginning of the next one.
+    /// Appends the path from the moved side i to the beginning of the next one.
     void turn_from(std::size_t i, std::vector<Point2>& out) const {
         const MovedSide& side = sides_[i];
         const MovedSide& next = sides_[after(i)];
@@ -467,13 +475,13 @@ class RingMover {
     [[nodiscard]] bool short_cut(std::size_t i) const noexcept {
         if (!stays(i) || !stays(after(i)))
             return false;
-        // Bevels leave places without a wedge that are nearest to a corner: there, both strips must be.
+        // A bevel has no wedge to cover points nearest to a corner; there, both strips must stay complete.
         return shape_ != OffsetCorner::bevel ||
                (sides_.turn(i).cosine >= 0 &&
                 reach_ * -parting(i) <= std::min(sides_[i].length, sides_[after(i)].length));
     }
 
-    /// Of a moved ring, also while its winding is looked at.
+    /// Memory for a point of a moved ring, including the computation of its winding numbers.
     static constexpr std::uint64_t bytes_of_point = 16 * sizeof(Point2);
 
     const RingSides& sides_;
@@ -483,7 +491,7 @@ class RingMover {
     OffsetCorner shape_;
     Wedges wedges_;
     double rounding_;
-    std::vector<double> cuts_; ///< how much of both sides is cut off behind a side, where strips overlap
+    std::vector<double> cuts_; ///< length cut off both sides after a side, where strips overlap
     std::vector<SideEnd> ends_;
     std::vector<Point2> intersections_; ///< for sides that end in one
     std::vector<RowSide> row_;
@@ -492,7 +500,7 @@ class RingMover {
     std::vector<Point2> ends_points_; ///< of one side
 };
 
-/// Of a ring from `begin` on. Sides that shrank to nothing leave both their ends.
+/// Removes repeated points of a ring from `begin` on. Both ends of sides that shrank to length 0 are there.
 void drop_repeats(std::vector<Point2>& points, std::size_t begin) {
     points.erase(std::unique(points.begin() + static_cast<std::ptrdiff_t>(begin), points.end()),
                  points.end());

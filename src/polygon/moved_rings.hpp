@@ -1,6 +1,6 @@
 #pragma once
 
-// Rings whose sides are moved in parallel, each by itself.
+// Rings with each side moved in parallel.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/polygon/offset.hpp"
@@ -12,19 +12,19 @@
 
 namespace lamella {
 
-/// For each distance the rings of a layer, in their order, with sides moved to the right by it, to the left
-/// by a negative one: of boundaries of material, outwards or inwards. Of those that are `gone` nothing is
-/// left.
+/// Returns for each distance the rings of a layer, in their order, with each side moved to the right by the
+/// distance, to the left if it is negative. Boundaries of material are thus moved outwards or inwards. Rings
+/// marked in `gone` become empty.
 ///
-/// Moved rings may run into themselves and one another. Where the winding number of all of them is above 0 is
-/// the material, grown or shrunk. Where no side came to run backwards and rings do not meet, they bound it as
-/// they are. O(points) for each distance.
+/// Moved rings may intersect themselves and one another. The grown or shrunk material is the area where their
+/// common winding number is above 0. If no moved side runs backwards and no rings meet, the rings bound it
+/// directly. O(points) for each distance.
 [[nodiscard]] std::vector<Layer> moved_rings(const Layer& layer, std::span<const double> distances,
                                              const OffsetCorners& corners,
                                              std::span<const std::vector<bool>> gone,
                                              const LayerBudget& budget = {});
 
-/// How far from a side or a corner strips and wedges reach at least, in all directions to which it is moved.
+/// Returns the distance from sides and corners up to which strips and wedges surely cover all points.
 [[nodiscard]] double surely_swept(double distance, const OffsetCorners& corners) noexcept;
 
 } // namespace lamella

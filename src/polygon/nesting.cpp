@@ -20,10 +20,10 @@ namespace lamella {
 
 namespace {
 
-/// Takes the rings from left to right and looks at what lies below the left end of each.
+/// Visits the rings from left to right and examines the edges below the left end of each.
 class NestingSearch {
   public:
-    /// `turns`: what each ring adds to the windings.
+    /// `turns` is the contribution of each ring to the winding numbers.
     NestingSearch(const Layer& layer, const MonotoneChains& chains, std::span<const Windings> turns,
                   const Contacts& contacts)
         : layer_(layer), chains_(chains), turns_(turns), contacts_(contacts), ends_(ends_of(layer, chains)),
@@ -40,7 +40,7 @@ class NestingSearch {
         order_from_left_to_right();
         const bool by_grid = grid && !grid->full();
         std::vector<EdgeBelow> edges;
-        std::vector<std::uint32_t> open; // an edge is not enough to know
+        std::vector<std::uint32_t> open; // rings for which one edge does not suffice
         edges.reserve(order_.size());
         for (const std::uint32_t ring : order_) {
             budget.check();
@@ -51,8 +51,8 @@ class NestingSearch {
         std::optional<SurroundingsSearch> surroundings;
         if (!open.empty())
             surroundings.emplace(chains_, ends_, copies_, turns_, order_, by_area_, open);
-        // Edges that cross have no order: such a search grows as the square. Nothing is made of contours that
-        // cross too often.
+        // Edges that cross have no order, so such a search is quadratic. Layers whose contours cross too
+        // often are refused.
         constexpr std::uint64_t half_a_second = std::uint64_t{1} << 22;
         std::uint64_t crossing = 0;
         for (const std::uint32_t ring : open)
@@ -73,29 +73,30 @@ class NestingSearch {
 
   private:
     [[nodiscard]] bool in_contact(std::uint32_t ring) const noexcept {
-        return contacts_.group[ring] != Contacts::none || ends_[ring].flat; // as one point may be
+        return contacts_.group[ring] != Contacts::none ||
+               ends_[ring].flat; // a flat ring may be a single point
     }
 
-    /// Of a ring in contact with none, the next edge below its left end is enough to know, unless a ring in
-    /// contact may have it.
+    /// Returns the next edge below the left end of a ring without contacts. It determines the nesting, unless
+    /// a ring in contact may have it.
     [[nodiscard]] EdgeBelow edge_below_end(std::uint32_t ring, const ChainGrid& grid) const {
         if (in_contact(ring))
             return {.sure = false};
         const Point2& left = ends_[ring].line.lo;
-        // Where rings cross, the parent is the one met first on the way down, also one whose box lies below.
+        // If rings cross, the parent is the first one on the way down, even if its box lies below.
         if (contacts_.groups == 0 && !grid.surrounded(left, ring))
             return {};
         return edge_below(left, ring, chains_, grid, contacts_);
     }
 
-    /// The ring is inside of the edge's ring, or beside it.
+    /// Places a ring inside of the edge's ring, or beside it.
     void place_over(const EdgeBelow& edge, std::uint32_t ring) {
         std::uint32_t parent = Nesting::none;
         Windings winding;
         if (edge.ring != Nesting::none) {
             const bool inside = edge.rightwards == ends_[edge.ring].rightwards;
             parent = inside ? edge.ring : placement_.outside(edge.ring);
-            // Not that inside of its parent, which is another one elsewhere where that crosses itself.
+            // Not the winding number inside of its parent, which varies if that ring crosses itself.
             winding = inside ? placement_.winding_inside(edge.ring) : placement_.winding(edge.ring);
         }
         placement_.position(ring, parent, winding);
@@ -123,7 +124,7 @@ class NestingSearch {
         return ends;
     }
 
-    /// Areas only count where edges coincide.
+    /// Areas matter only where edges coincide.
     void order_by_area() {
         std::vector<double> area(ends_.size());
         std::vector<std::uint32_t> largest_first;
@@ -140,7 +141,7 @@ class NestingSearch {
             by_area_[largest_first[i]] = i + 1;
     }
 
-    /// So that what lies below a left end comes before it.
+    /// Puts the edges below a left end before it.
     void order_from_left_to_right() {
         const auto before = [&](std::uint32_t a, std::uint32_t b) {
             const Segment& s = ends_[a].line;
@@ -150,7 +151,7 @@ class NestingSearch {
             const int by_slope = compare_right_of(s.lo.x, s, t);
             return by_slope != 0 ? by_slope < 0 : by_area_[a] < by_area_[b];
         };
-        if (!std::is_sorted(order_.begin(), order_.end(), before)) // rings in normal form all but are
+        if (!std::is_sorted(order_.begin(), order_.end(), before)) // rings in normal form are nearly sorted
             std::sort(order_.begin(), order_.end(), before);
     }
 
@@ -160,9 +161,8 @@ class NestingSearch {
     const Contacts& contacts_;
     std::vector<LeftEnd> ends_;
     RingCopies copies_;
-    std::vector<std::uint32_t> order_; ///< the representatives
-    std::vector<std::uint32_t>
-        by_area_; ///< 0 for those in contact with none, 1 for the largest of the others
+    std::vector<std::uint32_t> order_;   ///< the representatives
+    std::vector<std::uint32_t> by_area_; ///< 0 for rings without contacts, 1 for the largest of the others
     std::vector<Windings> below_;
     RingPlacement placement_;
 };

@@ -38,7 +38,7 @@ void check(std::span<const double> distances, const OffsetCorners& corners) {
         throw Error(ErrorKind::usage, "arcs are made of chords within a tolerance above 0");
 }
 
-/// How wide the strip along the longest side is in which a ring lies.
+/// Returns the width of the strip along the longest side that contains the ring.
 double width_across_longest_side(std::span<const Point2> ring) noexcept {
     double longest = 0;
     Point2 way;
@@ -60,10 +60,10 @@ double width_across_longest_side(std::span<const Point2> ring) noexcept {
     return longest > 0 ? (high - low) / std::sqrt(longest) : 0;
 }
 
-/// The boundaries of a layer's material, without walls, and what they bound.
+/// The boundaries of a layer's material, without walls, and the bodies that they bound.
 class Boundaries {
   public:
-    // Bodies that fit in one another are united first: of each ring other points may be straight.
+    // Adjoining bodies are united first, because different points of their rings may be removed as collinear.
     Boundaries(const Layer& layer, const LayerLimits& limits)
         : limits_(limits), budget_(limits, layer.index, layer.z) {
         const Overlay overlay(layer, limits);
@@ -75,7 +75,7 @@ class Boundaries {
     }
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
-    /// `vanished`: by the first distance, where given.
+    /// `vanished`, if given, is the number for the first distance.
     [[nodiscard]] std::vector<Layer> moved(std::span<const double> distances, const OffsetCorners& corners,
                                            std::uint64_t* vanished = nullptr) const {
         std::vector<std::vector<bool>> gone;
@@ -95,7 +95,7 @@ class Boundaries {
     }
 
   private:
-    /// Rings of bodies, or holes, so narrow that their sides sweep all of them.
+    /// Returns the rings of bodies, or holes, that are so narrow that their sides sweep all of their area.
     [[nodiscard]] std::vector<bool> surely_gone(double distance, const OffsetCorners& corners) const {
         std::vector<bool> gone(layer_.rings, false);
         const double swept = 2 * surely_swept(distance, corners);
@@ -119,7 +119,7 @@ class Boundaries {
         return gone;
     }
 
-    /// How many of the boundaries are gone.
+    /// Returns the number of boundaries of which nothing remains.
     [[nodiscard]] std::uint64_t vanished_rings(const Layer& moved, std::span<const Fate> fates,
                                                const std::vector<bool>& gone, double distance) const {
         std::uint64_t count = 0;
@@ -136,13 +136,13 @@ class Boundaries {
         return count;
     }
 
-    /// Whether nothing is left of these rings of one body, or of a hole, which is the inside of one, when it
-    /// is shrunk by so much.
+    /// Returns whether nothing remains of these rings of one body, or of a hole, treated as a body, when it
+    /// is shrunk by `by`.
     [[nodiscard]] bool vanishes(std::span<const std::uint32_t> body, bool hole, const Layer& moved,
                                 std::span<const Fate> fates, double by, const ClippingGrid& grid) const {
         if (fates[body.front()] == Fate::kept)
             return false;
-        // All of it lies within `by` of its sides then: that is a strip along each side and a sector at each
+        // All of the area then lies within `by` of its sides: in a strip along each side and a sector at each
         // corner.
         double area = 0;
         double reach = 0;
@@ -161,7 +161,7 @@ class Boundaries {
         return filled(rings, FillRule::positive, grid, budget_).empty();
     }
 
-    /// In normal form.
+    /// Returns a layer in normal form.
     [[nodiscard]] Layer with_chains(Layer layer) const {
         if (layer_.open_chains() == 0)
             return normal_form(std::move(layer));

@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether some sides of rings cross, the others left out.
+// Tests whether a subset of the sides of rings has crossings.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/polygon/crossings.hpp"
@@ -10,7 +10,7 @@
 
 namespace lamella {
 
-/// Runs of sides, each as an open chain: what crosses there is found without the sides between.
+/// Consecutive sides as open chains; crossings are found without the sides between the chains.
 class OpenRuns {
   public:
     void begin(const Point2& p) {

@@ -8,8 +8,8 @@
 
 namespace lamella {
 
-// The height of s at x times its width is lo.y hi.x - hi.y lo.x + x hi.y - x lo.y; each is multiplied with
-// the width of the other segment, which is positive.
+// The height of s at x times its width is lo.y hi.x - hi.y lo.x + x hi.y - x lo.y. Both sides are multiplied
+// by the width of the other segment, which is positive.
 int exact_compare_heights(double x, const Segment& s, const Segment& t) noexcept {
     std::array<SignedProduct<3>, 16> terms;
     std::size_t n = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Segments as a sweep sees them, and on which side of them a point lies.
+// Segments for sweeps, and predicates for points and segments.
 
 #include "core/orientation.hpp"
 #include "polygon/box2.hpp"
@@ -20,37 +20,37 @@ struct Segment {
     return a < b ? Segment{a, b} : Segment{b, a};
 }
 
-/// +1 when p lies above the line of s, -1 below, 0 on it. (For a vertical segment "above" is to its left.)
+/// Returns +1 if p lies above the line of s (left of it, if s is vertical), -1 below, 0 on it.
 [[nodiscard]] inline int side(const Segment& s, const Point2& p) noexcept {
     return orientation(s.lo, s.hi, p);
 }
 
-/// Whether two segments have a point in common. Exact, for points, too.
+/// Returns whether two segments have a point in common. Exact, also for segments of length 0.
 [[nodiscard]] inline bool meet(const Segment& s, const Segment& t) noexcept {
     return Box2::of(s.lo, s.hi).meets(Box2::of(t.lo, t.hi)) && side(s, t.lo) * side(s, t.hi) <= 0 &&
            side(t, s.lo) * side(t, s.hi) <= 0;
 }
 
-/// Whether each has its ends strictly on both sides of the other one. Exact.
+/// Returns whether each segment has its ends strictly on both sides of the other. Exact.
 [[nodiscard]] inline bool cross(const Segment& s, const Segment& t) noexcept {
     if (s.lo.x >= t.hi.x || t.lo.x >= s.hi.x)
-        return false; // they meet in a common vertical at most, where one of them ends
+        return false; // they meet at most in a common vertical, where one of them ends
     const auto [s_min, s_max] = std::minmax(s.lo.y, s.hi.y);
     const auto [t_min, t_max] = std::minmax(t.lo.y, t.hi.y);
     const bool share_an_end = s.lo == t.lo || s.hi == t.hi || s.lo == t.hi || s.hi == t.lo;
     if (s_min >= t_max || t_min >= s_max || share_an_end)
-        return false; // a touch at most
+        return false; // they touch at most
     return side(s, t.lo) * side(s, t.hi) < 0 && side(t, s.lo) * side(t, s.hi) < 0;
 }
 
-/// compare_heights by integer arithmetic; slow, for the rare cases that it cannot decide.
+/// Does the same as compare_heights by integer arithmetic; slow, for the rare cases that it cannot decide.
 [[nodiscard]] int exact_compare_heights(double x, const Segment& s, const Segment& t) noexcept;
 
-/// The sign of the height of s over t at x, where both exist and neither is vertical. Exact.
+/// Returns the sign of the height of s above t at x. Both must span x and neither may be vertical. Exact.
 ///
-/// The filter. With u = 2^-53 the share of s passed at x carries three roundings, its rise three more and the
-/// height another one: it is off by less than 8u (|lo.y| + |hi.y|) where nothing overflows, and the
-/// difference of two heights by less than 10u of the sum of sizes. A share that underflows is off by less
+/// The filter: with u = 2^-53, the fraction of s passed at x carries three roundings, its rise three more and
+/// the height another one. The height is off by less than 8u (|lo.y| + |hi.y|) if nothing overflows, and the
+/// difference of two heights by less than 10u of the sum of sizes. A fraction that underflows is off by less
 /// than 2^-1074.
 [[nodiscard]] inline int compare_heights(double x, const Segment& s, const Segment& t) noexcept {
     constexpr double u = 0x1p-53;
@@ -65,7 +65,8 @@ struct Segment {
     return exact_compare_heights(x, s, t);
 }
 
-/// How s lies to t just to the right of x, where both exist: -1 below, 0 on it, 1 above. Exact.
+/// Returns how s lies relative to t just to the right of x: -1 below, 0 on it, 1 above. Both must span x.
+/// Exact.
 [[nodiscard]] inline int compare_right_of(double x, const Segment& s, const Segment& t) noexcept {
     const int left = s.lo.x > t.lo.x ? side(t, s.lo) : -side(s, t.lo);
     const int right = s.hi.x < t.hi.x ? side(t, s.hi) : -side(s, t.hi);

@@ -19,7 +19,7 @@ namespace lamella {
 
 namespace {
 
-/// Of a ring with material on one side or on both, or on none.
+/// Returns the fate of a ring by whether there is material outside and inside of it.
 Fate fate(bool outside, bool inside, bool counter_clockwise) noexcept {
     if (outside == inside)
         return Fate::dropped;
@@ -51,8 +51,8 @@ class Filler {
     Overlaid run() && {
         for (const std::vector<std::uint32_t>& group : groups_)
             fill_group(group);
-        // Rounding draws what a group becomes over rings of others that are closer to it than a unit of the
-        // grid.
+        // Rounding can draw the boundary of a united group over rings of others that are closer to it than a
+        // unit of the grid.
         const bool others = result_.groups_united > 1 || count(Fate::kept) + count(Fate::reversed) > 0;
         if (!united_.empty() && others && has_crossings(put_together()))
             unite_all();
@@ -77,11 +77,11 @@ class Filler {
                     nest_.inside[ring].sum() > nest_.outside[ring].sum());
     }
 
-    /// A group in contact, none of its rings flat, from left to right.
+    /// Processes a group in contact from left to right; none of its rings may be flat.
     void fill_group(const std::vector<std::uint32_t>& group) {
         if (group.empty())
             return;
-        // Of the group itself nothing lies below the left end of its first ring.
+        // No ring of the group lies below the left end of its first ring.
         const Windings around = nest_.below[group.front()];
         Windings most;
         for (const std::uint32_t ring : group) {
@@ -118,12 +118,12 @@ class Filler {
                 united_.push_back(std::move(ring));
     }
 
-    /// Whether a ring is so thin that places on the grid may have turned it over, or made a line of it.
+    /// Returns whether a ring is so thin that rounding to the grid may have inverted or flattened it.
     [[nodiscard]] bool is_sliver(const Ring& ring) const {
         return std::abs(ring_area(ring)) <= grid_->unit() * contour_length(ring, true);
     }
 
-    /// As if all rings were one group in contact.
+    /// Unites all rings as one group in contact.
     void unite_all() {
         std::vector<std::uint32_t> all = nest_.nesting.order;
         std::erase_if(all, [this](std::uint32_t ring) { return flat(ring); });
@@ -132,13 +132,13 @@ class Filler {
         unite(all, arranged(wound(all), {}, *grid_, budget_));
     }
 
-    /// Whether rings that do not cross can stay or go each as a whole, and which.
+    /// Returns whether rings that do not cross can be kept or dropped as a whole, and sets their fates.
     bool stay(const std::vector<std::uint32_t>& group, const Arrangement& arrangement, const Windings& most) {
         if (walls_ == Walls::dissolved || (most.first > 0 && most.second > 0))
             return !arrangement.walls && arrangement.bounded_by_rest(material_);
         if (!arrangement.bounded_by_all(material_))
             return arrangement.bounded_by_rest(material_);
-        // Overlaps of the size of rounding errors may be where a ring has its left end.
+        // Overlaps of the size of rounding errors may be at the left end of a ring.
         for (const std::uint32_t ring : group)
             fates_[ring] = Fate::kept;
         return true;

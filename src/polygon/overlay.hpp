@@ -1,7 +1,7 @@
 #pragma once
 
-// Rings of one layer or of two over one another: which of them bound the material as they are, and the others
-// made right.
+// Overlaid rings of one layer or of two: finds rings that bound the material unchanged, and corrects the
+// others.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/polygon/fill.hpp"
@@ -19,39 +19,39 @@
 
 namespace lamella {
 
-/// What becomes of a ring: it stays, is turned round, goes, or other rings take its place and that of those
-/// in contact with it.
+/// The result for a ring: it is kept, reversed, dropped, or replaced together with the rings in contact with
+/// it.
 enum class Fate : std::uint8_t { kept, reversed, dropped, united };
 
-/// Whether boundaries of material that run along one another, with nothing between them, can stay.
+/// Treatment of walls: boundaries of material that run along one another with nothing between them.
 enum class Walls : std::uint8_t {
-    left,      ///< those of rings of one operand
-    dissolved, ///< none
+    left,      ///< walls of rings of one operand stay
+    dissolved, ///< no walls stay
 };
 
-/// The boundary of the material, and the fates of the rings that were there.
+/// The boundary of the material, and the fates of the given rings.
 struct Overlaid {
     Filled filled;
     std::vector<Fate> fates;
 };
 
-/// What a layer's rings have to do with one another.
+/// The contacts and the nesting of a layer's rings.
 class Overlay {
   public:
-    /// The rings of one operand.
+    /// Examines the rings of one operand.
     explicit Overlay(const Layer& layer, const LayerLimits& limits = {})
         : Overlay(layer, std::vector<Windings>(layer.rings, {1, 0}), limits) {}
-    /// `turns`: what each ring adds to the windings of its inside. The layer is to outlive the overlay.
+    /// `turns` is each ring's contribution to the winding numbers of its inside. The layer must outlive this.
     Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits);
 
-    /// Whether no rings are in contact and all of them bound material of one operand, with none around it.
+    /// Returns whether no rings are in contact and all bound material of one operand, with none around it.
     [[nodiscard]] bool clean() const noexcept;
-    /// The box of all rings, of which there is at least one.
+    /// Returns the box of all rings. Requires at least one ring.
     [[nodiscard]] Box2 box() const noexcept;
 
-    /// The boundary of the material, and the open chains of the layer; see `fill`.
+    /// Returns the boundary of the material, with the open chains of the layer; see `fill`.
     [[nodiscard]] Overlaid filled(const Material& material, Walls walls = Walls::left) const;
-    /// By both operands together.
+    /// Returns the nesting by both operands together.
     [[nodiscard]] const Nesting& nest() const noexcept { return nest_.nesting; }
 
   private:
@@ -64,10 +64,10 @@ class Overlay {
     NestingWithWindings nest_;
 };
 
-/// The material of a layer (FillRule::positive), walls dissolved. A layer that is that already is passed
-/// through.
+/// Returns the material of a layer (FillRule::positive) without walls. Passes through a layer that already is
+/// that.
 [[nodiscard]] Layer united(const Layer& layer, const LayerLimits& limits = {});
-/// The same for who has its overlay.
+/// Returns the same, given the overlay of the layer.
 [[nodiscard]] Layer united(const Layer& layer, const Overlay& overlay);
 
 } // namespace lamella

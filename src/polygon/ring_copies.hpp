@@ -1,6 +1,6 @@
 #pragma once
 
-// Rings that bound the same place.
+// Groups rings that bound the same area.
 
 #include "lamella/contour/layer.hpp"
 
@@ -13,17 +13,17 @@
 
 namespace lamella {
 
-/// Rings that bound the same place, in either direction: the first of them represents all. Points on the line
-/// between those beside them do not count.
+/// Rings that bound the same area, in either direction; the first of them represents all. Collinear points
+/// are ignored.
 class RingCopies {
   public:
-    /// O(n log n) for n points in rings in contact that begin in one point.
+    /// O(n log n) for n points in rings in contact that begin at one point.
     RingCopies(const Layer& layer, std::span<const LeftEnd> ends, const Contacts& contacts);
 
     [[nodiscard]] std::uint32_t representative(std::uint32_t ring) const noexcept {
         return representative_[ring];
     }
-    /// The next copy of a ring, in ascending order, or Nesting::none.
+    /// Returns the next copy of a ring, in ascending order, or Nesting::none.
     [[nodiscard]] std::uint32_t next(std::uint32_t ring) const noexcept { return next_[ring]; }
 
   private:

@@ -7,7 +7,7 @@ namespace lamella {
 
 namespace {
 
-/// Whether every ring comes after its parent and lies one deeper.
+/// Returns whether every ring comes after its parent and is one level deeper.
 [[maybe_unused]] bool parents_come_first(const Nesting& nesting) {
     std::vector<bool> seen(nesting.rings(), false);
     for (const std::uint32_t ring : nesting.order) {
@@ -66,7 +66,7 @@ void RingPlacement::position(std::uint32_t ring, std::uint32_t parent, Windings 
     }
 }
 
-/// The first one, from `ring` on, that runs the given way round.
+/// Returns the first copy from `ring` on that runs in the given direction.
 std::uint32_t RingPlacement::next_copy(std::uint32_t ring, bool counter_clockwise) const noexcept {
     while (ring != Nesting::none && ends_[ring].rightwards != counter_clockwise)
         ring = copies_.next(ring);
@@ -96,7 +96,7 @@ void RingPlacement::place_one(std::uint32_t ring, std::uint32_t parent, const Wi
     assert(kind != RingKind::overlapping || (winding.sum() >= 1 && ends_[ring].rightwards));
 }
 
-/// `inside`: what is around the ring, and in the end what is inside of it.
+/// `inside` describes the outside of the ring at first, and its inside at the end.
 void RingPlacement::find_body(std::uint32_t ring, Inside& inside) {
     if (ends_[ring].rightwards) {
         if (inside.missing > 0) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The nesting of a layer, put together ring by ring.
+// Builds the nesting of a layer ring by ring.
 
 #include "polygon/known_nesting.hpp"
 #include "polygon/left_end.hpp"
@@ -13,19 +13,19 @@
 
 namespace lamella {
 
-/// Takes rings in the order of Nesting::order and says of each what it is and what it bounds.
+/// Takes rings in the order of Nesting::order and determines for each its kind and the body that it bounds.
 class RingPlacement {
   public:
-    /// `turns`: what each ring adds to the windings. All arguments are to outlive the placement.
+    /// `turns` is each ring's contribution to the winding numbers. All arguments must outlive this object.
     RingPlacement(std::span<const LeftEnd> ends, const RingCopies& copies, std::span<const Windings> turns);
 
-    /// A ring without points.
+    /// Places a ring without points.
     void place_empty(std::uint32_t ring) { result_.nesting.order.push_back(ring); }
-    /// A ring and its copies, one within the other. `ring` represents them, `parent` was placed before or is
-    /// Nesting::none, `winding` is that just outside of their left end.
+    /// Places a ring and its copies, one within the other. `ring` represents them, `parent` was placed before
+    /// or is Nesting::none, and `winding` holds the winding numbers just outside of their left end.
     void position(std::uint32_t ring, std::uint32_t parent, Windings winding);
 
-    /// Of those that were placed: the ring around all copies of a ring, and the innermost one of its copies.
+    /// Return the ring around all copies of a placed ring, and the innermost one of its copies.
     [[nodiscard]] std::uint32_t outside(std::uint32_t ring) const noexcept { return outside_[ring]; }
     [[nodiscard]] std::uint32_t innermost(std::uint32_t ring) const noexcept { return innermost_[ring]; }
     [[nodiscard]] const Windings& winding(std::uint32_t ring) const noexcept { return result_.outside[ring]; }
@@ -33,14 +33,14 @@ class RingPlacement {
         return result_.inside[ring];
     }
 
-    /// After all rings were placed.
+    /// Returns the result after all rings were placed.
     [[nodiscard]] NestingWithWindings result() &&;
 
   private:
-    /// What the bodies are of which a place within a ring has material.
+    /// The bodies around a point within a ring.
     struct Inside {
         std::uint32_t body = Nesting::none; ///< the innermost one
-        std::uint32_t missing = 0;          ///< how many clockwise rings are too many
+        std::uint32_t missing = 0;          ///< number of clockwise rings in excess
     };
 
     void place_one(std::uint32_t ring, std::uint32_t parent, const Windings& winding, RingKind kind);
@@ -52,9 +52,9 @@ class RingPlacement {
     std::span<const Windings> turns_;
     NestingWithWindings result_;
     std::vector<Inside> inside_;
-    std::vector<std::uint32_t> around_;    ///< of a body: the body in which it lies
-    std::vector<std::uint32_t> outside_;   ///< of a representative: the parent of the first of its copies
-    std::vector<std::uint32_t> innermost_; ///< of a representative: the last of its copies
+    std::vector<std::uint32_t> around_;    ///< for a body: the body that contains it
+    std::vector<std::uint32_t> outside_;   ///< for a representative: the parent of the first of its copies
+    std::vector<std::uint32_t> innermost_; ///< for a representative: the last of its copies
 };
 
 } // namespace lamella

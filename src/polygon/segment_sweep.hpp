@@ -1,6 +1,6 @@
 #pragma once
 
-// A line that sweeps over segments from left to right: what it meets, in which order.
+// A line that sweeps over segments from left to right: its events, and the order of the segments on it.
 
 #include "polygon/orientation.hpp"
 
@@ -19,32 +19,32 @@ struct SweepEvent {
     bool begins;
 };
 
-/// What comes first in one point: ends, so that segments that touch there never meet on the line, or
-/// beginnings, so that they do.
+/// The order of events at one point: with ends first, segments that touch there are never on the line
+/// together; with beginnings first they are.
 enum class SweepOrder : std::uint8_t { ends_first, begins_first };
 
-/// Where the segments begin and end, from left to right, in one place from below to above. O(n log n).
+/// Returns the ends of the segments from left to right, at the same x from below to above. O(n log n).
 [[nodiscard]] std::vector<SweepEvent> sweep_events(std::span<const Segment> segments, SweepOrder order);
 
-/// The segments that the line meets at present, from below to above. They do not cross to the left of the
-/// line, nor on it: as soon as two neighbours are found to cross, one of them is to leave. (Shamos and Hoey:
-/// as long as no neighbours cross, nothing does.) Of segments upon one another the one of the smaller number
-/// is below. Decided exactly. Every step takes O(log n).
+/// The segments on the sweep line, from below to above. They must not cross on the line or to its left: as
+/// soon as two neighbours are found to cross, one of them must be erased. (Shamos and Hoey: as long as no
+/// neighbours cross, no segments cross.) Of coincident segments, the one of the smaller index is below.
+/// Exact. Every operation takes O(log n).
 class SweepStatus {
   public:
     static constexpr std::uint32_t none = 0xffffffff;
 
-    /// What goes from one end of a segment to the other over a place that the line has come to, where that is
-    /// more than the segment itself: a way of several ones, from left to right.
+    /// Returns the part of a segment over a point of the line, if the segment stands for several consecutive
+    /// ones, from left to right.
     using Piece = std::function<Segment(std::uint32_t segment, const Point2& at)>;
 
-    /// The segments are to outlive the status.
+    /// The segments must outlive the status.
     explicit SweepStatus(std::span<const Segment> segments, Piece piece = {});
 
     void insert(std::uint32_t segment);
     void erase(std::uint32_t segment);
     [[nodiscard]] bool empty() const noexcept { return order_.empty(); }
-    /// The next one below a segment on the line, or none.
+    /// Return the next segment below or above a segment on the line, or none.
     [[nodiscard]] std::uint32_t below(std::uint32_t segment) const noexcept;
     [[nodiscard]] std::uint32_t above(std::uint32_t segment) const noexcept;
 
@@ -61,7 +61,7 @@ class SweepStatus {
     using Order = std::set<std::uint32_t, Lower>;
 
     Order order_;
-    std::vector<Order::const_iterator> positions_; ///< of each segment; the end for those not on the line
+    std::vector<Order::const_iterator> positions_; ///< for each segment; the end for those not on the line
 };
 
 } // namespace lamella

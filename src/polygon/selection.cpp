@@ -16,7 +16,7 @@ namespace lamella {
 
 namespace {
 
-/// The chains and those rings for which wanted(ring) holds. In normal form when the layer was.
+/// Returns the chains and the rings for which wanted(ring) is true, in normal form if the layer was.
 template <class Wanted>
 Layer selected(const Layer& layer, const Wanted& wanted) {
     std::vector<bool> keep(layer.contours(), true);
@@ -56,7 +56,7 @@ Layer largest_body(const Layer& layer) {
             }
         }
     if (largest == Nesting::none)
-        return layer; // nothing bounds material
+        return layer; // no ring bounds material
     return selected(layer, [&](std::size_t ring) { return nest.body[ring] == largest; });
 }
 

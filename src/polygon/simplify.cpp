@@ -20,7 +20,7 @@ namespace lamella {
 
 namespace {
 
-/// Which points of a layer are kept, and how to put more of them back.
+/// The kept points of a layer, and operations to restore more of them.
 class Thinned {
   public:
     Thinned(const Layer& layer, double tolerance)
@@ -29,7 +29,7 @@ class Thinned {
             thin(c);
     }
 
-    /// The layer of the kept points, contours in the same order.
+    /// Returns the layer of the kept points, contours in the same order.
     [[nodiscard]] Layer layer() {
         Layer result = layer_;
         std::vector<Point2> points;
@@ -47,8 +47,8 @@ class Thinned {
         return result;
     }
 
-    /// Puts back the point farthest from a segment of the last layer, and what the tolerance asks for then;
-    /// false when none was left out there.
+    /// Restores the point farthest from a segment of the last layer, and the points that the tolerance then
+    /// requires. Returns false if no point was removed there.
     bool refine(const Layer& thinned, std::uint64_t contour, std::uint64_t segment) {
         const std::uint64_t first = thinned.offsets[contour] + segment;
         const std::uint64_t next =
@@ -61,13 +61,13 @@ class Thinned {
             return false;
         const auto [farthest, square] = farthest_between(contour, begin, end);
         kept_[wrapped(contour, farthest)] = true;
-        // What was near to the longer segment need not be near to its successors.
+        // Points close to the longer segment need not be close to its two replacements.
         thin(contour, begin, farthest);
         thin(contour, farthest, end);
         return true;
     }
 
-    /// Puts back half of the points left out of a contour, at least one; false when there were none.
+    /// Restores points in each segment of a contour that lost some. Returns false if there are none.
     bool refine(const Layer& thinned, std::uint64_t contour) {
         bool any = false;
         for (std::uint64_t i = 0; i < thinned.offsets[contour + 1] - thinned.offsets[contour]; ++i)
@@ -81,8 +81,8 @@ class Thinned {
         return i < end ? i : i - (end - layer_.offsets[contour]);
     }
 
-    /// The point strictly between two that is farthest from the line between them; the middle one of all when
-    /// that is none.
+    /// Returns the point strictly between two that is farthest from the segment between them, or the middle
+    /// one if all lie on it.
     [[nodiscard]] std::pair<std::uint64_t, double> farthest_between(std::size_t contour, std::uint64_t begin,
                                                                     std::uint64_t end) const {
         const Point2& a = layer_.points[wrapped(contour, begin)];
@@ -121,8 +121,8 @@ class Thinned {
         kept_[begin] = true;
     }
 
-    /// Where the farthest points split off little time and again, as along spikes and spirals, the middle
-    /// ones are kept instead: no point is looked at more than O(log n) times.
+    /// Where the farthest points repeatedly split off little, as along spikes and spirals, the middle ones
+    /// are kept instead: no point is examined more than O(log n) times.
     void thin(std::size_t contour, std::uint64_t first, std::uint64_t last) {
         struct Span {
             std::uint64_t begin;
@@ -146,7 +146,7 @@ class Thinned {
         }
     }
 
-    /// Whether all points between two lie exactly on the segment between them.
+    /// Returns whether all points between two lie exactly on the segment between them.
     [[nodiscard]] bool on_line(std::size_t contour, std::uint64_t begin, std::uint64_t end) const {
         const Point2& a = layer_.points[wrapped(contour, begin)];
         const Point2& b = layer_.points[wrapped(contour, end)];
@@ -163,10 +163,10 @@ class Thinned {
     const Layer& layer_;
     double square_;
     std::vector<bool> kept_;
-    std::vector<std::uint64_t> numbers_; // of the kept points in the layer
+    std::vector<std::uint64_t> numbers_; // indices of the kept points in the layer
 };
 
-/// Puts points back where segments cross. False when none do that did not cross before.
+/// Restores points where segments cross. Returns false if only segments cross that crossed before.
 bool refine_crossings(Thinned& thinned, const Layer& layer) {
     const auto refine = [&](const Crossings& crossings) {
         bool any = false;
@@ -180,10 +180,11 @@ bool refine_crossings(Thinned& thinned, const Layer& layer) {
     const Crossings some = find_crossings(layer, at_once);
     if (refine(some))
         return true;
-    return some.count > at_once && refine(find_crossings(layer, some.count)); // those may all be old ones
+    return some.count > at_once &&
+           refine(find_crossings(layer, some.count)); // the first ones may all be old ones
 }
 
-/// Puts points back in rings that have turned over, vanished or moved past others, and around those.
+/// Restores points of rings that were inverted, vanished or moved past others, and of the rings around them.
 bool refine_nesting(Thinned& thinned, const Layer& layer, const Nesting& before) {
     const Nesting after = nesting(layer);
     std::vector<bool> moved(layer.rings, false);
@@ -204,7 +205,7 @@ bool refine_nesting(Thinned& thinned, const Layer& layer, const Nesting& before)
     return any;
 }
 
-/// Puts points back in rings that have turned over or vanished.
+/// Restores points of rings that were inverted or vanished.
 bool refine_turned(Thinned& thinned, const Layer& layer, const Layer& before) {
     bool any = false;
     for (std::size_t i = 0; i < layer.rings; ++i) {
@@ -238,7 +239,7 @@ Layer simplify(const Layer& layer, double tolerance) {
     if (result.points.size() == layer.points.size())
         return layer;
     const Nesting before = nesting(layer);
-    // Every round puts back a point at least, so this ends, with the layer as it was if need be.
+    // Every pass restores at least one point, so this ends, with the original layer in the worst case.
     while (refine_crossings(thinned, result) || refine_nesting(thinned, result, before))
         result = thinned.layer();
     return normal_form(std::move(result));

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a layer has beyond what several others have in common.
+// Subtracts from a layer the intersection of several others.
 
 #include "lamella/contour/layer.hpp"
 
@@ -8,9 +8,9 @@
 
 namespace lamella {
 
-/// What of the material of a layer some of the others have not, of which there is at least one. None of these
-/// winds more than once around a place, nor less than not at all, as layers that `fill` made. Decided as by
-/// `combine`, of all of them at once.
+/// Returns the layer minus the intersection of the others. Requires at least one other layer. Each of the
+/// others must have winding numbers 0 or 1, as the results of `fill` have. Decides as `combine` does, for all
+/// layers at once.
 [[nodiscard]] Layer subtract_common(const Layer& layer, std::span<const Layer> others,
                                     const LayerLimits& limits = {});
 

@@ -40,14 +40,15 @@ SurroundingsSearch::SurroundingsSearch(const MonotoneChains& chains, std::span<c
         for (const Chain& chain : chains_.of_ring(ring)) {
             const std::size_t from = edges_.leaf(chain.front.x, near);
             near = edges_.leaf(chain.back.x, from);
-            if (from != near) // others reach over no left end
+            if (from != near) // others span no left end
                 add_edges(chain, net, from);
         }
     }
     edges_.order();
 }
 
-/// The edges of a chain that reach over left ends. `net`: of its ring; `leaf`: of its first point.
+/// Adds the edges of a chain that span left ends. `net` is its ring's winding, `leaf` that of its first
+/// point.
 void SurroundingsSearch::add_edges(const Chain& chain, const Windings& net, std::size_t leaf) {
     assert(!way::turns(chain.ways));
     const std::uint32_t ring = chain.ring;
@@ -71,7 +72,7 @@ std::int64_t SurroundingsSearch::place_in_order(std::uint32_t ring, bool inside_
     return inside_above ? position : -position - 1;
 }
 
-/// How often the copies of a ring wind around its inside.
+/// Returns how many times the copies of a ring wind around its inside.
 Windings SurroundingsSearch::net_winding(std::uint32_t ring) const noexcept {
     Windings net;
     for (std::uint32_t copy = ring; copy != Nesting::none; copy = copies_.next(copy))
@@ -91,7 +92,7 @@ std::uint64_t SurroundingsSearch::crossing_edges_at(std::uint32_t ring) const {
     return n;
 }
 
-/// An edge that runs there and back bounds nothing on its own: it is passed over on the way down.
+/// A folded edge bounds no area on its own: it is skipped on the way down.
 Surroundings SurroundingsSearch::find(std::uint32_t ring) const {
     assert(copies_.representative(ring) == ring);
     const RingEdge left_edge{ends_[ring].line, ring, ends_[ring].flat ? Windings{} : net_winding(ring),
@@ -104,7 +105,7 @@ Surroundings SurroundingsSearch::find(std::uint32_t ring) const {
         result.winding += column.winding_below(x, left_edge);
         result.below_all += column.winding_below(x, lowest);
     });
-    // Edges of the ring itself that run back on its lowest one come before it in the order.
+    // Edges of the ring itself that run back along its lowest one precede it in the order.
     result.winding += count_equal(x, opposite(left_edge)) * left_edge.step;
     RingEdge from = left_edge;
     while (true) {

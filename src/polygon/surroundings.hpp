@@ -1,6 +1,6 @@
 #pragma once
 
-// What lies around the left ends of rings, in any layer: also where rings touch, coincide and cross.
+// Finds edges and winding numbers around the left ends of rings, also where rings touch, coincide and cross.
 
 #include "polygon/edges_by_x.hpp"
 #include "polygon/left_end.hpp"
@@ -13,29 +13,29 @@
 
 namespace lamella {
 
-/// What is found at the left end of a ring.
+/// The surroundings of the left end of a ring.
 struct Surroundings {
     Windings winding;
-    Windings below_all;              ///< below all edges that coincide with its lowest one there
-    const RingEdge* below = nullptr; ///< the next edge below that bounds something, of another ring
+    Windings below_all;              ///< below all edges that coincide with the ring's lowest edge there
+    const RingEdge* below = nullptr; ///< next edge below that bounds an area, of another ring
 };
 
-/// Finds the surroundings of rings that are given by their representatives. Edges that reach over no left end
-/// of these are left out, chain by chain. Exact but for `below` where edges cross.
+/// Finds the surroundings of rings that are given by their representatives. Edges that span no left end of
+/// these are skipped, chain by chain. Exact except for `below` where edges cross.
 class SurroundingsSearch {
   public:
-    /// `turns`: what each ring adds; `by_area`: of representatives in contact their places, the largest
-    /// first; `asked`: those of all `representatives` whose surroundings will be asked for. All arguments are
-    /// to outlive the search. O(n log c) for n edges that reach over left ends of the c rings asked for.
+    /// `turns` is the contribution of each ring; `by_area` the ranks of representatives in contact, the
+    /// largest first; `asked` the subset of `representatives` for which `find` will be called. All arguments
+    /// must outlive the search. O(n log c) for n edges that span left ends of the c rings in `asked`.
     SurroundingsSearch(const MonotoneChains& chains, std::span<const LeftEnd> ends, const RingCopies& copies,
                        std::span<const Windings> turns, std::span<const std::uint32_t> representatives,
                        std::span<const std::uint32_t> by_area, std::span<const std::uint32_t> asked);
 
-    /// Of a ring asked for. The result lives as long as the search. O(log n log c), and more where edges
-    /// cross or fold.
+    /// Returns the surroundings of a ring in `asked`. The result lives as long as the search. O(log n log c),
+    /// and more where edges cross or fold.
     [[nodiscard]] Surroundings find(std::uint32_t ring) const;
 
-    /// How many edges that cross others `find` looks at for a ring, some times each.
+    /// Returns the number of crossing edges that `find` examines for a ring, each a few times.
     [[nodiscard]] std::uint64_t crossing_edges_at(std::uint32_t ring) const;
 
   private:

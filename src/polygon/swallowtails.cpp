@@ -11,19 +11,24 @@ namespace lamella {
 
 namespace {
 
-// Why loops may go. A moved ring bounds the material with or without what its sides and corners sweep, by its
-// winding number: each side and each corner adds a piece to it, which nowhere counts less than 0, and only
-// whether the sum is above 0 matters. Take a stretch of the ring from a point a to a point b, and the stretch
-// with loops cut off at their crossings. With the corners between them, from that of a to that of b, and the
-// ways from these to a and b, the new stretch closes to a polygon. If that is simple and runs as pieces do,
-// it counts 1 inside. If all loops lie inside and run as pieces do, then the pieces of the stretch count 1
-// there and once more for each loop. So the sum stays above 0 where it was, and 0 where it was 0, whatever
-// other sides, corners and rings add. (Crossings are rounded, as all points of moved rings are.)
+// Why loops can be cut off. Each side and each corner of a moved ring adds a piece, its strip or wedge, to
+// the winding number. No piece counts less than 0 anywhere, and only whether their sum is above 0 matters.
 //
-// A stretch may begin and end in the middle of a moved side, too: a side is two sides with a straight corner
-// between them, anywhere. So of a ring with a loop at each of its corners each loop is looked at by itself.
+// Let A and B be points of the moved ring, A' and B' the corners that they come from, S the section of the
+// moved ring from A to B, and T that section with loops cut off at their crossings. Let Q be the polygon from
+// A' over A along T to B, to B' and back along the old corners to A'.
+// 1. The pieces between A' and B' together add the winding number of the closed curve A' A S B B' A', which
+//    is that of Q plus that of the loops.
+// 2. If Q is simple and has the orientation of the pieces, its winding number is 1 inside and 0 outside.
+// 3. If all loops lie inside of Q and have the same orientation, the pieces add 1 inside of Q, once more for
+//    each loop around the point, and 0 outside.
+// So with T in place of S the sum is above 0 at the same points, whatever other sides, corners and rings add.
+// (Crossings are rounded, as all points of moved rings are.)
+//
+// A and B may also lie within a moved side: it counts as two sides with a collinear corner between them. So
+// in a ring with a loop at each corner, each loop is examined by itself.
 
-/// How far along the way from a to b, as a share of it, the line through c and d is.
+/// Returns the location of the line through c and d on the segment from a to b, as a fraction of the segment.
 double share_to_line(const Point2& a, const Point2& b, const Point2& c, const Point2& d) noexcept {
     const auto height = [&](const Point2& p) {
         return (d.x - c.x) * (p.y - c.y) - (d.y - c.y) * (p.x - c.x);
@@ -31,7 +36,7 @@ double share_to_line(const Point2& a, const Point2& b, const Point2& c, const Po
     return height(a) / (height(a) - height(b));
 }
 
-/// Twice the area of a polygon, seen from its first point.
+/// Returns twice the area of a polygon, computed relative to its first point.
 double doubled_area(std::span<const Point2> polygon) noexcept {
     double sum = 0;
     const Point2& o = polygon.front();
@@ -41,7 +46,7 @@ double doubled_area(std::span<const Point2> polygon) noexcept {
     return sum;
 }
 
-/// Whether the polygon winds around a point. Not for points on it.
+/// Returns whether the polygon winds around a point that is not on it.
 bool winds_around(std::span<const Point2> polygon, const Point2& p) noexcept {
     int winding = 0;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -70,7 +75,7 @@ class SwallowtailCutter {
                 continue;
             }
             std::size_t end = i;
-            while (left_[end].crossing()) // the last point of the ring is none
+            while (left_[end].crossing()) // the last point of the ring is no crossing
                 ++end;
             const bool cut = can_cut(i - 1, end);
             for (std::size_t k = i; cut && k < end; ++k)
@@ -83,12 +88,12 @@ class SwallowtailCutter {
     }
 
   private:
-    /// A point of the ring, or where two of its sides cross. A side has the number of its first point.
+    /// A point of the ring, or a crossing of two of its sides. A side has the index of its first point.
     struct Left {
         Point2 at;
-        std::size_t before; ///< the side that ends here, of a crossing
+        std::size_t before; ///< for a crossing: the side that ends here
         std::size_t after;  ///< the side that begins here
-        bool split = false; ///< a place on that side, between crossings
+        bool split = false; ///< true for a point on that side between crossings
 
         [[nodiscard]] bool crossing() const noexcept { return before != after; }
         [[nodiscard]] bool on(std::size_t side) const noexcept {
@@ -104,8 +109,8 @@ class SwallowtailCutter {
         }
     }
 
-    /// Cuts off the first loop that the way from the last point that is left to point i closes. It meets
-    /// itself nowhere else: other places where the way meets what is left are where the search begins anew.
+    /// Cuts off the first loop that the segment from the last kept point to point i closes. At any other
+    /// intersection with the kept points from `begin_` on, the search begins anew.
     bool cut_loop_before(std::size_t i) {
         const Point2 from = left_.back().at;
         const Point2& to = ring_[i].at;
@@ -135,8 +140,8 @@ class SwallowtailCutter {
         return true;
     }
 
-    /// Cuts off the loop where the way to a point, on a side of the ring, crosses what follows point k of
-    /// what is left. False where the loop does not run as pieces do.
+    /// Cuts off the loop where the segment to a point, on a side of the ring, crosses the segment that
+    /// follows kept point k. Returns false if the loop has not the orientation of the pieces.
     bool cut_off(std::size_t k, const Point2& to, std::size_t side) {
         const Point2& a = left_[k].at;
         const Point2& b = left_[k + 1].at;
@@ -153,10 +158,10 @@ class SwallowtailCutter {
         return true;
     }
 
-    /// The corner that a side of the ring leads to, if it is one that was moved.
+    /// Returns the corner to which a side of the ring leads, if the side is a moved one.
     [[nodiscard]] std::size_t corner_after(std::size_t side) const noexcept { return ring_[side + 1].corner; }
 
-    /// Whence a place on a side that was moved came.
+    /// Returns the original location of a point on a moved side.
     [[nodiscard]] Point2 base(const Left& split) const noexcept {
         const std::size_t corner = corner_after(split.after);
         const Point2& a = corners_[corner - 1];
@@ -167,7 +172,7 @@ class SwallowtailCutter {
         return {a.x + share * dx, a.y + share * dy};
     }
 
-    /// Puts a place between crossings that are left on one side, so that each can be looked at by itself.
+    /// Inserts a point between kept crossings on one side, so that each can be examined by itself.
     void split_sides() {
         std::vector<Left> all;
         all.reserve(left_.size());
@@ -191,7 +196,7 @@ class SwallowtailCutter {
         left_ = std::move(all);
     }
 
-    /// Whether crossings between two points that are left can stay; loops may reach into pieces beside them.
+    /// Returns whether crossings between two kept points can stay. Loops may reach into adjacent pieces.
     bool can_cut(std::size_t a, std::size_t b) {
         for (int wider = 0; wider < 4; ++wider) {
             if (nothing_lost(a, b)) {
@@ -204,7 +209,7 @@ class SwallowtailCutter {
         return false;
     }
 
-    /// Whether the loops cut off between two points of the ring can go. Decided exactly, but for crossings.
+    /// Returns whether the loops cut off between two points can be omitted. Exact except for crossings.
     bool nothing_lost(std::size_t a, std::size_t b) {
         const Left& from = left_[a];
         const Left& to = left_[b];
@@ -233,7 +238,7 @@ class SwallowtailCutter {
                 std::find(polygon_.begin(), polygon_.end(), p) == polygon_.end())
                 return false;
             for (std::size_t j = 0; p != q && j < polygon_.size(); ++j) {
-                // What is left lies on sides of the ring, its crossings beside them.
+                // T lies on sides of the ring, its crossings beside them.
                 const bool left = j >= corners && j + 1 < polygon_.size();
                 if (left && (left_[b - (j - corners)].on(i) || left_[b - (j - corners) - 1].on(i)))
                     continue;
@@ -251,7 +256,7 @@ class SwallowtailCutter {
         return polygon_[i + 1 == polygon_.size() ? 0 : i + 1];
     }
 
-    /// Whether no two sides of the polygon have more in common than the corner between them.
+    /// Returns whether no two sides of the polygon have more in common than the corner between them.
     [[nodiscard]] bool simple() const noexcept {
         const std::size_t n = polygon_.size();
         for (std::size_t i = 0; i < n; ++i) {
@@ -267,15 +272,15 @@ class SwallowtailCutter {
         return true;
     }
 
-    static constexpr std::size_t window = 16;  ///< of sides among which loops are looked for
-    static constexpr std::size_t longest = 64; ///< stretch with its corners
+    static constexpr std::size_t window = 16;  ///< number of sides among which loops are searched for
+    static constexpr std::size_t longest = 64; ///< section with its corners
 
     std::span<const MovedPoint> ring_;
     std::span<const Point2> corners_;
     double distance_;
     std::vector<Left> left_;
-    std::size_t begin_ = 0; ///< from where what is left does not meet itself
-    std::size_t taken_ = 0; ///< up to where stretches with cuts reach: they have no pieces in common
+    std::size_t begin_ = 0; ///< from here on the kept points do not intersect
+    std::size_t taken_ = 0; ///< end of the last section with cuts; sections have no pieces in common
     std::vector<Point2> polygon_;
 };
 

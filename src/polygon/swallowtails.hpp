@@ -1,6 +1,6 @@
 #pragma once
 
-// Small loops cut out of moved rings.
+// Cuts small loops out of moved rings.
 
 #include "lamella/core/point.hpp"
 
@@ -10,15 +10,15 @@
 
 namespace lamella {
 
-/// A point of a moved ring, and the number of the corner that it comes from.
+/// A point of a moved ring, and the index of its corner.
 struct MovedPoint {
     Point2 at;
     std::size_t corner;
 };
 
-/// Puts a moved ring, its points in the order of its corners, without loops where nothing is lost by it.
-/// `distance`: by how much sides were moved to the right. What goes from the last point to the first one is
-/// not looked at. O(points).
+/// Appends a moved ring, whose points are in the order of its corners, without those loops that can be cut
+/// off without changing the material. `distance` is the offset of the sides to the right. The segment from
+/// the last point to the first is not examined. O(points).
 void add_without_swallowtails(std::span<const MovedPoint> ring, std::span<const Point2> corners,
                               double distance, std::vector<Point2>& out);
 

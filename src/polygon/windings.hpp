@@ -1,13 +1,13 @@
 #pragma once
 
-// Winding numbers where the rings of two operands lie over one another; of one operand, the second are 0.
+// Winding numbers for the overlaid rings of two operands; for one operand, the second number is 0.
 
 #include <cstdint>
 
 namespace lamella {
 
-/// How many times rings run counter-clockwise around a place, those of either operand by themselves. Of a
-/// ring: what it adds to those of its inside where it runs counter-clockwise; clockwise, it takes that away.
+/// The winding numbers of the rings of each operand: how many times they run counter-clockwise around a
+/// point. For a ring: what it adds to its inside if it is counter-clockwise, and subtracts if clockwise.
 struct Windings {
     std::int64_t first = 0;
     std::int64_t second = 0;

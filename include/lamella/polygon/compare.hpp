@@ -1,6 +1,6 @@
 #pragma once
 
-// How far layers, and stacks of them, are from being the same.
+// Measures the differences between layers, and between stacks of layers.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
@@ -16,40 +16,39 @@ LAMELLA_API_BEGIN
 namespace lamella {
 
 struct LayerDifference {
-    /// The same contours, bit for bit: all that follows is 0 but for the measures.
+    /// True if the contours are equal, bit for bit. All following fields are then 0, except the measures.
     bool same = false;
-    /// The largest way from a point of one layer's contours to the nearest contour of the other (Hausdorff
-    /// distance), to a thousandth, and where it begins. Infinite where one layer has contours and the other
-    /// has none.
+    /// Hausdorff distance: the largest distance from a point of one layer's contours to the nearest contour
+    /// of the other, to a thousandth; `where` is that point. Infinite if only one layer has contours.
     double distance_mm = 0;
     Point2 where = {};
-    LayerMeasure first = {}; ///< of both layers
+    LayerMeasure first = {}; ///< measures of both layers
     LayerMeasure second = {};
-    /// How much area would have to move from end to end of both layers for such different centres.
+    /// Area that would have to move across the extent of both layers to explain their different centres.
     double displaced_mm2 = 0;
 
-    /// No point is further away than the tolerance, there are as many open chains, and areas and their
-    /// centres differ by no more than contours moved by it explain: by these, rings are told that run the
-    /// other way round.
+    /// Returns whether no point is farther away than the tolerance, the numbers of open chains are equal, and
+    /// areas and their centres differ by no more than contours moved by the tolerance explain. Areas and
+    /// centres reveal reversed rings.
     [[nodiscard]] bool within(double tolerance_mm) const noexcept;
 };
 
-/// Expected O(n log n) for n points in both layers; O(n) where they are the same.
+/// Compares the contours of two layers. Expected O(n log n) for n points in both; O(n) if they are equal.
 [[nodiscard]] LayerDifference compare(const Layer& first, const Layer& second);
 
-/// Layers in ascending z, and how the file that they come from rounds.
+/// Layers in ascending z, and the rounding of the file that they come from.
 struct RoundedLayers {
     std::span<const Layer> layers;
     Rounding rounding = {};
 };
 
-/// Two layers that belong together, or one that the other stack has no partner for.
+/// Two layers that belong together, or one without a partner in the other stack.
 struct ComparedPlane {
-    double z = 0; ///< of the cut
-    /// Their numbers in the stacks; none where that stack has neither contours nor hatch lines there.
+    double z = 0; ///< height of the cut, mm
+    /// Indices in the stacks; none if that stack has neither contours nor hatch lines at this height.
     std::optional<std::size_t> first;
     std::optional<std::size_t> second;
-    /// Where there is only one of them, it has its measure alone.
+    /// If there is only one layer, only its measure is set.
     LayerDifference difference = {};
     bool agree = false;
 };
@@ -57,18 +56,18 @@ struct ComparedPlane {
 struct StackComparison {
     double tolerance_mm = 0;
     std::vector<ComparedPlane> planes; ///< in ascending z
-    /// No layers belong together, though the lowest ones of both lie between the same heights: they were cut
-    /// elsewhere between these, or are read as if they were from a format that does not keep the cut.
+    /// True if no layers belong together although the lowest ones of both stacks lie between the same
+    /// heights: they were cut elsewhere, or one comes from a format that does not keep the cut.
     bool cut_apart = false;
 };
 
-/// Compares two stacks plane by plane. Layers belong together when their cuts are no further apart than the
-/// rounding of both formats explains, and beyond that 1e-6 mm, or `tolerance_mm` if that is more; and neither
-/// is nearer to another layer. One without contours and hatch lines needs no partner. Hatch lines and heights
-/// of layers that belong together do not count: see `compare_files`. `tolerance_mm` is for
-/// LayerDifference::within; unless given, it is what the rounding of both formats explains. Distances of
-/// layers that are below it are those of corners. Parallel over planes; as expensive as `compare` of all
-/// layers that belong together. Throws Error{usage} for a tolerance that is negative or NaN.
+/// Compares two stacks plane by plane. Layers belong together if neither is nearer to another layer and their
+/// cuts are no further apart than the rounding of both formats explains, plus the larger of 1e-6 mm and
+/// `tolerance_mm`. A layer without contours and hatch lines needs no partner. Hatch lines and heights of
+/// layers that belong together are not compared; see `compare_files`. `tolerance_mm` is for
+/// LayerDifference::within; by default it is the distance that the rounding of both formats explains.
+/// Distances below it are measured at corners only. Throws Error{usage} for a tolerance that is negative or
+/// NaN. Parallel over planes; costs as much as `compare` of all layers that belong together.
 [[nodiscard]] StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
                                       std::optional<double> tolerance_mm = {},
                                       const Execution& execution = {});

@@ -1,6 +1,6 @@
 #pragma once
 
-// Contours of a layer that cross one another or themselves.
+// Finds contours of a layer that cross one another or themselves.
 
 #include "lamella/contour/layer.hpp"
 
@@ -12,8 +12,8 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Segment `segment_a` of contour `contour_a` (from its point of that number to the next) crosses segment
-/// `segment_b` of `contour_b` at about `at`.
+/// Segment `segment_a` of contour `contour_a` (from the point with this index to the next) crosses segment
+/// `segment_b` of `contour_b` at approximately `at`.
 struct Crossing {
     std::uint64_t contour_a = 0;
     std::uint64_t segment_a = 0;
@@ -23,25 +23,25 @@ struct Crossing {
 };
 
 struct Crossings {
-    std::uint64_t count = 0;     ///< all of them, unless there are more than was asked for
+    std::uint64_t count = 0;     ///< all of them, or at least the `enough` that were requested
     std::vector<Crossing> first; ///< the first few, ordered by (contour_a, segment_a, contour_b, segment_b)
 };
 
 /// Counts pairs of segments that cross properly: each has its ends strictly on both sides of the other.
-/// Contours that touch in a point or along a piece do not cross, and neither do those that change sides in a
-/// vertex. Decided exactly, on the points as they are. `keep` bounds Crossings::first.
+/// Contours that touch at a point or along a segment do not cross, nor do contours that change sides at a
+/// vertex. The decision is exact, on the points as they are. `keep` bounds Crossings::first.
 ///
-/// Expected O(n + crossings); O(n log n) for hostile layers without crossings, O((n + crossings) log n) for
-/// long lines that cross those beside them, parallel or fanning out. At worst, for long lines in no order
-/// that all but cross, about O(n^1.5 + crossings). Throws Error{limit} for a layer of more than 2^32 - 1
-/// points.
+/// Throws Error{limit} for a layer of more than 2^32 - 1 points. Expected O(n + crossings); O(n log n) for
+/// adverse layers without crossings, O((n + crossings) log n) for long lines that cross their neighbours,
+/// parallel or fanning out. In the worst case, long lines in no order that nearly cross, about O(n^1.5 +
+/// crossings).
 ///
-/// The search ends once it has found `enough` crossings: then `count` is that or a few more, and `first` are
-/// some of them, the same ones each time.
+/// The search ends after `enough` crossings: then `count` is `enough` or a little more, and `first` are some
+/// of them, the same in every call.
 [[nodiscard]] Crossings find_crossings(const Layer& layer, std::size_t keep = 16,
                                        std::uint64_t enough = std::numeric_limits<std::uint64_t>::max());
 
-/// Whether there are any: stops at the first one found.
+/// Returns whether there are crossings; stops at the first one found.
 [[nodiscard]] bool has_crossings(const Layer& layer);
 
 } // namespace lamella

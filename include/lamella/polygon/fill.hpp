@@ -1,6 +1,6 @@
 #pragma once
 
-// What of a layer is material: overlapping bodies united, crossing contours made right.
+// Computes the material of a layer: unites overlapping bodies and resolves crossing contours.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/layer_limits.hpp"
@@ -12,51 +12,52 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Where material is, by the winding number w: how many times the layer's rings run counter-clockwise around
-/// a place.
+/// Defines the material by the winding number w: how many times the layer's rings run counter-clockwise
+/// around a point.
 enum class FillRule {
     none,     ///< rings stay as they are
-    nonzero,  ///< w is not 0: overlapping bodies are united, bodies turned inside out are turned back
-    evenodd,  ///< w is odd: what lies in two bodies is empty
-    positive, ///< w is above 0: overlapping bodies are united, bodies turned inside out are dropped
+    nonzero,  ///< w is not 0: overlapping bodies are united, inverted bodies are reversed
+    evenodd,  ///< w is odd: the intersection of two bodies is empty
+    positive, ///< w is above 0: overlapping bodies are united, inverted bodies are dropped
 };
 
-/// The rule's name as users meet it, such as "nonzero".
+/// Returns the rule's name in the user interface, such as "nonzero".
 [[nodiscard]] std::string_view fill_rule_name(FillRule rule) noexcept;
 
 struct Filled {
-    Layer layer; ///< in normal form when the given one was
-    /// Groups of rings that overlap and had to be united, and the rings in them. All others keep their
-    /// points, bit for bit.
+    Layer layer; ///< in normal form if the given one was
+    /// Number of groups of overlapping rings that were united, and of the rings in them. All other rings keep
+    /// their points, bit for bit.
     std::uint64_t groups_united = 0;
     std::uint64_t rings_united = 0;
-    std::uint64_t rings_dropped = 0;  ///< others: no boundaries of material
-    std::uint64_t rings_reversed = 0; ///< others: the material is on their other side
+    std::uint64_t rings_dropped = 0;  ///< other rings that do not bound material
+    std::uint64_t rings_reversed = 0; ///< other rings with material on their right
 
     [[nodiscard]] bool changed() const noexcept { return groups_united + rings_dropped + rings_reversed > 0; }
 };
 
-/// The boundary of the material: rings that do not cross, with material on their left and none on their
-/// right.
+/// Returns the boundary of the material: rings that do not cross, with material on their left and none on
+/// their right.
 ///
-/// Rings that are that already are left alone, also where they touch. Rings that lie within others without
-/// touching them are kept, dropped or reversed as they are. Only groups of rings that cross, or touch and
+/// Rings that already are such a boundary are unchanged, also where they touch. Rings within others that
+/// touch none are kept, dropped or reversed bit for bit. Only groups of rings that cross, or touch and
 /// overlap, are united on a grid of integers whose unit is at most 2^-36 of the layer's extent (1.5e-9 mm for
-/// a layer of 100 mm): their corners keep their coordinates, the points where they cross are off by about a
-/// unit. Overlaps of the size of rounding errors count as touching, and of what is united, rings thinner than
-/// a unit are left out. Doing it again changes nothing, unless rings of the given layer were as thin as that.
+/// a layer of 100 mm): their corners keep their coordinates, their crossings are accurate to about a unit.
+/// Overlaps of the size of rounding errors count as touching, and united rings thinner than a unit are left
+/// out. A second call changes nothing, unless rings of the given layer were thinner than a unit.
 ///
 /// Open chains stay as they are. Flat rings, which bound nothing, are dropped.
 ///
-/// Expected O(n) to find that a layer is clean, O(n log n) to find what overlaps; to unite rings of m points
-/// with k crossings, O((m + k) log m). Throws Error{limit} for a layer of more than 2^32 - 2 points and for
-/// more crossings than `limits.memory` has room for, and Error{cancelled}.
+/// Throws Error{limit} for a layer of more than 2^32 - 2 points and for more crossings than `limits.memory`
+/// allows, and Error{cancelled}. Expected O(n) to find that a layer is clean and O(n log n) to find overlaps;
+/// O((m + k) log m) to unite rings of m points with k crossings.
 [[nodiscard]] Filled fill(const Layer& layer, FillRule rule, const LayerLimits& limits = {});
 
-/// Whether the winding number of all parts together is known to be 0 or 1 everywhere: the boxes of the parts
-/// lie apart, and in each no rings touch, counter-clockwise ones lie in nothing, clockwise ones in one body.
-/// Open chains do not count. False also for parts that only touch, and for those too large to say. Takes as
-/// long as fill() takes to find that a layer is clean; O(b^2) more for b parts whose boxes share abscissae.
+/// Returns whether the winding number of all parts together is known to be 0 or 1 everywhere: the boxes of
+/// the parts are disjoint, and within each part no rings touch, counter-clockwise rings lie in no ring, and
+/// clockwise rings lie in one body. Open chains are ignored. False also for parts that only touch, and for
+/// parts of too many points. Costs as much as that search in fill(), plus O(b^2) for b parts whose boxes
+/// overlap in x.
 [[nodiscard]] bool winds_once(std::span<const Layer> parts);
 
 } // namespace lamella

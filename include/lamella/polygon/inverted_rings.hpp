@@ -1,7 +1,6 @@
 #pragma once
 
-// Rings that run clockwise where there is no material to have a hole in: nothing is made of what they
-// enclose.
+// Finds clockwise rings outside of material: they cannot be holes, and the area that they enclose is lost.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
@@ -12,11 +11,11 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Where a layer's winding number is below 0: what bodies turned inside out enclose, and the clockwise half
-/// of a ring that crosses itself. Material is where it is above 0, so these places have none.
+/// Areas of a layer with a winding number below 0: inside of inverted bodies, and in the clockwise half of a
+/// ring that crosses itself. Material is where the winding number is above 0, so these areas have none.
 struct InvertedRings {
-    std::uint64_t rings = 0; ///< around these places, and around what they surround
-    double area_mm2 = 0;     ///< of these places
+    std::uint64_t rings = 0; ///< around these areas and their holes
+    double area_mm2 = 0;     ///< area of these areas
     Point2 at;               ///< a point of the first of the rings
 
     InvertedRings& operator+=(const InvertedRings& other) noexcept {
@@ -30,21 +29,20 @@ struct InvertedRings {
 };
 
 enum class InversionSearch : std::uint8_t {
-    /// May miss what only crossings reveal, and a ring in a hole of more than 64 points, nearer to its edge
-    /// than
-    /// 16 of these tell.
+    /// May miss areas that only crossings reveal, and a clockwise ring in a hole of more than 64 points, if
+    /// it is close to the edge of the hole: the box of such a hole is estimated from 16 points.
     quick,
     full,
 };
 
-/// The inverted rings of a layer in normal form. Those so thin that `rounding`, or single precision, which
-/// most meshes have, may have turned them over do not count: see `orientation_is_lost`. Exact up to that, for
-/// rings that touch and overlap, too.
+/// Returns the inverted rings of a layer in normal form. A ring does not count if it is so thin that
+/// `rounding` or single precision, in which most meshes are stored, may have inverted it: see
+/// `orientation_is_lost`. Exact apart from that, also for rings that touch and overlap.
 ///
-/// A quick search costs O(rings) for a layer whose rings all run counter-clockwise. One whose clockwise rings
-/// lie in material takes O(n + c log c) for n points in outer rings and c rings, at about the speed of
-/// memory. Every other layer, and each of them in a full search, takes as long as `fill`. Throws what `fill`
-/// throws.
+/// Throws the errors of `fill`. A quick search costs O(rings) for a layer whose rings all run
+/// counter-clockwise, and O(n + c log c), at about memory speed, for a layer whose c clockwise rings lie in
+/// material and whose outer rings have n points. All other layers, and every full search, cost as much as
+/// `fill`.
 [[nodiscard]] InvertedRings inverted_rings(const Layer& layer, const Rounding& rounding = {},
                                            InversionSearch search = InversionSearch::quick,
                                            const LayerLimits& limits = {});
