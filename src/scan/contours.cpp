@@ -29,7 +29,7 @@ std::size_t farthest(std::span<const Point2> ring, double degrees) noexcept {
     return best;
 }
 
-/// Where the ring turns most to the left, where its material is.
+/// Returns the point at which the ring turns most to the left, where its material is.
 std::size_t sharpest(std::span<const Point2> ring) noexcept {
     std::size_t best = 0;
     double least = std::numeric_limits<double>::infinity(); // -1 folds to the left, 3 to the right
@@ -49,7 +49,7 @@ std::size_t sharpest(std::span<const Point2> ring) noexcept {
     return best;
 }
 
-/// A ring and where the beam begins it.
+/// A ring and its start point.
 struct Start {
     std::size_t ring;
     std::size_t point;
@@ -57,7 +57,7 @@ struct Start {
     double strip = 0;
 };
 
-/// Strips along x of about as many rings as there are strips.
+/// Assigns strips along x. Each strip has about as many rings as there are strips.
 void put_into_strips(std::vector<Start>& starts) {
     const auto [low, high] = std::minmax_element(
         starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.at.y < b.at.y; });

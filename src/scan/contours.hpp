@@ -1,6 +1,6 @@
 #pragma once
 
-// Rings in the order in which a beam follows them, each from where it begins.
+// Orders rings for the beam, and chooses the start point of each.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/scan/strategy.hpp"
@@ -9,9 +9,9 @@
 
 namespace lamella {
 
-/// Of a layer in normal form. Rings whose beginnings lie in the same strip of the layer follow one another,
-/// and strips go back and forth. `number`: of the contour, from outside. O(n + c log c) for n points in c
-/// rings.
+/// Returns the rings of a layer in normal form in scanning order. Rings with start points in the same strip
+/// of the layer follow one another, in alternating directions from strip to strip. `number` is the index of
+/// the contour, from outside. O(n + c log c) for n points in c rings.
 [[nodiscard]] Layer followed(const Layer& rings, const ContourRule& rule, std::uint32_t number,
                              std::uint64_t seed);
 

@@ -58,7 +58,7 @@ std::vector<Point2> line_by_line(const HatchLines& lines, const HatchRule& rule,
     return points;
 }
 
-// For numbers of cells, which are within 2^30, as check_cells made sure. (std::floor is a call.)
+// For cell indices, which check_cells has limited to 2^30. (std::floor is a function call.)
 std::int32_t floor_of(double number) noexcept {
     const auto towards_zero = static_cast<std::int32_t>(number);
     return towards_zero - static_cast<std::int32_t>(towards_zero > number);
@@ -67,7 +67,7 @@ std::int32_t ceil_of(double number) noexcept {
     return -floor_of(-number);
 }
 
-/// From 0 up to below n.
+/// Returns a value from 0 to n - 1.
 template <std::int32_t n>
 std::int32_t modulo(std::int32_t number) noexcept {
     return (number % n + n) % n;
@@ -81,7 +81,7 @@ void for_long_enough(std::span<const double> ends, const HatchRule& rule, const 
             visit(ends[k], ends[k + 1]);
 }
 
-/// Cells that a piece of a line meets: every n-th from the first one to the last one.
+/// Cells that a piece of a line meets: every n-th from the first to the last.
 struct CellRange {
     std::int32_t first;
     std::int32_t last;
@@ -91,8 +91,8 @@ struct CellRange {
     }
 };
 
-/// What a line has of a stripe may be too short, where it ends just beyond the border of two: then the
-/// neighbour is a little longer.
+/// The piece of a line in a stripe may be too short if it ends just beyond the border of two stripes. The
+/// neighbour is then extended.
 CellRange stripes_of(double begin, double end, const HatchRule& rule) noexcept {
     const double width = rule.cell;
     CellRange stripes{floor_of(begin / width), 0};
@@ -104,7 +104,7 @@ CellRange stripes_of(double begin, double end, const HatchRule& rule) noexcept {
     return stripes;
 }
 
-// Stripes are cells in one row each.
+// Each stripe is a cell in a row of its own.
 void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, const LayerBudget& budget,
                       Islands& islands) {
     const double width = rule.cell;
@@ -122,14 +122,14 @@ void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, const Laye
     }
 }
 
-/// Of a line in a row of cells: how far it reaches to both sides of the middle of each.
+/// Extent of a line in a row of cells to both sides of the middle of each cell.
 struct Reach {
-    double half;  ///< what lies over the neighbours included
-    double cover; ///< what the cell itself asks for, so that nothing between the cells stays bare
+    double half;  ///< including the overlap with neighbours
+    double cover; ///< extent of the cell itself; less would leave gaps between cells
 };
 
-/// A row of cells along a line: number k lies within `reach` of pitch * (k + offset). The line has pieces of
-/// every n-th of them, one of which is number `one`.
+/// A row of cells along a line: cell k extends `reach` to both sides of pitch * (k + offset). The line has
+/// pieces of every n-th cell, one of which is cell `one`.
 struct CellRow {
     std::int32_t row;
     double pitch;
@@ -144,9 +144,8 @@ struct CellRow {
     }
 };
 
-/// Calls add(k, from, to) for what a line has of the cells of a row, where that is long enough. A piece that
-/// is too short because the cell ends there is made longer, beyond the border of the cell, where there is
-/// material.
+/// Calls add(k, from, to) for each piece of a line in the cells of a row that is long enough. A piece that is
+/// too short because the cell ends there is extended beyond the border of the cell, where there is material.
 template <std::int32_t n, class Add>
 void cut_into_cells(std::span<const double> ends, const CellRow& cells, const HatchRule& rule,
                     const Add& add) {
@@ -170,17 +169,17 @@ void cut_into_cells(std::span<const double> ends, const CellRow& cells, const Ha
     });
 }
 
-/// How far beside a cell a line may lie, so that its half of the distance to the next one still reaches into
-/// the cell: not one that only touches it but for rounding.
+/// Returns the largest distance from a cell at which a line still covers part of the cell with its half of
+/// the line distance. Reduced by rounding, so that lines that only touch the cell are excluded.
 double beside(const HatchRule& rule) noexcept {
     constexpr double rounding = 1e-9;
     return rule.distance * (0.5 - rounding);
 }
 
-// Squares of one colour have lines along the frame, those of the other colour have them across: these are the
-// squares of the first colour in the frame turned by a right angle. A line between two rows belongs to both
-// where it is nearer to the border than half the overlap, or than half a distance: else a strip along the
-// border would be left to nobody.
+// Squares of one colour have lines along the frame, those of the other colour across it: the latter are the
+// squares of the first colour in the frame rotated by a right angle. A line between two rows belongs to both
+// if it is nearer to the border than half the overlap or half a distance; otherwise a strip along the border
+// would belong to no square.
 struct Squares {
     static constexpr std::int32_t colours = 2;
 
@@ -196,26 +195,26 @@ struct Squares {
                 visit(i, CellRow{row, rule.cell, 0.5, reach, row});
         }
     }
-    /// That a line lies in, at most.
+    /// Returns the largest number of rows that a line lies in.
     static double most_rows(const HatchRule& rule) noexcept { return std::floor(2 * half_across(rule)) + 1; }
     static Cell cell(std::int32_t row, std::int32_t column, unsigned turns) noexcept {
         return turns == 0 ? Cell{row, column} : Cell{column, -row - 1};
     }
 
   private:
-    /// How far to both sides of a line the middles of rows lie, in cells.
+    /// Returns the largest distance of a line from the middle of its rows, in cells.
     static double half_across(const HatchRule& rule) noexcept {
         return 0.5 + std::max(1.0, rule.overlap / rule.distance) * beside(rule) / rule.cell;
     }
 };
 
-// Hexagons stand on a corner, in rows along the frame: the one in row r and place q has its middle at u =
-// cell * (q + r / 2) and v = cell * r * sqrt(3) / 2. Turned by a sixth of a turn, (q, r) comes to (-r, q +
-// r), and the same rows lie along the frame that is turned so. Of three colours, (q - r) modulo 3, each has
-// the lines of one of three directions; turned once, colour c comes to -c.
+// Hexagons stand on a corner, in rows along the frame: the one in row r at index q has its middle at u = cell
+// * (q + r / 2) and v = cell * r * sqrt(3) / 2. A rotation by a sixth of a turn maps (q, r) to (-r, q + r),
+// and the same rows lie along the rotated frame. Each of three colours, (q - r) modulo 3, has lines of one of
+// three directions; one rotation maps colour c to -c.
 //
-// Where the border is slanted, a line ends where that leaves the half of the distance beside it: so lines and
-// their halves cover the hexagon up to its corners.
+// At a slanted border, a line ends where its half of the distance leaves the hexagon: so lines and their
+// halves cover the hexagon up to its corners.
 struct Hexagons {
     static constexpr std::int32_t colours = 3;
 
@@ -225,7 +224,7 @@ struct Hexagons {
         const double pitch = rule.cell * root / 2;
         const double width = rule.cell + rule.overlap;
         const double far = farthest(rule);
-        const std::int32_t colour = turns == 0 ? 0 : 2; // before it is turned
+        const std::int32_t colour = turns == 0 ? 0 : 2; // before the rotation
         for (std::size_t i = 0; i < lines.size(); ++i) {
             const double v = lines.v(i);
             for (std::int32_t row = ceil_of((v - far) / pitch); row <= floor_of((v + far) / pitch); ++row) {
@@ -251,16 +250,16 @@ struct Hexagons {
     }
 
   private:
-    /// How far from a line the middles of rows lie at most.
+    /// Returns the largest distance of a line from the middle of its rows.
     static double farthest(const HatchRule& rule) noexcept {
         const double root = std::sqrt(3.0);
         return std::max((rule.cell + rule.overlap) / root, rule.cell / root + beside(rule));
     }
 };
 
-/// At least as many pieces as lines in all directions are cut into: quickly.
+/// Returns a quick upper bound of the number of pieces into which lines in all directions are cut.
 std::uint64_t pieces_at_most(const std::vector<HatchLines>& lines, const HatchRule& rule) {
-    double length = 0; // with what cells may reach beyond both ends
+    double length = 0; // with the overlap of cells at both ends
     double count = 0;
     for (const HatchLines& one : lines)
         for (std::size_t i = 0; i < one.size(); ++i)
@@ -307,7 +306,7 @@ void cut_into(const HatchLines& lines, unsigned turns, const HatchRule& rule, co
     });
 }
 
-/// Throws where there would be too many cells.
+/// Throws Error{limit} for too many cells.
 void check_cells(const Layer& area, const HatchRule& rule, const LayerBudget& budget) {
     const double reach = largest_coordinate(area.points.span()); // from the origin
     if (!(reach / rule.cell < 0x1p28))
@@ -317,8 +316,8 @@ void check_cells(const Layer& area, const HatchRule& rule, const LayerBudget& bu
                                 budget.layer(), rule.cell, reach));
 }
 
-/// How many pieces all lines are cut into at most: nearly as many as there are, where the quick answer would
-/// be too many. Throws where these are too many.
+/// Returns an upper bound of the number of pieces into which all lines are cut. It is nearly exact if the
+/// quick bound exceeds the limit. Throws Error{limit} if there are too many.
 std::uint64_t count_pieces(const std::vector<HatchLines>& lines, const HatchRule& rule,
                            const LayerBudget& budget) {
     constexpr std::uint64_t most = std::uint64_t{1} << 22;
@@ -340,7 +339,7 @@ std::uint64_t count_pieces(const std::vector<HatchLines>& lines, const HatchRule
     return pieces;
 }
 
-/// Whether line i, if there is one, has a piece that is long enough between two places.
+/// Returns whether line i, if it exists, has a piece between two positions that is long enough.
 bool has_piece(const HatchLines& lines, std::int64_t i, double from, double to, const HatchRule& rule) {
     if (i < 0 || i >= static_cast<std::int64_t>(lines.size()))
         return false;
@@ -353,7 +352,7 @@ bool has_piece(const HatchLines& lines, std::int64_t i, double from, double to, 
     return false;
 }
 
-/// The area that pieces too short for lines stand for, where there is no line beside them.
+/// Returns the area of pieces that are too short for lines and have no line beside them.
 double too_short(const HatchLines& lines, const HatchRule& rule, const LayerBudget& budget) {
     double length = 0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -374,7 +373,7 @@ double too_short(const HatchLines& lines, const HatchRule& rule, const LayerBudg
     return length * rule.distance;
 }
 
-/// The area of what lies between two lines and has none beside it, as lines across these meet it.
+/// Returns the area between two lines that has no line beside it, estimated by lines across.
 double between_lines(const HatchArea& area, const HatchLines& lines, const HatchRule& rule,
                      const LayerBudget& budget) {
     const double apart = 5 * rule.distance;
@@ -400,7 +399,7 @@ double between_lines(const HatchArea& area, const HatchLines& lines, const Hatch
     return length * apart;
 }
 
-/// Lines in several directions see what lies between those of one.
+/// Returns whether there may be bare spots. Other directions cover the area between lines of one.
 bool may_leave_bare(const HatchArea& area, const std::vector<HatchLines>& lines, const HatchRule& rule,
                     const LayerBudget& budget) {
     double bare = 0;
@@ -430,7 +429,7 @@ double line_phase(HatchPattern pattern) noexcept {
     return pattern == HatchPattern::chessboard ? 0.5 : 0;
 }
 
-// A circle so wide has the nearest line, half a distance beside its middle at most, for `shortest`.
+// In a circle of this diameter, a line at most half a distance from the centre is `shortest` long.
 double surely_hatched(const HatchRule& rule) noexcept {
     return std::sqrt(rule.shortest * rule.shortest + rule.distance * rule.distance);
 }
@@ -441,7 +440,7 @@ PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t see
     if (!one_by_one)
         check_cells(area.within, rule, budget);
     LayerBudget left = budget;
-    std::vector<HatchLines> lines; // in each direction
+    std::vector<HatchLines> lines; // one for each direction
     for (const CosSin angle : line_angles(rule, area.within.index)) {
         lines.push_back(lines_in(area, angle, rule.distance, line_phase(rule.pattern), left));
         left = left.without(lines.back().bytes());

@@ -1,6 +1,6 @@
 #pragma once
 
-// Lines that fill an area, in the order in which a beam follows them.
+// Fills an area with lines in scanning order.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/unit_circle.hpp"
@@ -13,34 +13,34 @@
 
 namespace lamella {
 
-/// What is to be filled. All layers are of rings that bound material, none of which cross. What they have in
-/// common is decided along each line, so that no polygons have to be cut.
+/// The area to fill. All layers must consist of rings that bound material and do not cross. Layers are
+/// combined along each line, without operations on polygons.
 struct HatchArea {
     // NOLINTNEXTLINE(google-explicit-constructor): most areas are a layer
     HatchArea(const Layer& all) : within(all) {}
 
     const Layer& within;
-    const Layer* also_within = nullptr;     ///< if given
-    std::vector<const Layer*> without = {}; ///< nothing of these
+    const Layer* also_within = nullptr;     ///< a further layer to intersect with, or null
+    std::vector<const Layer*> without = {}; ///< layers to subtract
 };
 
-/// Of the lines of a layer: islands have lines in two or three directions. Line k of each lies at v = (k +
-/// `line_phase`) * distance in the LineFrame of its angle.
+/// Returns the directions of the lines of a layer: islands have lines in two or three. For each direction,
+/// line k lies at v = (k + `line_phase`) * distance in its LineFrame.
 [[nodiscard]] std::vector<CosSin> line_angles(const HatchRule& rule, std::uint64_t layer);
-/// Squares begin half a distance before their first line, so that those that are a whole number of lines wide
-/// meet without a gap and without an overlap.
+/// Returns the phase of the lines. Squares begin half a distance before their first line, so that squares
+/// whose size is an integer multiple of the distance meet without a gap and without an overlap.
 [[nodiscard]] double line_phase(HatchPattern pattern) noexcept;
 
-/// Two points each, as Layer::hatches. The index of `within` says how far the lines are turned, and with the
-/// seed in which order islands come. Throws what HatchLines throws, and Error{limit} for more than 2^28
-/// stripes or islands in a row, 2^22 pieces of lines or 2^21 islands, or more pieces or islands than the
-/// budget has room for. `bare`, where given, becomes whether there may be places that are narrower than
-/// `surely_hatched` and have no line within its distance: pieces that are too short have no lines, and strips
-/// may lie between two. What would be a few squares of half the distance in all does not count.
+/// Returns the hatch lines, two points each, as in Layer::hatches. The index of `within` defines the rotation
+/// of the lines and, with the seed, the order of islands. `bare`, if given, becomes whether there may be
+/// spots narrower than `surely_hatched` without a line within its distance: pieces that are too short have no
+/// lines, and strips may lie between two lines. Spots of a total area of a few squares of half the distance
+/// do not count. Throws the errors of HatchLines, and Error{limit} for more than 2^28 stripes or islands in a
+/// row, 2^22 pieces of lines or 2^21 islands, or more pieces or islands than the budget allows.
 [[nodiscard]] PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed,
                                bool* bare = nullptr, const LayerBudget& budget = {});
 
-/// How wide material is that has a line wherever lines come to lie.
+/// Returns the width of material that is hatched wherever the lines come to lie.
 [[nodiscard]] double surely_hatched(const HatchRule& rule) noexcept;
 
 } // namespace lamella

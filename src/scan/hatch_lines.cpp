@@ -20,20 +20,20 @@ constexpr std::size_t most_ends = std::size_t{1} << 24;
 
 constexpr std::string_view larger_distance = "a larger `hatch.distance`";
 
-/// A point as lines see it.
+/// A point in the frame of the lines.
 struct RankedPoint {
     double u;
     double v;
-    std::int32_t rank; ///< how many of the layer's lines lie below it
+    std::int32_t rank; ///< number of the layer's lines below it
 };
 
-/// Of numbers within 2^52. (std::ceil is a call.)
+/// Rounds up numbers within 2^52. (std::ceil is a function call.)
 std::int64_t rounded_up(double number) noexcept {
     const auto towards_zero = static_cast<std::int64_t>(number);
     return towards_zero + static_cast<std::int64_t>(static_cast<double>(towards_zero) < number);
 }
 
-/// For few values: most lines meet a part a few times.
+/// Sorts the ends of a line. Insertion is faster for few values, and most lines meet a part a few times.
 void sort_ends(std::span<double> ends) {
     constexpr std::size_t few = 48;
     if (ends.size() > few) {
@@ -51,10 +51,10 @@ void sort_ends(std::span<double> ends) {
 
 } // namespace
 
-// The rule of the plane, in one dimension less. Each point has a rank, the number of lines below it, which
-// depends on nothing but the point. An edge meets the lines between the ranks of its ends. So a closed ring
-// meets each line an even number of times, whatever rounding makes of the ranks, and lines through vertices
-// and along edges need no care.
+// The rule of slicing in one dimension less. Each point has a rank, the number of lines below it, which
+// depends on the point only. An edge meets the lines between the ranks of its ends. So a closed ring meets
+// each line an even number of times, regardless of the rounding of ranks, and lines through vertices and
+// along edges need no special cases.
 
 HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double phase,
                        const LayerBudget& budget)
@@ -75,7 +75,7 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double
         most = std::max(most, points[i].v);
     }
     const double below =
-        std::ceil(least / distance - phase); // the first line, or one on which the lowest point lies
+        std::ceil(least / distance - phase); // the first line, or a line through the lowest point
     const double lines = std::ceil(most / distance - phase) - below;
     if (!(std::abs(below) < 0x1p52 && lines <= static_cast<double>(most_lines)))
         throw Error(
@@ -86,7 +86,7 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double
     for (RankedPoint& p : points)
         p.rank = static_cast<std::int32_t>(rounded_up(p.v / distance - phase) - first_);
 
-    // Count, sum up, put: each edge into the lines that it meets.
+    // Sort each edge into the lines that it meets, by counting, summing up and writing.
     left.need(static_cast<std::uint64_t>(lines), 2 * sizeof(std::uint32_t), "hatch lines", larger_distance);
     const auto for_edges = [&](const auto& visit) {
         for (std::size_t ring = 0; ring < layer.rings; ++ring) {
@@ -98,7 +98,7 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double
             }
         }
     };
-    // By how many edges more than the one below it a line is met; then where its ends begin.
+    // First how many more edges meet a line than meet the one below; then the position of its ends.
     begins_.assign(static_cast<std::size_t>(lines) + 1, 0);
     for_edges([&](const RankedPoint& a, const RankedPoint& b) {
         ++begins_[static_cast<std::size_t>(std::min(a.rank, b.rank))];
@@ -145,7 +145,7 @@ void HatchLines::subtract(const HatchLines& others, const LayerBudget& budget) {
     keep<false>(others, budget);
 }
 
-/// What lies inside of the others, or outside. Ends in one place count together, so that no piece is a point.
+/// Keeps what is inside or outside of the others. Equal ends are merged, so no piece has length 0.
 template <bool inside>
 void HatchLines::keep(const HatchLines& others, const LayerBudget& budget) {
     assert(distance_ == others.distance_ && phase_ == others.phase_);
@@ -160,7 +160,7 @@ void HatchLines::keep(const HatchLines& others, const LayerBudget& budget) {
         const bool known = number >= 0 && number < static_cast<std::int64_t>(others.size());
         const std::span<const double> other =
             known ? others.ends(static_cast<std::size_t>(number)) : std::span<const double>();
-        begins_[i] = static_cast<std::uint32_t>(kept.size()); // what stood there is not asked for any more
+        begins_[i] = static_cast<std::uint32_t>(kept.size()); // its old value is no longer needed
         std::size_t a = 0;
         std::size_t b = 0;
         bool in = false;

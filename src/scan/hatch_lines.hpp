@@ -1,6 +1,6 @@
 #pragma once
 
-// Where parallel lines run through material: slicing in one dimension less.
+// Intersections of parallel lines with material: slicing in one dimension less.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
@@ -15,52 +15,51 @@
 
 namespace lamella {
 
-/// Coordinates along lines (u) and across them (v): the plane turned back by an angle.
+/// Coordinates along lines (u) and across them (v): the plane rotated back by an angle.
 struct LineFrame {
     CosSin angle; ///< of the lines
 
     [[nodiscard]] double along(const Point2& p) const noexcept { return p.x * angle.cos + p.y * angle.sin; }
     [[nodiscard]] double across(const Point2& p) const noexcept { return p.y * angle.cos - p.x * angle.sin; }
     [[nodiscard]] Point2 point(double u, double v) const noexcept {
-        // No -0.
+        // Avoids -0.
         return {u * angle.cos - v * angle.sin + 0.0, u * angle.sin + v * angle.cos + 0.0};
     }
 };
 
-/// The lines that run through a layer. Line k of all lies at v = (k + phase) * distance.
+/// The lines through a layer. Line k lies at v = (k + phase) * distance.
 class HatchLines {
   public:
-    /// `layer`: rings that bound material, none of which cross. Throws Error{limit} for more than 2^22 lines,
-    /// 2^23 pieces of them, or more than the budget has room for, before memory is taken; and
-    /// Error{cancelled}. O(points + ends), and sorting the ends of each line.
+    /// `layer` must consist of rings that bound material and do not cross. Throws Error{limit} for more than
+    /// 2^22 lines, 2^23 pieces of them, or more than the budget allows, before memory is allocated; and
+    /// Error{cancelled}. O(points + ends), plus sorting the ends of each line.
     HatchLines(const Layer& layer, CosSin angle, double distance, double phase = 0,
                const LayerBudget& budget = {});
 
-    /// Leaves of each line what is on others, too, or what is not. These have the same angle, distance and
-    /// phase.
-    /// O(lines + ends).
+    /// Intersect each line with the other lines, or subtract these from it. The other lines must have the
+    /// same angle, distance and phase. O(lines + ends).
     void intersect(const HatchLines& others, const LayerBudget& budget = {});
     void subtract(const HatchLines& others, const LayerBudget& budget = {});
 
     [[nodiscard]] const LineFrame& frame() const noexcept { return frame_; }
     [[nodiscard]] std::size_t size() const noexcept { return begins_.size() - 1; }
-    /// The number among all lines of line 0 of these.
+    /// Returns the k of line 0.
     [[nodiscard]] std::int64_t first() const noexcept { return first_; }
-    /// Where line i, from 0, lies.
+    /// Returns the v of line i, counted from 0.
     [[nodiscard]] double v(std::size_t i) const noexcept {
         return (static_cast<double>(first_ + static_cast<std::int64_t>(i)) + phase_) * distance_;
     }
-    /// Whether its number among all lines is odd.
+    /// Returns whether the k of line i is odd.
     [[nodiscard]] bool odd(std::size_t i) const noexcept {
         return ((first_ + static_cast<std::int64_t>(i)) & 1) != 0;
     }
-    /// Where material begins and ends along it, in turn, in ascending order.
+    /// Returns the u at which material begins and ends along the line, alternating, in ascending order.
     [[nodiscard]] std::span<const double> ends(std::size_t i) const noexcept {
         return std::span(ends_).subspan(begins_[i], begins_[i + 1] - begins_[i]);
     }
-    /// The number of ends on all lines.
+    /// Returns the number of ends on all lines.
     [[nodiscard]] std::size_t total() const noexcept { return ends_.size(); }
-    /// What they take.
+    /// Returns the memory in use.
     [[nodiscard]] std::uint64_t bytes() const noexcept {
         return begins_.size() * sizeof begins_.front() + ends_.size() * sizeof ends_.front();
     }

@@ -16,7 +16,7 @@ namespace lamella {
 namespace {
 
 constexpr std::size_t most_cells = std::size_t{1} << 21;
-/// Of the map of numbers.
+/// Memory of an entry of the map of indices.
 constexpr std::uint64_t node_bytes = 56;
 
 } // namespace
@@ -43,7 +43,7 @@ void Islands::make_room_for_cells() {
     cells_.reserve(room);
 }
 
-// Along a line cells follow one another as along the line before it, mostly.
+// The order of cells along a line mostly equals that along the previous line.
 std::uint32_t Islands::number_of(Cell cell) {
     if (!cells_.empty()) {
         const std::uint32_t guess = cells_[last_].after;
@@ -61,7 +61,7 @@ std::uint32_t Islands::number_of(Cell cell) {
     return last_ = found->second;
 }
 
-// Every other row is what it would be, from its end.
+// Every other row is built from its end.
 PointArray Islands::points_in_rows() && {
     std::vector<std::uint32_t> order(cells_.size());
     std::iota(order.begin(), order.end(), 0U);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Pieces of lines in cells, put in order cell by cell.
+// Pieces of lines in cells, ordered cell by cell.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
@@ -25,29 +25,29 @@ struct Cell {
     friend auto operator<=>(const Cell&, const Cell&) = default;
 };
 
-/// Pieces of lines, cell by cell; in each cell line by line, back and forth. O(pieces) and O(c log c) for c
-/// cells.
+/// Pieces of lines, cell by cell; in each cell line by line, in alternating directions. O(pieces + c log c)
+/// for c cells.
 class Islands {
   public:
-    /// With its two points.
+    /// Including its two points.
     static constexpr std::uint64_t bytes_of_piece = 56;
 
-    /// For so many pieces at most. Throws Error{limit} where they, or later their cells, are more than the
-    /// budget has room for, or these more than 2^21.
+    /// Allocates memory for at most this many pieces. Throws Error{limit} if these, or later their cells,
+    /// exceed the budget; `add` throws it for more than 2^21 cells.
     Islands(std::uint64_t pieces, const LayerBudget& budget);
 
-    /// What is added from here on are pieces of these lines, which are to outlive this.
+    /// Begins the pieces of these lines, which must outlive this object.
     void begin(const HatchLines& lines) { directions_.push_back({&lines, pieces_.size()}); }
-    /// A piece of line i; cells have lines of one direction.
+    /// Adds a piece of line i. All lines of a cell must have the same direction.
     void add(Cell cell, std::size_t i, double from, double to) {
         const std::uint32_t number = number_of(cell);
         cells_[number].points += 2;
         pieces_.push_back({number, static_cast<std::uint32_t>(i), from, to});
     }
 
-    /// Of cells row by row, back and forth.
+    /// Returns the points of the cells row by row, in alternating directions.
     [[nodiscard]] PointArray points_in_rows() &&;
-    /// Of cells in an order that a seed and a layer decide.
+    /// Returns the points of the cells in an order that depends on a seed and a layer.
     [[nodiscard]] PointArray points_shuffled(std::uint64_t seed, std::uint64_t layer) &&;
 
   private:
@@ -55,16 +55,16 @@ class Islands {
 
     struct Position {
         Cell cell;
-        std::uint32_t after = 0;      ///< the cell that was looked for after it, the last time
-        std::size_t points = 0;       ///< in it
-        std::ptrdiff_t next = 0;      ///< where its next point belongs
-        std::ptrdiff_t step = 1;      ///< from there to the one after it
-        std::uint32_t line = no_line; ///< of the last piece
-        bool back = true;             ///< whether that line is followed from its end
+        std::uint32_t after = 0;      ///< the cell that was last searched for after this one
+        std::size_t points = 0;       ///< number in this cell
+        std::ptrdiff_t next = 0;      ///< position of its next point
+        std::ptrdiff_t step = 1;      ///< from there to the position of the following point
+        std::uint32_t line = no_line; ///< line of the last piece
+        bool back = true;             ///< true if that line runs backwards
         std::ptrdiff_t line_begin = 0;
     };
     struct Piece {
-        std::uint32_t cell; ///< its number
+        std::uint32_t cell; ///< its index
         std::uint32_t line;
         double from;
         double to;
@@ -82,7 +82,7 @@ class Islands {
     LayerBudget budget_; ///< for cells
     std::vector<Position> cells_;
     std::unordered_map<std::uint64_t, std::uint32_t> number_; ///< by row and column
-    std::uint32_t last_ = 0;                                  ///< that was looked for
+    std::uint32_t last_ = 0;                                  ///< last cell that was searched for
     std::vector<Piece> pieces_;
     std::vector<Direction> directions_;
     std::vector<Point2> points_;

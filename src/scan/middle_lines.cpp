@@ -31,7 +31,7 @@ Point2 along(const Point2& from, const Point2& way, double by) noexcept {
     return {from.x + by * way.x, from.y + by * way.y};
 }
 
-/// Numbers by the cell of a square grid that they lie in.
+/// Indices sorted by the cells of a square grid.
 class Cells {
   public:
     explicit Cells(double side) : side_(side) {}
@@ -41,7 +41,7 @@ class Cells {
         std::sort(all_.begin(), all_.end());
         all_.erase(std::unique(all_.begin(), all_.end()), all_.end());
     }
-    /// All in the cell of a point and in those around it.
+    /// Calls visit(index) for all indices in the cell of a point and in the cells around it.
     template <class Visit>
     void around(const Point2& p, const Visit& visit) const {
         for (std::int64_t x = row(p.x) - 1; x <= row(p.x) + 1; ++x) {
@@ -62,7 +62,7 @@ class Cells {
     std::vector<Entry> all_;
 };
 
-/// A circle that touches the outline in two places, at least.
+/// A circle that touches the outline at two points at least.
 struct Touching {
     Point2 middle;
     double radius = 0;
@@ -86,7 +86,7 @@ class Outlines {
     Outlines(const Layer& positions, double width, double thinnest, const LayerBudget& budget)
         : positions_(positions), budget_(budget), width_(width), thinnest_(thinnest),
           unit_(unit_of(positions, width)), cells_(unit_) {
-        // Where circles may touch, on both sides of each place, and what becomes of them.
+        // Touching circles on both sides of each area, and the lines built from them.
         constexpr std::uint64_t bytes_each = 3 * sizeof(Touching) + 2 * sizeof(Point2);
         budget.need(4 * static_cast<std::uint64_t>(measure(positions).perimeter_mm / unit_) +
                         positions.points.size(),
@@ -108,7 +108,7 @@ class Outlines {
 
     [[nodiscard]] double step() const noexcept { return unit_ / 4; }
 
-    /// What the samples of each ring have in their middle, as far as one follows the other.
+    /// Returns the middle axes of the samples of each ring, in connected sections.
     [[nodiscard]] std::vector<Axis> axes() const {
         std::vector<Axis> all;
         for (std::size_t ring = 0; ring < positions_.rings; ++ring)
@@ -122,7 +122,7 @@ class Outlines {
         Point2 b;
     };
 
-    /// The width, or more where that would be too many pieces.
+    /// Returns the width, or more if that would make too many pieces.
     [[nodiscard]] static double unit_of(const Layer& positions, double width) noexcept {
         constexpr double most_pieces = 1 << 19;
         return std::max({width, measure(positions).perimeter_mm / most_pieces,
@@ -147,13 +147,13 @@ class Outlines {
         return found;
     }
 
-    /// The largest circle that touches the outline at p, from inside: of one that is too large, those follow
-    /// that touch the nearest place to its middle, too. None where its two places are not opposite each
-    /// other.
+    /// Returns the largest circle that touches the outline at p from inside. If a circle is too large, the
+    /// next one also touches the point of the outline nearest to its centre. Returns none if the two points
+    /// are not opposite each other.
     [[nodiscard]] std::optional<Touching> touching(const Point2& p, const Point2& inwards) const {
         constexpr int most = 50;
         constexpr double rounding = 1e-7;
-        constexpr double opposite = -0.5; // the cosine of 120 degrees: in corners of 90 it is 0
+        constexpr double opposite = -0.5; // cosine of 120 degrees; it is 0 in corners of 90 degrees
         double radius = 0.55 * width_;
         Point2 other = p;
         for (int step = 0; step < most; ++step) {
@@ -182,12 +182,12 @@ class Outlines {
         return std::nullopt;
     }
 
-    /// Cut where a sample has no circle, or one apart from the one before it, and where the axis turns back:
-    /// around a round end it comes along twice.
+    /// Cuts the axis at samples without a circle, at distances from the previous circle, and where it turns
+    /// back: around a round end it is traversed twice.
     void add_axes(const std::vector<std::optional<Touching>>& found, std::vector<Axis>& all) const {
         const std::size_t count = found.size();
         std::vector<bool> cut(count, false);
-        Point2 way; // of the last step that leads anywhere
+        Point2 way; // last step of non-zero length
         for (std::size_t k = 0; k < 2 * count; ++k) {
             const std::size_t i = k % count;
             const std::optional<Touching>& before = found[(i == 0 ? count : i) - 1];
@@ -227,19 +227,19 @@ class Outlines {
     Cells cells_;
 };
 
-/// Both sides of a place have the same axis: what is near to a longer one goes.
+/// Removes copies: both sides of an area have the same axis, so points near to a longer axis are removed.
 std::vector<Axis> without_copies(std::vector<Axis> axes, double near) {
-    // By lengths in whole millionths: those of both sides of a place are the same but for rounding.
+    // By integer multiples of a millionth: lengths of both sides of an area are equal except for rounding.
     std::vector<std::pair<double, std::size_t>> order;
     for (const Axis& axis : axes)
         order.emplace_back(-std::floor(axis.length() / near * 0x1p20), order.size());
     std::sort(order.begin(), order.end());
     std::vector<Axis> kept;
-    std::vector<Point2> points; // of those that are kept
+    std::vector<Point2> points; // of the kept axes
     std::size_t total = 1;
     for (const Axis& axis : axes)
         total += axis.points.size();
-    std::vector<std::vector<std::uint32_t>> buckets(total); // numbers of points, by their cells
+    std::vector<std::vector<std::uint32_t>> buckets(total); // indices of points, by their cells
     const auto row = [&](double x) {
         return static_cast<std::int64_t>(std::floor(x / near));
     };
@@ -283,7 +283,7 @@ std::vector<Axis> without_copies(std::vector<Axis> axes, double near) {
     return kept;
 }
 
-/// Leaves out points that are no farther than the tolerance from the line between others (Douglas, Peucker).
+/// Removes points that are no farther than the tolerance from the segment between others (Douglas, Peucker).
 std::vector<Point2> straightened(const std::vector<Point2>& points, double tolerance) {
     std::vector<bool> kept(points.size(), false);
     kept.front() = kept.back() = true;
@@ -312,7 +312,7 @@ std::vector<Point2> straightened(const std::vector<Point2>& points, double toler
     return result;
 }
 
-/// A circle at the end reaches farther: three quarters of its radius beyond its middle are still within.
+/// Extends an end of a line: three quarters of the radius of the circle there are still within it.
 void lengthen(std::vector<Point2>& points, double radius, bool at_begin) {
     Point2& end = at_begin ? points.front() : points.back();
     const Point2& before = at_begin ? points[1] : points[points.size() - 2];

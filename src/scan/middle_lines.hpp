@@ -10,12 +10,12 @@
 
 namespace lamella {
 
-/// The middle axis of thin places, as open lines and as closed ones whose first point comes again at the end:
-/// of places that are narrower than `width`, where they are at least `thinnest` wide, and lines at least half
-/// as long as that width. `places`: rings in normal form that bound material, none of which cross. Lines lie
-/// within them, end about half of the width before their ends or nearer, and are straight to a hundredth of
-/// the width. For any place the same lines, whatever else there is. O(n log n) for n pieces of the outlines
-/// half of the width long.
+/// Returns the middle axes of thin areas, as open lines and as closed ones that repeat their first point at
+/// the end. An area is thin where it is narrower than `width` and at least `thinnest` wide. Lines shorter
+/// than half of `width` are left out. `positions` must consist of rings in normal form that bound material
+/// and do not cross. Lines lie within them, end at most about half of the width before their ends, and are
+/// straight to a hundredth of the width. The lines of an area do not depend on other areas. O(n log n) for n
+/// pieces of the outlines, each half of the width long.
 [[nodiscard]] std::vector<std::vector<Point2>> middle_lines(const Layer& positions, double width,
                                                             double thinnest, const LayerBudget& budget = {});
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where on a layer something lies, coarsely.
+// A coarse map of the occupied areas of a layer.
 
 #include "lamella/contour/layer.hpp"
 
@@ -12,8 +12,8 @@
 
 namespace lamella {
 
-/// Which cells of a coarse grid over a layer something lies in, so that what is far from it is known for
-/// that. What is beyond the layer counts as at its edge.
+/// The occupied cells of a coarse grid over a layer, for a quick test of boxes far from everything. Locations
+/// beyond the layer count as at its edge.
 class Occupied {
   public:
     explicit Occupied(const Layer& layer) : whole_(box_of(layer.points.span())) {}
@@ -24,7 +24,7 @@ class Occupied {
             return true;
         });
     }
-    /// Whether there may be something within a box.
+    /// Returns whether there may be something within a box.
     [[nodiscard]] bool any_within(const Box2& box) {
         return !for_rows(box, [](std::uint64_t& row, std::uint64_t columns) { return (row & columns) == 0; });
     }
@@ -36,7 +36,7 @@ class Occupied {
         const double cells = along / extent * side;
         return !(cells > 0) ? 0 : cells >= side ? side - 1 : static_cast<unsigned>(cells);
     }
-    /// Calls `visit` for all rows of a box, with bits for its columns, until that is false.
+    /// Calls `visit` for all rows of a box, with bits for its columns, until it returns false.
     template <class Visit>
     bool for_rows(const Box2& box, const Visit& visit) {
         const unsigned first = cell(box.x0 - whole_.x0, whole_.width());

@@ -35,10 +35,10 @@ Layer with_header_of(const Layer& header, Layer layer) {
     return layer;
 }
 
-/// What is wider than contours reach from both sides by so much has a line in the middle.
+/// Areas wider than the reach of contours from both sides by this factor get a line in the middle.
 constexpr double more_than_reached = 1.01;
 
-/// By how much the material of a layer is to be moved, the least first.
+/// Returns the distances by which the material of a layer is offset, the smallest first.
 std::vector<double> distances_of(const ScanStrategy& strategy) {
     std::vector<double> distances;
     const auto want = [&](double depth) {
@@ -59,14 +59,14 @@ std::vector<double> distances_of(const ScanStrategy& strategy) {
 
 } // namespace
 
-/// The material of a layer, moved inwards by several distances; each is computed once.
+/// The material of a layer, offset inwards by several distances; each offset is computed once.
 struct InsetCache::Insets {
     Insets(Layer of, const ScanStrategy& strategy, std::vector<double> by, const LayerLimits& limits)
         : layer(std::move(of)), distances(std::move(by)), contours(strategy.contours),
           filled(hatch_depth(contours, strategy.hatch)),
           moved(offsets(layer, distances, {}, nullptr, limits)) {
         for (std::size_t i = 0; i < distances.size(); ++i)
-            if (distances[i] == 0) // not looked at, and without its straight points rings may meet again
+            if (distances[i] == 0) // offsets() skips it, and rings without collinear points may touch again
                 moved[i] = united(layer, limits);
         double depth = 0;
         const auto step_to = [&](double next) {
@@ -86,7 +86,7 @@ struct InsetCache::Insets {
         lines.resize(contours.count);
     }
 
-    /// Whether these are those of another layer, too.
+    /// Returns whether these are also the insets of another layer.
     [[nodiscard]] bool fit(const Layer& other, const ScanStrategy& strategy,
                            std::span<const double> by) const {
         const ContourRule& rule = strategy.contours;
@@ -105,13 +105,13 @@ struct InsetCache::Insets {
     Layer layer;
     std::vector<double> distances;
     ContourRule contours;
-    double filled; ///< from which depth on, by the hatch of the core
+    double filled; ///< depth from which the hatch of the core fills
     std::vector<Layer> moved;
-    /// What is too narrow for each contour, from the outermost one on, and has room for those before it; then
-    /// for the hatch of the core.
+    /// For each contour, from the outermost one on, the area that is too narrow for it but within the
+    /// contours before it; then the same for the hatch of the core.
     std::vector<Layer> narrow;
-    /// For each contour those along the middle of what is too narrow for it, and is not reached by those
-    /// before it.
+    /// For each contour, the lines along the middle of areas that are too narrow for it and not reached by
+    /// those before it.
     std::vector<std::vector<std::vector<Point2>>> lines;
 };
 
@@ -145,7 +145,7 @@ const HatchRule& hatch_of(const ScanStrategy& strategy, ScanRegion region) noexc
                                           : strategy.hatch;
 }
 
-/// Two points for each piece.
+/// Returns two points for each segment.
 PointArray pieces_of(const std::vector<std::vector<Point2>>& lines) {
     std::vector<Point2> pieces;
     for (const std::vector<Point2>& line : lines)
@@ -156,7 +156,7 @@ PointArray pieces_of(const std::vector<std::vector<Point2>>& lines) {
     return PointArray(std::move(pieces));
 }
 
-/// All vectors of a layer, by its exposures.
+/// Returns all vectors of a layer, by its exposures.
 std::vector<Stroke> strokes_of(const std::vector<Layer>& vectors, std::span<const Exposure> all,
                                const ScanStrategy& strategy, const LayerBudget& budget) {
     std::uint64_t count = 0;
@@ -173,8 +173,8 @@ std::vector<Stroke> strokes_of(const std::vector<Layer>& vectors, std::span<cons
     return strokes;
 }
 
-/// Lines along the middle of what is too narrow for a hatch: of those places of which its lines and the
-/// contours leave more than next to nothing bare.
+/// Returns lines along the middle of areas that are too narrow for a hatch, if its lines and the contours
+/// leave more than a negligible part of them bare.
 std::vector<std::vector<Point2>> lines_amid_bare(const Layer& positions, std::span<const Stroke> strokes,
                                                  const ContourRule& contours, const HatchRule& hatch,
                                                  const LayerBudget& budget) {
@@ -184,7 +184,7 @@ std::vector<std::vector<Point2>> lines_amid_bare(const Layer& positions, std::sp
                         contour_reach(contours) * (more_than_reached - 1), budget);
 }
 
-/// What of some places is of a region: of what is both, downskin counts.
+/// Returns the part of an area that belongs to a region. Where both skins apply, it is downskin.
 Layer in_region(const Layer& positions, ScanRegion region, const Skin& downskin, const Skin& upskin,
                 const LayerLimits& limits) {
     const auto cut = [&limits](const Layer& layer, const Skin& skin, bool inside) {
@@ -203,8 +203,8 @@ Layer in_region(const Layer& positions, ScanRegion region, const Skin& downskin,
 
 } // namespace
 
-// A point may have moved by so much, and the way between its neighbours by as much to the other side. Bodies
-// that fit in one another are united first: of each ring other points may be straight.
+// A point may have moved by `moved_point`, and the segment between its neighbours as much the other way.
+// Adjoining bodies are united first, because different points of their rings may be removed.
 ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding, const LayerLimits& limits) {
     const Overlay overlay(layer, limits);
     if (!overlay.clean())
@@ -227,7 +227,7 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
     const auto insets = insets_of(layer, strategy, memory, limits);
     const Skin downskin(scanned, below, strategy.downskin, limits);
     const Skin upskin(scanned, above, strategy.upskin, limits);
-    LayerBudget budget(limits, layer.index, layer.z); // beside the vectors that there are
+    LayerBudget budget(limits, layer.index, layer.z); // reduced by the vectors made so far
     const auto inset = [&](double depth) {
         return with_header_of(layer, insets->at(depth));
     };
@@ -242,7 +242,7 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
         HatchArea area(all);
         if (own != nullptr && !own->whole())
             area.also_within = &own->with_overlap();
-        // Of what is both, downskin counts.
+        // Where both skins apply, it is downskin.
         for (const Skin* const other : {&downskin, &upskin}) {
             if (other == own)
                 break;
@@ -261,8 +261,9 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
         budget = budget.without(vector_bytes(vectors));
         result.push_back(std::move(vectors));
     };
-    std::vector<Layer> bare(all.size()); // places that each exposure may not reach
-    std::size_t innermost = all.size();  // of the contours whose lines go where hatches leave places bare
+    std::vector<Layer> bare(all.size()); // areas that each exposure may not reach
+    std::size_t innermost =
+        all.size(); // index of the innermost contour, which gets lines where hatches leave areas bare
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Exposure& exposure = all[i];
         if (exposure.kind == VectorKind::contour) {
@@ -317,7 +318,7 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
     return result;
 }
 
-// What is left of a part without skins, by other rules.
+// A support is scanned as a part without skins, by its own rules.
 std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy, InsetCache* memory,
                                 std::vector<double>* unreached, const LayerLimits& limits) {
     check_strategy(strategy); // so that errors name fields of supports

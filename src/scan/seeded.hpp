@@ -1,13 +1,13 @@
 #pragma once
 
-// Numbers that look drawn by lot, and are the same on every machine.
+// Pseudo-random numbers that are the same on every machine.
 
 #include <cstdint>
 #include <initializer_list>
 
 namespace lamella {
 
-/// By the finalizer of splitmix64 (Steele, Lea, Flood 2014), once for each number.
+/// Applies the finalizer of splitmix64 (Steele, Lea, Flood 2014) once for each number.
 [[nodiscard]] constexpr std::uint64_t seeded(std::uint64_t seed,
                                              std::initializer_list<std::uint64_t> numbers) noexcept {
     for (const std::uint64_t number : numbers) {

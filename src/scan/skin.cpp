@@ -22,7 +22,7 @@ namespace lamella {
 
 namespace {
 
-/// Some rings of a layer, in their order.
+/// Returns the chosen rings of a layer, in their order.
 template <class Chosen>
 Layer rings_of(const Layer& layer, const Chosen& chosen) {
     LayerBuilder builder;
@@ -32,9 +32,9 @@ Layer rings_of(const Layer& layer, const Chosen& chosen) {
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
-/// For each ring of a layer whether it counts where the layer is not what another one is: it has none
-/// alongside in that one, or is closer than `reach` to a ring of either layer that has none. `partners`: for
-/// each ring that of the other layer. None where the layers are the same all over.
+/// Returns for each ring of a layer whether it matters where the layer differs from another one: it has no
+/// ring alongside in the other layer, or is closer than `reach` to a ring of either layer that has none.
+/// `partners` holds for each ring that of the other layer. Returns an empty vector if the layers are equal.
 std::vector<bool> differing(const Layer& layer, const Layer& other, std::span<const std::uint32_t> partners,
                             double reach) {
     if (layer.rings == other.rings && std::find(partners.begin(), partners.end(), no_ring) == partners.end())
@@ -64,31 +64,31 @@ std::vector<bool> differing(const Layer& layer, const Layer& other, std::span<co
     return counts;
 }
 
-/// A neighbour that is not the same as the layer all over.
+/// A neighbour that differs from the layer.
 struct Differing {
     std::size_t number;                  ///< 0 for the nearest one
     std::vector<std::uint32_t> partners; ///< for each ring of the layer the neighbour's ring alongside
 };
 
-/// By how much of that more than the nearest neighbour the farthest one is grown at most.
+/// Upper bound of the relative amount by which the farthest neighbour is grown more than the nearest one.
 constexpr double spread = 0.01;
 
-/// So many neighbours at once: the rings of these cross one another, too, those of each pair.
+/// Number of neighbours subtracted at once: the rings of each pair of these cross one another, too.
 constexpr std::size_t most_at_once = 4;
 
-/// What is left of a layer without what all its neighbours have, where it is at least `narrowest` wide,
-/// shrunk by half of that.
+/// Returns the layer minus the intersection of its neighbours, where it is at least `narrowest` wide, shrunk
+/// by half of that.
 ///
-/// Not what the layer has and the intersection of its neighbours has not: walls of a prism have their corners
-/// in the same places on all layers, and others where edges slant across them, so its layers are the same but
-/// for roundings. The layer is shrunk and what a neighbour has is grown before it is taken away, each one by
-/// a little more than the one before it: that is what the difference becomes when it is shrunk. So such rings
-/// do not meet at all, which takes a fraction of the time, and no slivers are left. The layer is shrunk by a
-/// little less, so that grown again, skin reaches beyond its outline: on it no slivers are left either.
+/// The difference is not computed directly. The layers of a prism are equal except for rounding: corners of
+/// its walls are the same on all layers, and other points lie where edges of triangles slant across the
+/// walls. So the layer is shrunk and each neighbour is grown before it is subtracted, which shrinks the
+/// difference. Each neighbour is grown slightly more than the one before it. Such rings then do not meet at
+/// all, which takes a fraction of the time, and no slivers remain. The layer is shrunk slightly less, so that
+/// the skin, when grown again, reaches beyond the outline and leaves no slivers there either.
 ///
-/// Rings alongside each other wind around a place alike, unless it lies between them, and then it is nearer
-/// than half of `narrowest` to one of them. So whatever is left lies within rings that have none alongside,
-/// and only what is near to these is looked at.
+/// Rings alongside each other have the same winding number at a point, unless the point lies between them;
+/// then it is nearer than half of `narrowest` to one of them. So the remaining area lies within rings that
+/// have none alongside, and only rings near to these are processed.
 Layer uncovered_area(const Layer& layer, std::span<const ScanLayer> neighbours, double narrowest,
                      const LayerLimits& limits) {
     const auto count = static_cast<double>(neighbours.size());
@@ -132,12 +132,12 @@ Layer uncovered_area(const Layer& layer, std::span<const ScanLayer> neighbours, 
     return open;
 }
 
-/// Whether of two layers one begins where the other one ends, or sooner.
+/// Returns whether two layers adjoin or overlap in height.
 bool adjoin(const Layer& a, const Layer& b) noexcept {
     return b.bottom <= a.top + same_height_mm && a.bottom <= b.top + same_height_mm;
 }
 
-/// Those up to the first one that lies apart from the one before it: there is no material between.
+/// Returns the neighbours before the first gap in height: there is no material in a gap.
 std::span<const ScanLayer> adjoining(const ScanLayer& layer, std::span<const ScanLayer> neighbours) noexcept {
     const ScanLayer* last = &layer;
     std::size_t count = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where a layer has too little material above it, or below it.
+// Finds areas of a layer with too little material above or below.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/layer_limits.hpp"
@@ -11,20 +11,20 @@
 
 namespace lamella {
 
-/// Where a layer has less than `rule.layers` layers of material beside it.
+/// The area of a layer with less than `rule.layers` layers of material above or below it.
 class Skin {
   public:
-    /// `neighbours`: from the nearest one on, above or below, as many as there are; fewer than the rule asks
-    /// for where the part ends. It ends, too, where by their heights a neighbour lies apart from the one
+    /// `neighbours` are the layers above or below, from the nearest one on. If there are fewer than the rule
+    /// requires, the part ends there. It also ends at a gap between the heights of a neighbour and the one
     /// before it.
     Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const SkinRule& rule,
          const LayerLimits& limits = {});
 
-    /// Whether all of the layer is skin, because the part ends there.
+    /// Returns whether the entire layer is skin, because the part ends there.
     [[nodiscard]] bool whole() const noexcept { return whole_; }
-    /// Else the skin, as rings that do not cross; it may reach beyond the layer.
+    /// Returns the skin otherwise, as rings that do not cross; it may reach beyond the layer.
     [[nodiscard]] const Layer& area() const noexcept { return area_; }
-    /// And what is closer to it than the overlap.
+    /// Returns the skin and the area closer to it than the overlap.
     [[nodiscard]] const Layer& with_overlap() const noexcept { return with_overlap_; }
 
   private:

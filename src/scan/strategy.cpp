@@ -57,12 +57,12 @@ void check(std::string_view rule, const HatchRule& hatch) {
     check_positive(rule, "cell", hatch.cell);
     check_not_negative(rule, "overlap", hatch.overlap);
     const bool cells = has_cells(hatch.pattern);
-    if (cells && !(hatch.cell > 2 * hatch.overlap)) // of both, options set this one
+    if (cells && !(hatch.cell > 2 * hatch.overlap)) // the error names `cell` because options can set it
         refuse(rule, "cell", hatch.cell, fmt::format("above {:g}, twice the overlap", 2 * hatch.overlap));
-    // Otherwise every line in a cell would be shorter than `shortest`, but for rounding.
+    // Otherwise every line in a cell would be shorter than `shortest`, except for rounding.
     if (cells && !(hatch.cell > hatch.shortest))
         refuse(rule, "cell", hatch.cell, fmt::format("above {:g}, the shortest line", hatch.shortest));
-    constexpr double largest_cell = 1e9; // far below where rounding blurs in which cell a line lies
+    constexpr double largest_cell = 1e9; // far below the size at which rounding blurs the cell of a line
     if (cells && hatch.cell > largest_cell)
         refuse(rule, "cell", hatch.cell, fmt::format("at most {:g} mm", largest_cell));
     check(rule, hatch.parameters);

@@ -4,7 +4,7 @@
 
 namespace lamella {
 
-// Quiet about presets: whoever prints them takes them from a strategy.
+// Texts omit default values; these are printed from a strategy.
 
 std::span<const StrategyField<ContourRule>> contour_fields() noexcept {
     static constexpr std::array<StrategyField<ContourRule>, 9> fields{

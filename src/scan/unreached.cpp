@@ -27,17 +27,17 @@ namespace {
 
 /// A corner of a ring.
 struct Corner {
-    double cross;   ///< of the sides before and after it
-    double dot;     ///< of these
-    double lengths; ///< their product
-    double after;   ///< the length of the side after it
+    double cross;   ///< cross product of the sides before and after it
+    double dot;     ///< dot product of these sides
+    double lengths; ///< product of their lengths
+    double after;   ///< length of the side after it
 
-    /// Whether it is sharper than the limit of mitres, 60 degrees.
+    /// Returns whether it is sharper than the limit of mitres, 60 degrees.
     [[nodiscard]] bool sharp() const noexcept { return cross > 0 && dot < -0.5 * lengths; }
-    /// Of half of the angle by which the ring turns.
+    /// Returns the tangent of half of the angle by which the ring turns.
     [[nodiscard]] double tangent() const noexcept { return cross / (lengths + dot); }
-    /// By how much more than a strip along both sides it adds when these are moved outwards by 1. A sharp one
-    /// is cut off: two corners of half as much.
+    /// Returns the area that it adds to the strips along both sides when these are offset outwards by 1. A
+    /// sharp corner is cut off: it adds the area of two corners of half the turn.
     [[nodiscard]] double grown() const noexcept {
         if (!sharp())
             return lengths + dot > 0 ? tangent() : 0;
@@ -63,8 +63,8 @@ void for_corners(std::span<const Point2> ring, const Visit& visit) {
     }
 }
 
-/// The area that rings bound when they are grown: as long as what is grown does not meet. It may meet near
-/// the ends of necks, by less than the square of the distance each.
+/// Returns the area inside of the rings after they are grown, provided that grown parts do not meet. They may
+/// meet near the ends of necks, by less than the square of the distance each.
 double grown_area(const Layer& layer, double by) {
     static_assert(OffsetCorners{}.mitre_limit == 2);
     double area = 0;
@@ -80,8 +80,8 @@ double grown_area(const Layer& layer, double by) {
     return area + by * length + by * by * corners;
 }
 
-/// What is out of reach in the tips of sharp corners, which a beam of some width always rounds off: those of
-/// 30 degrees and more.
+/// Returns the unreached area in the tips of sharp corners of 30 degrees and more, which a beam of finite
+/// width always rounds off.
 double tips_area(const Layer& layer, double by) {
     constexpr double sharpest = -0.8660254; // the cosine of 180 - 30 degrees
     double corners = 0;
@@ -93,7 +93,7 @@ double tips_area(const Layer& layer, double by) {
     return by * by * corners;
 }
 
-/// Whether each side of a layer's rings is a side of its inset, and no side of that is another's.
+/// Returns whether each side of a layer's rings corresponds to a side of its inset, and vice versa.
 bool side_by_side(const Layer& layer, const Layer& inset) noexcept {
     if (layer.rings != inset.rings || layer.offsets != inset.offsets)
         return false;
@@ -116,21 +116,21 @@ bool side_by_side(const Layer& layer, const Layer& inset) noexcept {
     return true;
 }
 
-/// Where a stroke is within reach of a line, from end to end: its outline is convex.
+/// The interval of a line within reach of a stroke; it is connected because the stroke's outline is convex.
 class Within {
   public:
     void add(double u) noexcept {
         from_ = std::min(from_, u);
         to_ = std::max(to_, u);
     }
-    /// Of a circle.
+    /// Adds the intersection with a circle.
     void add_circle(double u, double off, double radius) noexcept {
         if (const double squared = radius * radius - off * off; squared >= 0) {
             add(u - std::sqrt(squared));
             add(u + std::sqrt(squared));
         }
     }
-    /// Of the side from (u0, v0) to (u1, v1), on a line at v.
+    /// Adds the intersection with the side from (u0, v0) to (u1, v1), on a line at v.
     void add_side(double u0, double v0, double u1, double v1, double v) noexcept {
         if ((v0 <= v) != (v1 <= v))
             add(u0 + (v - v0) / (v1 - v0) * (u1 - u0));
@@ -161,12 +161,12 @@ double least_reach(std::span<const Stroke> strokes) noexcept {
     return least;
 }
 
-constexpr double next_to_nothing = 1.0 / 2; // of the square of a distance
+constexpr double next_to_nothing = 1.0 / 2; // negligible area, in squares of a distance
 
 } // namespace
 
 Layer narrow_points(const Layer& material, const Layer& inset, double by, const LayerLimits& limits) {
-    constexpr double more = 1 + 1e-3; // so that no slivers are left
+    constexpr double more = 1 + 1e-3; // so that no slivers remain
     if (!(by > 0) || material.rings == 0)
         return {};
     if (inset.rings == 0)
@@ -224,14 +224,14 @@ double unreached_area(const Layer& positions, std::span<const Stroke> strokes, c
     const double least = least_reach(strokes);
     if (!std::isfinite(least))
         return std::max(0.0, area);
-    // Aslant to what walls and hatches run along, mostly.
+    // Diagonal to the usual directions of walls and hatches.
     constexpr double angle = 27.18;
     constexpr double most_lines = 1 << 15;
     const double distance =
         std::max({least / 2, (box.width() + box.height()) / most_lines, box.largest_coordinate() * 0x1p-40});
     const HatchLines lines(positions, cos_sin_degrees(angle), distance, 0, budget);
     const LineFrame& frame = lines.frame();
-    Occupied occupied(positions); // most strokes are far from all of them
+    Occupied occupied(positions); // most strokes are far from all rings
     for (std::size_t i = 0; i < positions.rings; ++i)
         occupied.add(box_of(positions.contour(i)));
     std::vector<Reached> reached;
@@ -294,7 +294,8 @@ double unreached_area(const Layer& positions, std::span<const Stroke> strokes, c
 
 Layer bare_points(const Layer& positions, std::span<const Stroke> strokes, const LayerBudget& budget) {
     const double reach = least_reach(strokes);
-    const double accepted = std::isfinite(reach) ? reach * reach / 32 : 0; // many of them are not nothing
+    const double accepted =
+        std::isfinite(reach) ? reach * reach / 32 : 0; // many of them are not negligible together
     if (!(unreached_area(positions, strokes, budget) > accepted))
         return {};
     Occupied occupied(positions);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Material that no vector reaches: narrow places, and how much of them is left.
+// Material that no vector reaches: narrow areas, and the unreached part of them.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/layer_limits.hpp"
@@ -13,40 +13,40 @@
 
 namespace lamella {
 
-/// Of some material what is out of reach for its own inset, by `by` mm: where it is narrower than twice that.
-/// `inset`: as `offset` made it. Empty where that is next to nothing, which is found out without cutting
-/// anything. O(points) then.
+/// Returns the material that growing its inset by `by` mm does not reach: where it is narrower than twice
+/// that. `inset` is the result of `offset`. Returns an empty layer if the area is negligible; this is found
+/// without boolean operations, in O(points).
 [[nodiscard]] Layer narrow_points(const Layer& material, const Layer& inset, double by,
                                   const LayerLimits& limits = {});
 
-/// All of that for contours and a hatch, of material whose outline lies `depth` inside of that of the part.
-/// Besides, what is narrower than `surely_hatched`.
+/// Returns the same for contours and a hatch together, for material whose outline lies `depth` inside of the
+/// part's outline; also areas narrower than `surely_hatched`.
 [[nodiscard]] Layer narrow_points(const Layer& material, double depth, const ContourRule& contours,
                                   const HatchRule& hatch);
 
-/// How far beside contours, and lines along the middle of walls, material counts as reached; beside the lines
-/// of a hatch it is their distance.
+/// Returns the distance from contours, and from lines along the middle of walls, within which material counts
+/// as reached. For the lines of a hatch it is their distance.
 [[nodiscard]] double contour_reach(const ContourRule& rule) noexcept;
 
-/// A vector, and how far beside it material is reached.
+/// A vector and the distance from it within which material is reached.
 struct Stroke {
     Point2 from;
     Point2 to;
     double reach = 0;
 };
 
-/// Adds the vectors of a layer.
+/// Appends the vectors of a layer.
 void add_strokes(const Layer& vectors, double reach, std::vector<Stroke>& strokes);
 
-/// The area of these places that no stroke reaches, in mm^2: along lines half of the shortest reach
-/// apart; exact where nothing is reached, and where all is. O(points + lines), and for each stroke the lines
-/// that it comes near to.
+/// Returns the area of these rings that no stroke reaches, mm^2, measured along lines half of the shortest
+/// reach apart. Exact if nothing or everything is reached. O(points + lines), plus for each stroke the lines
+/// close to it.
 [[nodiscard]] double unreached_area(const Layer& positions, std::span<const Stroke> strokes,
                                     const LayerBudget& budget = {});
 
-/// Those of the places, each a body with its holes, of which strokes leave more bare than a 32nd of the
-/// square of the shortest reach; in normal form. Costs as `unreached_area`, and for each body a look at the
-/// strokes that come near to any.
+/// Returns the bodies, with their holes, of which strokes leave more bare than a 32nd of the square of the
+/// shortest reach; in normal form. Costs as much as `unreached_area`, plus for each body a pass over the
+/// strokes close to any.
 [[nodiscard]] Layer bare_points(const Layer& positions, std::span<const Stroke> strokes,
                                 const LayerBudget& budget = {});
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What scan vectors take.
+// Memory of scan vectors.
 
 #include "lamella/contour/layer.hpp"
 
@@ -8,7 +8,7 @@
 
 namespace lamella {
 
-/// A point of a vector, and the text that it becomes in a file.
+/// Memory of a point of a vector and of its text in a file.
 inline constexpr std::uint64_t bytes_of_vector_point = sizeof(Point2) + 40;
 
 [[nodiscard]] inline std::uint64_t vector_bytes(const Layer& vectors) noexcept {

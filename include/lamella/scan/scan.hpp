@@ -1,6 +1,6 @@
 #pragma once
 
-// From layers to scan vectors: what a powder-bed machine executes.
+// Generates scan vectors from layers: what a powder-bed machine executes.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
@@ -17,39 +17,38 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// A layer as `scan` takes it: without points of rings on the straight way between others, at which a beam
-/// need not stop. That is to 2^-36 of its extent, or to what the rounding of a file that it comes from
-/// explains: no ring is farther from what it was than 2 `moved_point`. Made once of each layer, which may be
-/// scanned and be a neighbour of others. O(points). Throws Error{limit} for coordinates beyond 1e150, and
-/// what `fill` throws.
+/// A layer prepared for `scan`: without collinear points of rings, at which a beam need not stop. The
+/// tolerance is 2^-36 of the layer's extent, or what the rounding of its file explains: no ring is farther
+/// from the original than 2 `moved_point`. Prepared once for each layer, which may be scanned and also be a
+/// neighbour of others. Throws Error{limit} for coordinates beyond 1e150, and the errors of `fill`.
+/// O(points).
 class ScanLayer {
   public:
     // NOLINTNEXTLINE(google-explicit-constructor): a layer is one, as a string is a view
     ScanLayer(const Layer& layer, const Rounding& rounding = {}, const LayerLimits& limits = {});
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
-    /// What the layer that was given lost: see `inverted_rings`, in a full search.
+    /// Returns the areas that the given layer lost: see `inverted_rings`, in a full search.
     [[nodiscard]] const InvertedRings& inverted() const noexcept { return inverted_; }
 
-    /// Shares the points of another one, if these are the same: then it takes no time to see that. Upright
-    /// walls are the same on many layers. O(points).
+    /// Shares the points of another layer if they are equal; later comparisons then take no time. Layers
+    /// along upright walls are often equal. O(points).
     void share_points(const ScanLayer& other);
 
   private:
-    InvertedRings inverted_; // found on the way to the layer
+    InvertedRings inverted_; // found while preparing the layer
     Layer layer_;
 };
 
-/// What layers of one part have in common: along upright walls many layers are the same, and the last one
-/// moved inwards is kept for those that follow. It changes nothing but the time that `scan` takes. For any
-/// number of threads.
+/// A cache for the layers of one part: along upright walls many layers are equal, and the last one, offset
+/// inwards, is kept for those that follow. It only changes the time that `scan` takes. Thread-safe.
 class InsetCache {
   public:
-    struct Insets; ///< the material of a layer, moved inwards by the distances of a strategy
+    struct Insets; ///< the material of a layer, offset inwards by the distances of a strategy
 
-    /// Those that `scan` kept last; none at first.
+    /// Returns the insets that `scan` kept last; none at first.
     [[nodiscard]] std::shared_ptr<const Insets> last() const;
-    /// Takes the place of those before. For `scan`.
+    /// Replaces the kept insets. Called by `scan`.
     void keep(std::shared_ptr<const Insets> insets);
 
   private:
@@ -57,39 +56,39 @@ class InsetCache {
     std::shared_ptr<const Insets> last_;
 };
 
-/// The vectors of one layer of a part, by a strategy: a layer for each of its `exposures`, with index and
-/// heights of that one. Those of contours have rings, in the order in which they are followed, each from the
-/// point where the beam begins; those of hatches have `hatches`, in their order, from first point to second
-/// point. They are not in normal form: order is part of the result.
+/// Returns the scan vectors of one layer of a part: one result layer for each of the strategy's `exposures`,
+/// with the index and heights of the layer. Contours are rings in scanning order, each from its start point.
+/// Hatches are `hatches` in scanning order, from first point to second point. The results are not in normal
+/// form, because their order matters.
 ///
-/// What is filled is the material of the layer as `offset` sees it (open chains are none), moved inwards: by
-/// the beam's offset for the outermost contour, by the distance for each of the others, by the border for
-/// hatches. A line on an edge is decided by the rule of the plane, in one dimension less: of a point on a
-/// line counts what is above it.
+/// The filled area is the material of the layer as `offset` defines it (open chains are ignored), offset
+/// inwards: by the beam's offset for the outermost contour, by the distance for each further one, by the
+/// border for hatches. Lines on edges follow the rule of slicing in one dimension less: for a point on a
+/// line, the side above it counts.
 ///
-/// `below` and `above`: the layers beneath and on top, the nearest one first, for skins; as many as the
-/// strategy asks for (`SkinRule::layers`), and fewer only where there are no more: where the part ends there
-/// is no material. So it is where heights leave a gap of more than 1e-6 mm between one layer and the next.
-/// Walls too thin for the outermost contour have lines along their middle, where the strategy says so: in the
-/// layer of that contour, as its `hatches`.
+/// `below` and `above` are the layers beneath and on top, the nearest one first, for skins. There must be as
+/// many as the strategy requires (`SkinRule::layers`); fewer mean that the part ends there, without further
+/// material. A gap of more than 1e-6 mm between the heights of consecutive layers also ends the part. If the
+/// strategy requests it, walls too thin for the outermost contour have lines along their middle, in the
+/// `hatches` of that contour's layer.
 ///
-/// `memory`, where given, is that of the part. `unreached`, where given, becomes for each exposure how many
-/// mm^2 of the material that it is for no vector reaches: what is narrow, and farther from contours and lines
-/// of `ThinWalls` than the beam's offset (than half the distance of contours, where that is more), and
-/// farther from the lines of hatches than their distance.
+/// `memory`, if given, is the cache of the part. `unreached`, if given, becomes for each exposure the area in
+/// mm^2 of its material that no vector reaches: narrow areas that are farther from contours and lines of
+/// `ThinWalls` than the beam's offset (or half the distance of contours, if that is more), and farther from
+/// hatch lines than their distance.
 ///
-/// The same bits on every machine, for any order of rings. O((n + v) log) for n points and v vectors, beside
-/// what offsets and, for skins, differences take. Throws Error{usage} as `check_strategy`, Error{limit}
-/// for more than 2^22 lines in one direction, 2^22 pieces of lines in stripes or islands or 2^21 of these,
-/// and for more vectors than `limits.memory` has room for, before memory is spent on them: each counts with
-/// what it becomes in a file. Throws Error{cancelled}, too.
+/// The result is the same on every machine, bit for bit, and for any order of rings. Throws Error{usage} as
+/// `check_strategy` does, and Error{limit} for more than 2^22 lines in one direction, 2^22 pieces of lines in
+/// stripes or islands, 2^21 of these, and for more vectors than `limits.memory` allows, before memory is
+/// allocated; each vector counts with its size in a file. Throws Error{cancelled}, too. O((n + v) log(n + v))
+/// for n points and v vectors, plus the time for offsets and, for skins, differences.
 [[nodiscard]] std::vector<Layer> scan(const ScanLayer& layer, std::span<const ScanLayer> below,
                                       std::span<const ScanLayer> above, const ScanStrategy& strategy,
                                       InsetCache* memory = nullptr, std::vector<double>* unreached = nullptr,
                                       const LayerLimits& limits = {});
 
-/// The same of a layer of a support: by the strategy's rule for these, a layer for each of its
-/// `support_exposures`.
+/// Does the same for a layer of a support part, by the strategy's rule for supports: one result layer for
+/// each of its `support_exposures`.
 [[nodiscard]] std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy,
                                               InsetCache* memory = nullptr,
                                               std::vector<double>* unreached = nullptr,

@@ -1,8 +1,7 @@
 #pragma once
 
-// All that a scan strategy consists of, described once: strategy files are read and written by these tables,
-// statistics tell the strategy by them, options that set the same take their words, and Python its
-// attributes.
+// Tables of all fields of a scan strategy. Strategy files are read and written by these tables; statistics,
+// the corresponding options and Python's attributes use them, too.
 
 #include "lamella/scan/strategy.hpp"
 
@@ -16,11 +15,11 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// One value of a struct of a strategy.
+/// One field of a struct of a strategy.
 template <class Rule>
 struct StrategyField {
     std::string_view name; ///< in files; that of the member
-    std::string_view unit; ///< such as "mm"; "" where there is none
+    std::string_view unit; ///< such as "mm"; empty if there is none
     std::string_view help;
     std::variant<double Rule::*, std::uint32_t Rule::*, std::uint64_t Rule::*, bool Rule::*,
                  HatchPattern Rule::*, IslandOrder Rule::*, StartPoint Rule::*, ContourOrder Rule::*,
@@ -28,16 +27,16 @@ struct StrategyField {
         member;
 };
 
-/// In the order in which files have them. Parameter sets are named where they are used, and have tables of
-/// their own; so have the hatches of skins.
+/// The fields in the order of strategy files. Parameter sets are named by the structs that use them and have
+/// tables of their own; so have the hatches of skins.
 [[nodiscard]] std::span<const StrategyField<ContourRule>> contour_fields() noexcept;
 [[nodiscard]] std::span<const StrategyField<HatchRule>> hatch_fields() noexcept;
 [[nodiscard]] std::span<const StrategyField<SkinRule>> skin_fields() noexcept;
 [[nodiscard]] std::span<const StrategyField<ParameterSet>> parameter_fields() noexcept;
-/// What belongs to none of these.
+/// Returns the fields that belong to none of these structs.
 [[nodiscard]] std::span<const StrategyField<ScanStrategy>> strategy_fields() noexcept;
 
-/// All values of a type, and what they are called.
+/// All values of a type, and their names.
 template <class Choice>
 struct NamedValues {
     std::span<const Choice> values;
