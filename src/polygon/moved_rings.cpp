@@ -18,7 +18,7 @@ namespace lamella {
 
 namespace {
 
-// How a moved ring is built, and why it bounds the material.
+// Construction of a moved ring, and the proof that it bounds the material.
 //
 // Strips and wedges. Every side sweeps a strip between its old and its moved location. Every corner at which
 // two strips part sweeps a wedge between them. Growing adds all strips and wedges to the material; shrinking
