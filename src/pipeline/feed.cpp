@@ -33,7 +33,7 @@ namespace {
 constexpr std::uint64_t passes = 3;
 constexpr std::uint64_t record_bytes = 50; // of a binary STL file
 
-/// The first wish that needs the whole mesh in memory, as the program names it; "" if there is none.
+/// Returns the first option that needs the whole mesh in memory, as messages name it; "" if there is none.
 std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& engine) {
     if (engine.welds)
         return fmt::format("the engine {}", engine.name);
@@ -52,8 +52,8 @@ std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& en
     return {};
 }
 
-/// The part of n triangles that a process reads: whole pieces of a fold, so that sums have the bits that one
-/// process finds.
+/// Returns the records out of n that a process reads. They are whole chunks of a fold, so that sums have the
+/// same bits as in a single process.
 RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes) {
     const std::uint64_t chunks = (n + fold_chunk - 1) / fold_chunk;
     const auto bound = [&](std::size_t p) {
@@ -62,8 +62,8 @@ RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes)
     return {bound(process), bound(process + 1)};
 }
 
-/// The triangles of those batches of a file that planes cut, in few ranges: what lies between two that are
-/// close to one another is read with them.
+/// Returns the records of the chunks that any of the planes cut, in few ranges: chunks between two close ones
+/// are read with them.
 std::vector<RecordRange> records_on(PlaneRange planes, std::span<const PlaneRange> cuts,
                                     std::uint64_t records) {
     constexpr std::uint64_t close = 4 * fold_chunk;
@@ -87,7 +87,7 @@ std::optional<std::uint32_t> neighbours_of(const FileJob& job) {
     return job.scan->downskin.layers + job.scan->upskin.layers;
 }
 
-/// The most points on so many planes one above the other.
+/// Returns the largest number of points on any `planes` consecutive planes.
 std::uint64_t most_points(const RangeSurvey& survey, std::uint32_t planes) {
     std::uint64_t most = 0;
     std::uint64_t points = 0;
@@ -100,15 +100,16 @@ std::uint64_t most_points(const RangeSurvey& survey, std::uint32_t planes) {
     return most;
 }
 
-/// What a process saw of a file.
+/// Properties of the part of a file that a process read.
 struct Seen {
     Box3 box;
     std::uint64_t unusable = 0;
-    std::uint64_t first_unusable = 0; ///< where there is any
-    Point3f first_corner;             ///< where there is any
+    std::uint64_t first_unusable = 0; ///< set if `unusable` > 0
+    Point3f first_corner;             ///< set if there is any triangle
 };
 
-/// Of files that cannot be sliced in pieces; the last of them has been read just now.
+/// Throws if meshes that cannot be sliced in ranges exceed the memory limit. Called after each file, which is
+/// the last of `files`.
 void check_size(const std::string& path, std::span<const MeshFile> files, const JobMemory& memory,
                 unsigned threads) {
     std::vector<const Mesh*> meshes;
@@ -148,7 +149,7 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
                     "standard input reaches one of the processes only; give the name of a file");
     const unsigned threads = thread_count(execution);
     std::vector<MeshInput> inputs;
-    std::uint64_t room = memory_.of_input(threads); // for all texts together: they wait to be read
+    std::uint64_t room = memory_.of_input(threads); // for all texts, which stay in memory until they are read
     std::uint64_t bytes = 0;
     std::string not_streamed;
     bool divisible = true;
@@ -166,7 +167,7 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
         if (bytes != 0)
             bytes += memory_.besides_meshes(threads);
     });
-    // Machines differ in memory, but all processes have to go the same way.
+    // Machines may differ in memory, but all processes must take the same decision.
     std::uint64_t too_large = bytes > memory_.limit ? 1 : 0;
     processes.sum(std::span(&too_large, 1));
 
@@ -201,7 +202,7 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
     const unsigned threads = thread_count(execution);
     std::vector<MeshFile> meshes;
     for (MeshInput& file : inputs) {
-        const MeshInput input = std::move(file); // a text is let go of once it is read
+        const MeshInput input = std::move(file); // frees a text once it is read
         const bool stl = input.can_stream();
         meshes.push_back(input.read(reading_, execution));
         if (memory_.asked && !stl)
@@ -243,7 +244,7 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
         for (const std::string& message : among_->gather(compressed)) {
             Unpacker from(message);
             const Seen seen{from.get<Box3>(), from.get<std::uint64_t>(), from.get<std::uint64_t>(),
-                            from.get<Point3f>()}; // in the order in which they were put
+                            from.get<Point3f>()}; // in the order of put()
             if (seen.unusable > 0)
                 first_unusable = std::min(first_unusable, seen.first_unusable);
             unusable += seen.unusable;
@@ -252,7 +253,7 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
             box.add(seen.box);
         }
         file.triangles = read.stored_triangles - unusable;
-        if (file.part) { // of which the process has seen its own share
+        if (file.part) { // the process has checked only its own part
             Remarks remarks(file.input.path(), reading_.strict);
             judge_nonfinite(unusable, first_unusable, read.stored_triangles, remarks);
             for (std::string& remark : remarks.take())
@@ -275,7 +276,7 @@ std::uint64_t Feed::bytes_of(const File& file, const std::optional<RecordRange>&
     return part ? record_bytes * (part->end - part->begin) : file.input.bytes();
 }
 
-/// All passes are one as progress is told.
+/// Streams a file. Progress reports the three passes as one.
 MeshFile Feed::stream(const File& file, const TriangleSink& sink, const Execution& execution,
                       const std::optional<RecordRange>& part) {
     const Stopwatch reading;
@@ -330,7 +331,7 @@ PlaneCounts Feed::counts_of_parts(std::size_t planes) const {
 void Feed::count_streams(const Plan& plan, const Execution& execution) {
     const std::size_t shapes = plate_.shapes.size();
     begin_near_faces(plan);
-    std::deque<PlaneCounter> counters; // that stay where they are
+    std::deque<PlaneCounter> counters; // a deque, since counters cannot move
     std::deque<VolumeSum> volumes;
     for (std::size_t shape = 0; shape < shapes; ++shape) {
         counters.emplace_back(plan);
@@ -447,8 +448,8 @@ std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange
     return ranges_;
 }
 
-/// Whether it is to read parts of the files for each share, against writing down what there is for all of
-/// them and reading that. Not known before the triangles were counted.
+/// True if reading the records of all ranges again takes less time than storing all triangles once: if they
+/// are at most twice those of the files. Known only after `count`.
 bool Feed::is_cheap_to_read_again() const {
     constexpr std::uint64_t times_the_files = 2;
     if (ranges_.size() <= 1)
@@ -475,7 +476,7 @@ std::vector<PlaneRange> Feed::ranges_of(const Plan& plan, PlaneRange mine, unsig
         .placed = std::any_of(plate_.shapes.begin(), plate_.shapes.end(),
                               [](const PlateShape& shape) { return shape.mesh.soup()->has_placement(); }),
         .points_in_flight = memory_.points_in_flight(threads)};
-    if (plate_.parts.size() > 1 || neighbours_) // then all layers of a share are held
+    if (plate_.parts.size() > 1 || neighbours_) // all layers of a range are held
         needed.points_in_flight = ~std::uint64_t{0};
     std::uint64_t overhead =
         JobMemory::overhead(threads, plan.layers.size(), plate_.shapes.size(), measure_volume_) +
@@ -512,7 +513,7 @@ std::vector<PlaneRange> Feed::ranges_of(const Plan& plan, PlaneRange mine, unsig
     return ranges;
 }
 
-/// The third pass, where this process reads all of the files, as far as these planes cut them.
+/// The third pass, if this process reads all files: reads the chunks that these planes cut.
 void Feed::bring_own(PlaneRange planes, RangeStore& store, const Execution& execution) {
     for (const File& file : files_) {
         std::atomic<bool> fits{true};
@@ -537,8 +538,8 @@ void Feed::bring_own(PlaneRange planes, RangeStore& store, const Execution& exec
         throw changed_while_read(path_of(*shape));
 }
 
-/// The third pass, where each process reads a part: in rounds, so that triangles on their way take little
-/// memory.
+/// The third pass, if each process reads a part. It reads a bounded number of triangles between exchanges, so
+/// that triangles in transit take little memory.
 void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, const Execution& execution) {
     using Outgoing = std::vector<std::vector<Triangle3f>>; // by process
     const RangeFinder finder(plan, division);
@@ -590,7 +591,7 @@ void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, cons
     });
 }
 
-/// What the other processes have for this one, and what it keeps of its own.
+/// Sends triangles to the other processes. Returns those that they send, and the ones kept here.
 TriangleSoup Feed::exchanged(std::span<const std::vector<Triangle3f>> outgoing) {
     std::vector<std::uint64_t> sizes;
     std::vector<std::span<const std::byte>> out;
@@ -599,7 +600,7 @@ TriangleSoup Feed::exchanged(std::span<const std::vector<Triangle3f>> outgoing) 
         out.push_back(std::as_bytes(std::span(triangles)));
         figures_.bytes_sent += out.back().size();
     }
-    figures_.bytes_sent -= out[among_->process()].size(); // that stays here
+    figures_.bytes_sent -= out[among_->process()].size(); // not sent
     const std::vector<std::uint64_t> coming = among_->exchange(sizes);
     std::uint64_t total = 0;
     for (const std::uint64_t count : coming)
@@ -642,7 +643,7 @@ Plate Feed::take(std::size_t range, const Execution& execution) {
         return plate;
     }
     RangeStore store(*plan_, std::span(&ranges_[range], 1), counts_);
-    Execution silent = execution; // that reading has come to its end was told
+    Execution silent = execution; // the end of reading has already been reported
     silent.progress = nullptr;
     bring_own(ranges_[range], store, silent);
     take_from(store, 0);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The triangles of a job on their way to be sliced.
+// Supplies the triangles of a job to the slicer.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/pipeline/plate.hpp"
@@ -25,46 +25,47 @@
 
 namespace lamella {
 
-/// A plate whose meshes are in memory; or one whose triangles stay in their files and stream by, in three
+/// A plate whose meshes are in memory, or one whose triangles stay in their files and are streamed in three
 /// passes:
 ///
-///     open     what the files hold and where it lies
-///     count    how many triangles each plane of the plan cuts
-///     bring    the triangles to where they wait for the planes that cut them
+///     open     the files, and measure their extent
+///     count    the triangles that each plane of the plan cuts
+///     bring    the triangles to a store, where they wait for the planes that cut them
 ///
-/// To read a file again is faster than to write its triangles down, and takes no room. So where triangles lie
-/// in the file near those that the same planes cut, nothing waits: each share is read when it is taken. Where
-/// several processes slice the job and the files can be divided, each reads its part of every file, and they
-/// talk after each pass; so all of them make one Feed of the same job, and call its functions in the same
-/// order.
+/// Re-reading a file is faster than storing its triangles, and takes no disk space. So if the triangles of
+/// each range of planes are contiguous enough in the file, nothing is stored, and each range is read when it
+/// is taken. If several processes slice the job and the files can be divided, each process reads its part of
+/// every file, and they communicate after each pass. So all processes must make one Feed of the same job, and
+/// call its functions in the same order.
 class Feed {
   public:
-    /// Reads the files of the job, or looks at them: where they do not fit its memory, and where several
-    /// processes can divide them. Throws what load_plate throws, and Error{limit} where the memory does not
-    /// do either.
+    /// Reads the files of the job. Only measures them if they do not fit into its memory, or if several
+    /// processes can divide them. Throws the errors of load_plate, and Error{limit} if ranges of planes do
+    /// not fit into memory either.
     Feed(const FileJob& job, const Engine& engine, Communicator& processes, const Execution& execution);
-    /// Of a plate that is in memory already.
+    /// Takes a plate that is already in memory.
     Feed(const FileJob& job, Plate plate, Communicator& processes);
 
-    /// Files, parts and boxes; meshes only where they are in memory.
+    /// Files, parts and boxes; meshes only if they are in memory.
     [[nodiscard]] const Plate& plate() const noexcept { return plate_; }
-    /// Its meshes, to be prepared; null where they stay in their files.
+    /// Returns the plate, to prepare its meshes; nullptr if they stay in their files.
     [[nodiscard]] Plate* meshes() noexcept { return files_.empty() ? &plate_ : nullptr; }
-    /// Whether the memory of the job was too small for the meshes.
+    /// True if the memory of the job is too small for the meshes.
     [[nodiscard]] bool in_ranges() const noexcept { return in_ranges_; }
 
-    /// Usable triangles of a shape, all processes together.
+    /// Number of usable triangles of a shape, over all processes.
     [[nodiscard]] std::uint64_t triangles(std::size_t shape) const;
 
-    /// Counts the triangles of all parts on the planes, all processes together.
+    /// Counts the triangles of all parts on the planes, over all processes.
     [[nodiscard]] PlaneCounts count(const Plan& plan, const Execution& execution);
-    /// Signed volume of all parts; after `count`, where the job has layer statistics and the triangles stay
-    /// in their files.
+    /// Signed volume of all parts. Requires layer statistics, triangles that stay in their files, and a call
+    /// of `count`.
     [[nodiscard]] double volume_mm3() const noexcept { return volume_mm3_; }
 
-    /// Level faces of the parts of a file that lie within rounding of a plane, all processes together; by
-    /// ascending planes. Where the triangles stay in their files, after `count` of the same plan; else after
-    /// `begin_near_faces`, and once each triangle of all shapes was shown, from any thread.
+    /// Level faces of the parts of a file that lie within rounding of a plane, over all processes, in
+    /// ascending planes. If the triangles stay in their files, requires a call of `count` with the same plan;
+    /// otherwise a call of `begin_near_faces`, and of `show_near_faces` for each triangle of all shapes, from
+    /// any thread.
     struct NearPlane {
         std::size_t file = 0;
         std::uint32_t plane = 0;
@@ -75,34 +76,35 @@ class Feed {
     void show_near_faces(std::size_t shape, const Mesh& mesh, std::uint64_t begin, std::uint64_t end) {
         near_[shape].add(mesh, begin, end);
     }
-    /// Whether there can be any, so that it is worth to show triangles.
+    /// False if there can be no near faces, so that `show_near_faces` need not be called.
     [[nodiscard]] bool may_have_near_faces() const;
     [[nodiscard]] std::vector<NearPlane> near_faces() const;
 
-    /// After `count` of the same plan. `division`: the planes that each process slices. Divides those of this
-    /// process into shares that fit its memory, and has their triangles wait, unless they are read when they
-    /// are taken. Throws Error{limit} where a layer does not fit by itself.
+    /// Divides the planes of this process into ranges that fit its memory, and stores their triangles unless
+    /// `take` reads them from the files. `division` lists the planes of each process. Requires a call of
+    /// `count` with the same plan. Throws Error{limit} if a single layer does not fit.
     [[nodiscard]] std::vector<PlaneRange> bring(const Plan& plan, std::span<const PlaneRange> division,
                                                 const Execution& execution);
 
-    /// A plate with the triangles of a share, by its position in what `bring` returned. Each once.
+    /// Returns a plate with the triangles of a range; `range` is an index into the result of `bring`. Each
+    /// range can be taken once.
     [[nodiscard]] Plate take(std::size_t range, const Execution& execution);
 
     [[nodiscard]] const JobMemory& memory() const noexcept { return memory_; }
 
-    /// Seconds of reading, and what went from process to process.
+    /// Returns the seconds of reading, and the amounts sent between processes.
     [[nodiscard]] const ProcessFigures& figures() const noexcept { return figures_; }
 
   private:
     struct File {
         MeshInput input;
-        std::optional<std::uint64_t> records; ///< of a binary file, as it was when it was first looked at
-        std::optional<RecordRange> part;      ///< of this process; unset: all of it
-        std::vector<std::size_t> shapes;      ///< of the plate, that are made of it
-        std::uint64_t triangles = 0;          ///< usable ones, of all processes
+        std::optional<std::uint64_t> records; ///< number of records of a binary file, when it was opened
+        std::optional<RecordRange> part;      ///< read by this process; unset: the whole file
+        std::vector<std::size_t> shapes;      ///< of the plate that are made from it
+        std::uint64_t triangles = 0;          ///< number of usable ones, over all processes
         Point3f first_corner;                 ///< as stored
-        /// By batch of a binary file that one process reads: from the first plane that cuts any triangle of
-        /// it to the last one. Empty for other files.
+        /// For each chunk of a binary file that one process reads: the range of planes that cut its
+        /// triangles. Empty for other files.
         std::vector<PlaneRange> cuts;
     };
 
@@ -127,21 +129,22 @@ class Feed {
 
     JobMemory memory_;
     Communicator& processes_;
-    Communicator* among_; ///< those that divide the files: this process alone, where each reads all of them
+    Communicator*
+        among_; ///< the processes that divide the files; this process alone if each reads all of them
     MeshReadOptions reading_;
     bool measure_volume_;
-    std::optional<std::uint32_t> neighbours_; ///< of each plane that is scanned; unset: none is
+    std::optional<std::uint32_t> neighbours_; ///< of each plane that is scanned; unset: none is scanned
     bool in_ranges_ = false;
     Plate plate_;
-    std::vector<File> files_; ///< where triangles stay in them
+    std::vector<File> files_; ///< if the triangles stay in them
     std::uint64_t bytes_to_read_ = 0;
     std::uint64_t bytes_read_ = 0;
-    std::vector<PlaneCounts> counts_; ///< by shape, of all processes
+    std::vector<PlaneCounts> counts_; ///< by shape, over all processes
     std::deque<NearFaceFinder> near_; ///< by shape
     double volume_mm3_ = 0;
     std::vector<PlaneRange> ranges_;
-    std::optional<RangeStore> store_; ///< of all shares; or
-    std::optional<Plan> plan_;        ///< by which each is read when it is taken
+    std::optional<RangeStore> store_; ///< holds the triangles of all ranges; or
+    std::optional<Plan> plan_;        ///< selects the triangles of a range when it is taken
     ProcessFigures figures_;
 };
 

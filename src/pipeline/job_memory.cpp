@@ -9,14 +9,14 @@ namespace lamella {
 
 namespace {
 
-/// A point in flight and the text it becomes.
+/// A point in flight and its text.
 constexpr std::uint64_t bytes_per_point = 56;
 
 constexpr std::uint64_t binary_record = 50;
-/// The text of a facet that says no more than it must.
+/// The shortest text of a facet.
 constexpr std::uint64_t least_facet = 100;
 
-/// What one triangle of a mesh in memory takes at most, its record or text not counted.
+/// Upper bound on the memory of one triangle of a mesh, without its record or text.
 std::uint64_t triangle_bytes(bool placed, unsigned threads) {
     const RangeNeeds one{.triangles = 1, .edges = 3, .points = 0, .most_points = 0};
     return RangeMemory{.threads = threads, .placed = placed, .points_in_flight = 0}.bytes(one) -
@@ -36,7 +36,7 @@ std::uint64_t JobMemory::overhead(unsigned threads, std::uint64_t planes, std::s
     constexpr std::uint64_t program = std::uint64_t{20} << 20;
     constexpr std::uint64_t thread = std::uint64_t{12} << 20;
     constexpr std::uint64_t of_statistics = 1400; // a record, its JSON and the text of that
-    // Triangles are counted by each thread, and the counts added up.
+    // Each thread counts triangles, and their counts are added up.
     const std::uint64_t further_shape = 24 * (threads + std::uint64_t{1}) + 56;
     const std::uint64_t plane = 500 + further_shape * (shapes - 1) + (statistics ? of_statistics : 0);
     return program + thread * threads + plane * planes;
@@ -48,8 +48,8 @@ std::uint64_t JobMemory::of_messages(std::size_t processes) const noexcept {
 
 std::uint64_t JobMemory::triangles_in_a_round(std::size_t processes) const noexcept {
     constexpr std::uint64_t fewest = 1 << 12;
-    constexpr std::uint64_t most = 1 << 20; // more makes messages no faster
-    // They are there twice: outgoing and incoming.
+    constexpr std::uint64_t most = 1 << 20; // larger messages are no faster
+    // Each triangle is held twice: outgoing and incoming.
     return std::clamp(limit / 8 / (2 * sizeof(Triangle3f)) / processes, fewest, most);
 }
 
@@ -84,7 +84,7 @@ std::uint64_t JobMemory::of_whole(const MeshInput& file, bool placed, unsigned t
     const std::uint64_t each = triangle_bytes(placed, threads);
     if (const auto records = file.records())
         return *records * (binary_record + each);
-    // A text is read into pieces, and those are put together.
+    // A text is read into chunks, which are then joined.
     const std::uint64_t facets = file.bytes() / least_facet;
     return std::max(file.bytes() + facets * 2 * sizeof(Triangle3f), facets * (sizeof(Triangle3f) + each));
 }

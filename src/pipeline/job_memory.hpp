@@ -1,6 +1,6 @@
 #pragma once
 
-// How much memory a job may take, and what it takes of it besides its meshes.
+// Memory that a job may take, and estimates of what it takes.
 
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/pipeline/slice_file.hpp"
@@ -14,44 +14,45 @@
 namespace lamella {
 
 struct JobMemory {
-    std::uint64_t limit = 0; ///< bytes
-    bool asked = false;      ///< by the job; else it is three quarters of what is there
+    std::uint64_t limit = 0; ///< in bytes
+    bool asked = false; ///< true if the job sets it; otherwise it is three quarters of the available memory
 
     explicit JobMemory(const FileJob& job);
 
-    /// What notes about planes may take: without a limit that was asked for, no more than a gigabyte, as
-    /// a layer height that is a thousand times too small asks for more.
+    /// Upper bound on the notes about planes. Without a bound set by the job it is at most a gigabyte, since
+    /// a layer height in the wrong unit asks for far more.
     [[nodiscard]] std::uint64_t of_planes() const noexcept {
         return asked ? limit : std::min(limit, std::uint64_t{1} << 30);
     }
 
-    /// How many points may be on their way through the sink: as many as slice_to has on its own, or fewer so
-    /// that they and what is made of them take no more than a quarter of the limit.
+    /// Upper bound on the points on their way through the sink: that of slice_to, or less so that they and
+    /// the data made of them take at most a quarter of the limit.
     [[nodiscard]] std::uint64_t points_in_flight(unsigned threads) const noexcept;
 
-    /// What the program, its threads and its notes about each plane take; on a plate, there are some for each
-    /// shape. `statistics`: of layers.
+    /// Memory of the program, its threads and its notes about each plane. A plate has some notes for each
+    /// shape. `statistics` adds those of layer statistics.
     [[nodiscard]] static std::uint64_t overhead(unsigned threads, std::uint64_t planes,
                                                 std::size_t shapes = 1, bool statistics = false) noexcept;
 
-    /// What goes from process to process, and what a process of several keeps of its output until all write.
+    /// Memory of triangles in transit between processes, and of the output that a process keeps until all
+    /// write.
     [[nodiscard]] std::uint64_t of_messages(std::size_t processes) const noexcept;
-    /// How many triangles each of several processes reads before they exchange them: so many that those on
-    /// their way take no more than half of `of_messages`, also where all go to one process.
+    /// Number of triangles that each of several processes reads between two exchanges. Those in transit take
+    /// at most half of `of_messages`, even if all go to one process.
     [[nodiscard]] std::uint64_t triangles_in_a_round(std::size_t processes) const noexcept;
-    /// Bytes of the output that a process of several keeps in memory: half of `of_messages`.
+    /// Bytes of the output that each of several processes keeps in memory: half of `of_messages`.
     [[nodiscard]] std::uint64_t of_output() const noexcept;
 
-    /// How many bytes of standard input to keep in memory: no more than could be sliced there.
+    /// Bytes of standard input that are kept in memory: at most as many as could be sliced there.
     [[nodiscard]] std::uint64_t of_input(unsigned threads) const noexcept;
 
-    /// What slicing meshes in memory, one after the other, takes at most, all else included.
+    /// Upper bound on the memory for slicing meshes in memory one after the other, everything included.
     [[nodiscard]] std::uint64_t of_meshes(std::span<const Mesh* const> meshes,
                                           unsigned threads) const noexcept;
 
-    /// What slicing takes whatever the meshes: `overhead`, and points on their way.
+    /// Memory for slicing that does not depend on the meshes: `overhead`, and points in flight.
     [[nodiscard]] std::uint64_t besides_meshes(unsigned threads) const noexcept;
-    /// What an STL file that is sliced whole takes at most, besides.
+    /// Upper bound on the memory for an STL file that is sliced as a whole, without `besides_meshes`.
     [[nodiscard]] std::uint64_t of_whole(const MeshInput& file, bool placed, unsigned threads) const;
 };
 

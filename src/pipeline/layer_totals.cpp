@@ -46,7 +46,7 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
         changes_[position] = changes;
     if (bodies.empty())
         bodies = parts;
-    std::vector<OpenGaps> gaps; // of each body, where there are any
+    std::vector<OpenGaps> gaps; // of each body, if there are any
     for (std::size_t i = 0; i < bodies.size(); ++i)
         if (bodies[i].open_chains() > 0) {
             gaps.resize(bodies.size());
@@ -90,10 +90,10 @@ void LayerTotals::add(std::uint64_t index, const PlaneVectors& vectors) {
     add_doubts(position, {}, vectors.inverted, vectors.unreached_mm2);
 }
 
-/// Of the bodies on a plane, the parts first; where there are none of a kind, no body has any.
+/// Adds the doubts about the bodies on a plane, the parts first. An empty span means that no body has any.
 void LayerTotals::add_doubts(std::size_t plane, std::span<const OpenGaps> gaps,
                              std::span<const InvertedRings> inverted, std::span<const double> unreached_mm2) {
-    std::vector<Doubt> found; // of one file each
+    std::vector<Doubt> found; // one for each file
     for (std::size_t i = 0; i < files_.size(); ++i) {
         const bool open = i < gaps.size() && gaps[i].count > 0;
         const bool turned = i < inverted.size() && inverted[i].rings > 0;
@@ -176,7 +176,7 @@ void LayerTotals::gather(Communicator& processes) {
         append(changes_, from.get_all<LayerChanges>());
         append(vectors_, from.get_all<ScanFigures>());
         append(doubts_, from.get_all<Doubt>());
-        while (!from.empty()) // in the order in which they were put
+        while (!from.empty()) // in the order of put()
             statistics_.push_back({.index = from.get<std::uint64_t>(),
                                    .z = from.get<double>(),
                                    .thickness = from.get<double>(),
@@ -191,7 +191,7 @@ void LayerTotals::gather(Communicator& processes) {
     }
 }
 
-/// In the order of the planes, so that sums have the same bits whoever came first.
+/// Adds doubts in the order of the planes, so that sums have the same bits whichever thread came first.
 void LayerTotals::store_doubts(FileResult& result) const {
     result.doubts.assign(*std::max_element(files_.begin(), files_.end()) + std::size_t{1},
                          MeshDoubts{.layers = rows_.size()});
@@ -213,7 +213,7 @@ void LayerTotals::store_doubts(FileResult& result) const {
     for (std::size_t begin = 0, end = 0; begin < parts_.size(); begin = end) {
         while (end < parts_.size() && files_[end] == files_[begin])
             ++end;
-        // Where all parts of the file have something it goes without saying.
+        // Labels are omitted if all parts of the file are affected.
         const auto labels = [&](std::atomic<std::uint64_t> Counts::*count) {
             std::vector<std::string> found;
             for (std::size_t i = begin; i < end; ++i)

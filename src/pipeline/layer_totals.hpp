@@ -1,6 +1,6 @@
 #pragma once
 
-// What is gathered about layers on their way to the output.
+// Gathers figures of layers on their way to the output.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/pipeline/processes.hpp"
@@ -17,32 +17,33 @@
 
 namespace lamella {
 
-/// Has a row for each plane, and sums of rows are made at the end in their order: so threads, shares and
-/// processes give the same figures, bit for bit.
+/// Has a row for each plane, and adds the rows in their order at the end. So any number of threads, ranges
+/// and processes gives the same figures, bit for bit.
 class LayerTotals {
   public:
-    /// Of the planes that this process slices; none, perhaps. `supports`: for each part whether it is one;
-    /// `files`: of each part the number of its file, ascending, then of other bodies; where empty, all are of
-    /// the first.
+    /// `planes` are those of this process, possibly none. `supports` is true for each part that is a support.
+    /// `files` has the index of the file of each part, ascending, and then of each other body; if it is
+    /// empty, all belong to the first file.
     LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, const std::vector<bool>& supports,
                 std::vector<std::uint32_t> files = {});
 
-    /// The layers of all parts on one plane, as they are written, and what was done to them; `inverted`: the
-    /// inverted rings of each body, where these are known by now. `bodies`: what is looked at for doubts
-    /// about the mesh where it is not the parts: they and negative volumes before these were subtracted. From
-    /// any thread, once for each plane.
+    /// Adds the layers of all parts on one plane, as they are written, with the gaps closed and the changes
+    /// made in them. `inverted` has the inverted rings of each body, if they are already known. `bodies` are
+    /// examined for doubts about the mesh instead of the parts: parts and negative volumes before these are
+    /// subtracted. May be called from any thread, once for each plane.
     void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes,
              std::span<const InvertedRings> inverted = {}, std::span<const Layer> bodies = {});
-    /// Of the scan vectors of a plane, and what has none. From any thread, once for each plane.
+    /// Adds the figures of the scan vectors of a plane, and the material without vectors. May be called from
+    /// any thread, once for each plane.
     void add(std::uint64_t index, const PlaneVectors& vectors);
 
-    /// Points of the layers that were added.
+    /// Number of points of the layers that were added.
     [[nodiscard]] std::uint64_t points() const noexcept;
 
-    /// From here on, the rows of all processes, on each of them.
+    /// Collects the rows of all processes on each of them. Call it once, after all layers were added.
     void gather(Communicator& processes);
 
-    /// Counts, sums and rows.
+    /// Stores counts, sums and rows.
     void store_in(FileResult& result) const;
 
   private:
@@ -52,11 +53,11 @@ class LayerTotals {
         double thickness = 0;
         std::uint64_t scan_hash = 0;
     };
-    /// What a plane tells about the mesh of a file.
+    /// A sign of a defect in the mesh of a file, found on a plane.
     struct Doubt {
         std::uint32_t file = 0;
-        std::uint32_t unused = 0; ///< fills the gap: between processes nothing uninitialised is sent
-        std::uint64_t plane = 0;  ///< its index
+        std::uint32_t unused = 0; ///< padding; no uninitialised bytes are sent between processes
+        std::uint64_t plane = 0;  ///< index of the plane
         OpenGaps open_gaps;
         InvertedRings inverted;
         double unreached_mm2 = 0; ///< see PlaneVectors
@@ -72,17 +73,17 @@ class LayerTotals {
                     std::span<const InvertedRings> inverted, std::span<const double> unreached_mm2 = {});
     void store_doubts(FileResult& result) const;
 
-    // Of each plane. There may be millions, and memory is touched for what the job asks of them only.
+    // One entry for each plane. There may be millions, so vectors that the job does not need stay empty.
     std::vector<Row> rows_;
-    std::vector<FileResult::Gaps> closed_;    ///< where gaps are closed
-    std::vector<LayerChanges> changes_;       ///< where there are steps
-    std::vector<LayerStatistics> statistics_; ///< where layers have statistics
-    std::vector<ExposureResult> exposures_;   ///< where there are scan vectors; without figures
-    std::vector<ScanFigures> vectors_;        ///< then of each plane: of each exposure
+    std::vector<FileResult::Gaps> closed_;    ///< if gaps are closed
+    std::vector<LayerChanges> changes_;       ///< if there are steps
+    std::vector<LayerStatistics> statistics_; ///< if layers have statistics
+    std::vector<ExposureResult> exposures_;   ///< if there are scan vectors; without figures
+    std::vector<ScanFigures> vectors_;        ///< the figures of each exposure, plane by plane
     std::vector<Counts> parts_;
     std::vector<std::uint32_t> files_; ///< of each body
     std::mutex mutex_;
-    std::vector<Doubt> doubts_; ///< of planes that tell something, in any order
+    std::vector<Doubt> doubts_; ///< in any order
     bool has_changes_;
 };
 

@@ -18,7 +18,7 @@ namespace lamella {
 
 namespace {
 
-/// The layers of one part on several planes.
+/// Returns the layers of one part on several planes.
 std::vector<ScanLayer> layers_of(std::size_t part, const std::vector<std::span<const ScanLayer>>& planes) {
     std::vector<ScanLayer> layers;
     layers.reserve(planes.size());

@@ -1,6 +1,6 @@
 #pragma once
 
-// One plane of a plate and its neighbours become scan vectors.
+// Computes the scan vectors of one plane of a plate from its layers and their neighbours.
 
 #include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
@@ -15,30 +15,31 @@
 
 namespace lamella {
 
-/// The layers of all parts on a plane, and on those beneath it and on top, the nearest one first.
+/// The layers of all parts on a plane, on the planes below and on those above; the nearest plane is first.
 struct PlaneLayers {
-    std::uint32_t plane = 0; ///< its number among those that are scanned
+    std::uint32_t plane = 0; ///< number of the plane among those that are scanned
     std::span<const ScanLayer> parts = {};
     std::vector<std::span<const ScanLayer>> below = {};
     std::vector<std::span<const ScanLayer>> above = {};
 };
 
 struct PlaneVectors {
-    std::vector<Layer> layers;        ///< of each part each exposure
-    std::vector<ScanFigures> figures; ///< of each of `plane_exposures`
-    /// Area of each part that no vector reaches; 0 where the strategy accepts it.
+    std::vector<Layer> layers;        ///< the exposures of each part, part by part
+    std::vector<ScanFigures> figures; ///< one for each of `plane_exposures`
+    /// Area of each part that no vector reaches; 0 if the strategy accepts it.
     std::vector<double> unreached_mm2;
-    std::vector<InvertedRings> inverted; ///< of each part, which have no vectors either
+    std::vector<InvertedRings> inverted; ///< those of each part; no vectors are made of them
     std::uint64_t hash = 0;              ///< of `layers`, in their order: see content_hash
 };
 
-/// What has figures: the exposures of parts, and then those of supports, where there are such; of no part:
-/// of all of them. `supports`: for each part whether it is one.
+/// Returns the exposures that figures are counted for: those of parts, then those of supports, if there are
+/// any of each. `supports` is true for each part that is a support.
 [[nodiscard]] std::vector<Exposure> plane_exposures(const std::vector<bool>& supports,
                                                     const ScanStrategy& strategy);
 
-/// See `scan`. The beam goes through the parts one after the other. `memories`: of each part; `names`: of the
-/// parts, for errors, or empty texts. `limits`: for all of them.
+/// Computes the scan vectors of all parts on a plane; see `scan`. The beam exposes one part after the other.
+/// `memories` and `names` have an entry for each part; a name begins errors and may be "". `limits` holds for
+/// all parts together.
 [[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
                                       std::span<const std::string> names, const ScanStrategy& strategy,
                                       std::vector<InsetCache>& memories, const LayerLimits& limits);

@@ -47,7 +47,7 @@ void check_heights(const Plate& plate) {
         if (part.box.min.z != part.box.max.z)
             continue;
         const PlateFile& file = plate.files[plate.shapes[part.shape].input];
-        // What its reading met may be the cause.
+        // A warning of the reader may name the cause.
         const std::string cause = file.warnings.empty() ? "" : fmt::format(" ({})", file.warnings.front());
         throw Error(ErrorKind::input,
                     fmt::format("{}: the mesh is flat: all of it lies at z = {:.6g}, so there is nothing to "
@@ -56,13 +56,13 @@ void check_heights(const Plate& plate) {
     }
 }
 
-/// The file of a part, and where there are several parts, its label.
+/// Returns the path of a part's file, and the label of the part if there are several.
 std::string name_of(const Plate& plate, const PlatePart& part) {
     const std::string& path = plate.files[plate.shapes[part.shape].input].path;
     return plate.parts.size() == 1 ? path : fmt::format("{}, part \"{}\"", path, excerpt(part.label));
 }
 
-/// The part that decides how many layers there are, as errors begin: "plate.3mf, part "axle"".
+/// Returns the part that determines the number of layers, as errors name it: "plate.3mf, part "axle"".
 std::string highest_part(const Plate& plate) {
     const auto part =
         std::max_element(plate.parts.begin(), plate.parts.end(),
@@ -70,10 +70,11 @@ std::string highest_part(const Plate& plate) {
     return name_of(plate, *part);
 }
 
-/// So many take nothing to speak of.
+/// Plans of this many layers take negligible memory.
 constexpr std::uint32_t few_layers = 100'000;
 
-/// One that is a thousand times too small asks for more layers than memory has notes for.
+/// Throws if the layer height exceeds the part, or if it makes more layers than fit into memory: a height in
+/// the wrong unit may be a thousand times too small.
 void check_layer_heights(const FileJob& job, const UniformLayers& layers, const Plate& plate) {
     const Box3& box = plate.box;
     const double height = box.max.z - box.min.z;
@@ -92,7 +93,7 @@ void check_layer_heights(const FileJob& job, const UniformLayers& layers, const 
         count = std::min(count, static_cast<double>(range->second - range->first));
     constexpr double most = std::numeric_limits<std::int32_t>::max();
     if (!(count > few_layers && count <= most))
-        return; // plan_uniform knows what to say of more
+        return; // plan_uniform reports larger counts
     const JobMemory memory(job);
     const std::uint64_t bytes =
         JobMemory::overhead(1, static_cast<std::uint64_t>(count), 1, job.layer_statistics);
@@ -107,7 +108,7 @@ void check_layer_heights(const FileJob& job, const UniformLayers& layers, const 
                 memory.asked ? "of `max_memory`" : "that layers may take unless `max_memory` says more"));
 }
 
-/// Throws where notes about so many planes take too much memory.
+/// Throws if this number of planes takes too much memory.
 void check_planes(const FileJob& job, const Plate& plate, std::uint64_t planes) {
     const JobMemory memory(job);
     const std::uint64_t bytes = JobMemory::overhead(1, planes, plate.shapes.size(), job.layer_statistics);
@@ -120,7 +121,7 @@ void check_planes(const FileJob& job, const Plate& plate, std::uint64_t planes) 
                                      : "that layers may take unless `max_memory` says more"));
 }
 
-/// About how many layers there will be; all are stacked, whichever of them are wanted.
+/// Returns the approximate number of layers. All of them are stacked, even those that are not selected.
 double count_by_ranges(const HeightRanges& layers, double height) {
     double count = 0;
     double rest = height;
@@ -157,7 +158,7 @@ Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution)
 
 namespace {
 
-/// The layers of all parts with their gaps closed.
+/// Returns the layers of all parts with their gaps closed, and appends the joins.
 std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, std::vector<GapJoin>& joins) {
     std::vector<Layer> closed;
     for (const Layer& layer : parts) {
@@ -168,7 +169,8 @@ std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, 
     return closed;
 }
 
-/// What is sliced, and which planes of it are written: all, but where others beside them tell what is skin.
+/// The planes that are sliced, and the range of them that is written. The other planes are neighbours that
+/// skins depend on.
 struct Planes {
     Plan plan;
     PlaneRange written;
@@ -192,7 +194,7 @@ Planes planes_of(const FileJob& job, const Plate& plate, const Execution& execut
     return planes;
 }
 
-/// Planes with those beside them that tell what is skin, of a plan with so many.
+/// Returns a range extended by the neighbours that skins depend on, in a plan of `planned` planes.
 PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t planned) {
     const auto last = static_cast<std::uint32_t>(planned);
     if (planes.size() == 0)
@@ -202,8 +204,8 @@ PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t pl
     return widened(planes, job.scan->downskin.layers, job.scan->upskin.layers, {0, last});
 }
 
-/// What layers of a body in this box reach when the steps have been taken: at most, as only sharp corners
-/// move farther than the sides, and open chains stay where they are.
+/// Returns a bound of the layers of a body in this box after the steps. It is not tight: only sharp corners
+/// move farther than the sides, and open chains do not move.
 Box3 box_after(const LayerSteps& steps, Box3 box) {
     const bool mitre = steps.offset_corners.shape == OffsetCorner::mitre;
     const double reach = std::max(0.0, steps.offset_mm) * (mitre ? steps.offset_corners.longest_mitre() : 1);
@@ -214,7 +216,7 @@ Box3 box_after(const LayerSteps& steps, Box3 box) {
     return box;
 }
 
-/// What the head of the slice file says.
+/// Returns the header of the slice file.
 LayerFileInfo file_info(const FileJob& job, const Plate& plate, const Plan& plan, PlaneRange written) {
     LayerFileInfo info{.box = box_after(job.steps, plate.box),
                        .layers = written.size(),
@@ -228,7 +230,7 @@ LayerFileInfo file_info(const FileJob& job, const Plate& plate, const Plan& plan
     return job.scan ? with_exposures(info, *job.scan) : info;
 }
 
-/// "2 boundary edges, 1 inverted shell".
+/// Returns a text such as "2 boundary edges, 1 inverted shell".
 std::string describe_defects(const Inspection& found) {
     struct Count {
         std::uint64_t n;
@@ -251,8 +253,8 @@ std::string describe_defects(const Inspection& found) {
     return text;
 }
 
-/// Inspects every shape, and leaves it welded for an engine that would weld it once more. Counts are those of
-/// all parts, each of which is a solid of its own.
+/// Inspects every shape. With `keep_welded` the shapes stay welded, so that an engine that welds need not do
+/// it again. Returns the sums over all parts, each of which is a solid of its own.
 Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, std::vector<std::size_t>& unsound,
                          const Execution& execution) {
     std::vector<Inspection> found;
@@ -281,13 +283,13 @@ Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, std::vecto
     return all;
 }
 
-/// What was found in the meshes and done to them before they were sliced.
+/// Defects and repairs of the meshes before they were sliced.
 struct Prepared {
     std::optional<Inspection> inspection;
-    std::vector<std::size_t> unsound; ///< files
+    std::vector<std::size_t> unsound; ///< indices of files
     std::vector<FileResult::MeshRepair> repairs;
     double volume_mm3 = 0;
-    double seconds = 0; ///< but for the volume
+    double seconds = 0; ///< without the volume
 };
 
 Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const Execution& execution) {
@@ -296,7 +298,7 @@ Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const E
     const bool inspected = job.inspect || job.strict;
     const bool indexed = std::any_of(plate.shapes.begin(), plate.shapes.end(),
                                      [](const PlateShape& shape) { return shape.mesh.indexed() != nullptr; });
-    // As slicing would do, but so that the mesh as read is let go of.
+    // Slicing would join them, too; doing it here frees the mesh as it was read.
     for (PlateShape& shape : plate.shapes)
         shape.mesh = shape.mesh.with_joined_vertices(execution);
     if (inspected)
@@ -326,8 +328,8 @@ Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const E
     return done;
 }
 
-/// Those that are written, in parts of equal work: the planes of each process, empty ones at the end where
-/// there are fewer planes; or those of a shard.
+/// Divides the planes that are written into ranges of equal work. Returns the range of each process, empty
+/// ones at the end if there are more processes than planes; or the range of the shard.
 std::vector<PlaneRange> divide(const FileJob& job, const Planes& planes, Feed& feed, Communicator& processes,
                                const Execution& execution) {
     const PlaneRange written = planes.written;
@@ -350,11 +352,11 @@ std::vector<PlaneRange> divide(const FileJob& job, const Planes& planes, Feed& f
     return division;
 }
 
-/// What is made of the layers of one plane on their way from the engine to the output.
+/// Takes the layers of one plane from the engine through all steps to the output.
 class LayerProcessor {
   public:
-    /// `sliced`: the planes of the plan that come, of which those of `mine` are written. `supports`: for each
-    /// part whether it is one.
+    /// `sliced` is the range of planes of the plan that arrive; those in `mine` are written. `supports` is
+    /// true for each part that is a support.
     LayerProcessor(const FileJob& job, const Plate& plate, const Plan& plan, PlaneRange sliced,
                    PlaneRange mine, const std::vector<bool>& supports, LayerTotals& totals, JobOutput& output,
                    const LayerLimits& limits)
@@ -370,7 +372,7 @@ class LayerProcessor {
             names_.push_back(name_of(plate, part));
     }
 
-    /// As PlateSink.
+    /// Like PlateSink.
     [[nodiscard]] std::function<void()> operator()(std::span<const Layer> parts) {
         std::vector<Layer> closed;
         std::vector<GapJoin> joins;
@@ -387,7 +389,7 @@ class LayerProcessor {
         LayerSteps steps = job_.steps;
         if (!plate_.negatives.empty()) {
             const Stopwatch stepping;
-            LayerSteps first; // where each body has material
+            LayerSteps first; // fills each body where it has material
             first.fill = std::exchange(steps.fill, FillRule::none);
             filled = take_steps_on_plane(first, parts, changes, limits_, names_);
             material = without_negatives(filled, plate_, limits_);
@@ -416,22 +418,23 @@ class LayerProcessor {
         };
     }
 
-    /// Of all threads.
+    /// Sum over all threads.
     [[nodiscard]] double step_seconds() const noexcept {
         return 1e-9 * static_cast<double>(step_nanoseconds_);
     }
     [[nodiscard]] double scan_seconds() const noexcept {
         return 1e-9 * static_cast<double>(scan_nanoseconds_);
     }
-    [[nodiscard]] double write_seconds() const noexcept { return write_seconds_; } ///< in order
+    [[nodiscard]] double write_seconds() const noexcept { return write_seconds_; } ///< of the part in order
 
   private:
     static void count(const Stopwatch& watch, std::atomic<std::uint64_t>& nanoseconds) {
         nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * watch.seconds()), std::memory_order_relaxed);
     }
 
-    /// Of each part, before steps leave out what is no material; none where these say what is. What only
-    /// crossings reveal is looked for where it would be lost; scan vectors find it themselves.
+    /// Returns the inverted rings of each part before the steps, which remove rings that bound no material.
+    /// Empty if a fill rule defines the material, or if scan_plane finds them. Crossings are searched only if
+    /// the steps would lose the rings that they reveal.
     [[nodiscard]] std::vector<InvertedRings> inverted_of(std::span<const Layer> parts) const {
         std::vector<InvertedRings> inverted;
         const bool as_cut = !job_.steps.any() && plate_.negatives.empty();
@@ -450,7 +453,7 @@ class LayerProcessor {
         PlaneVectors vectors = scan_plane(plane, supports_, names_, *job_.scan, memories_, limits_);
         count(scanning, scan_nanoseconds_);
         if (job_.steps.any() || !plate_.negatives.empty())
-            vectors.inverted.clear(); // as counted before
+            vectors.inverted.clear(); // counted by inverted_of
         totals_.add(plane.parts.front().layer().index, vectors);
         return std::move(vectors.layers);
     }
@@ -460,7 +463,7 @@ class LayerProcessor {
     LayerLimits limits_;
     const std::vector<bool>& supports_;
     std::vector<std::string> names_;   ///< of the parts, for errors
-    std::vector<InsetCache> memories_; ///< of each part
+    std::vector<InsetCache> memories_; ///< one for each part
     std::uint64_t first_index_;
     PlaneRange mine_;
     LayerTotals& totals_;
@@ -471,7 +474,8 @@ class LayerProcessor {
     double write_seconds_ = 0;
 };
 
-/// Progress in planes of the whole; only that: stages do not come back.
+/// Returns an execution that reports the planes of a range as a part of all planes. It reports no other
+/// stage, since stages must not repeat for each range.
 Execution in_range(PlaneRange range, PlaneRange mine, const Execution& execution) {
     Execution run = execution;
     if (execution.progress)
@@ -484,7 +488,7 @@ Execution in_range(PlaneRange range, PlaneRange mine, const Execution& execution
     return run;
 }
 
-/// Times are the longest of all processes, since they work at the same time; counts are added up.
+/// Takes the longest times of all processes, since they work at the same time, and the sums of counts.
 void gather(Communicator& processes, FileResult::Seconds& seconds, SliceReport& report) {
     if (processes.size() == 1)
         return;
@@ -512,7 +516,7 @@ void gather(Communicator& processes, FileResult::Seconds& seconds, SliceReport& 
     }
 }
 
-/// `feed_of` opens the triangles, once the job has been checked.
+/// `feed_of` opens the triangles; it is called once the job has been checked.
 FileResult slice_job(const FileJob& job, Communicator& processes, const Execution& execution,
                      const std::function<Feed(const Engine& engine)>& feed_of) {
     const Stopwatch total;
@@ -588,7 +592,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
                 feed.show_near_faces(shape, mesh, begin, end);
             };
     }
-    double slice_seconds = 0; // without waiting for others
+    double slice_seconds = 0; // without waiting for other processes
     std::uint64_t ranges_of_all = 0;
     {
         const std::vector<PlaneRange> ranges = feed.bring(plan, sliced, execution);
@@ -603,13 +607,12 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
                                        : execution,
                                    engine, feed.memory().points_in_flight(result.threads),
                                    job.scan ? SinkCost::expanding : SinkCost::proportional, visitor);
-            if (visitor && ranges.empty()) // this process has no planes, but the result is that of all
+            if (visitor && ranges.empty()) // no planes here, but near faces are counted for all processes
                 for (std::size_t shape = 0; shape < plate.shapes.size(); ++shape)
                     visitor(shape, plate.shapes[shape].mesh, 0, plate.shapes[shape].mesh.size());
             slice_seconds = slicing.seconds();
         });
     }
-    // What was read and found.
     result.files = plate.files;
     result.box = plate.box;
     for (const PlatePart& part : plate.parts) {
@@ -656,7 +659,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
         for (std::size_t file = 0; file < result.doubts.size(); ++file)
             if (const std::vector<std::string> doubts = result.doubts[file].texts(); !doubts.empty())
                 throw Error(ErrorKind::defect, fmt::format("{}: {}", job.inputs[file].path, doubts.front()));
-    // Of a shard the others may have some.
+    // Other shards may have contours.
     if (job.strict && !job.shard && result.changes && result.changes->changed_layers > 0 &&
         result.report.contours == 0)
         throw Error(ErrorKind::defect, fmt::format("{}: nothing is left of any of {} layers after the steps",

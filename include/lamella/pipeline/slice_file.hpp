@@ -1,6 +1,6 @@
 #pragma once
 
-// The whole way: mesh files in, slice file out, layer by layer.
+// Slices mesh files into a slice file, layer by layer.
 
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/open_gaps.hpp"
@@ -29,70 +29,72 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// One of several runs that share the layers of a job, on as many machines perhaps: a run of consecutive
-/// layers, of about as much work as the others (which is not the same as height). Each computes the same
-/// division, from the counts of triangles on the planes (divide_evenly), and needs all of the files.
+/// One of several runs that divide the layers of a job, possibly on several machines. A shard is a range of
+/// layers that takes about as much work as each of the others, which is not the same as equal height. Each
+/// run computes the same division from the numbers of triangles on the planes (divide_evenly), and needs all
+/// files.
 struct Shard {
-    std::uint32_t number = 1; ///< from 1
+    std::uint32_t number = 1; ///< counted from 1
     std::uint32_t count = 1;
 };
 
 struct FileResult;
 
-/// A page to look at the layers, written beside the slice file.
+/// A page that shows the layers, written in addition to the slice file.
 struct FileReport {
-    std::string path; ///< "" writes none
+    std::string path; ///< "": no page
     PageOptions page;
-    /// What the page tells of the run. Asked once all layers are written: of the result, only the total of
-    /// the seconds is still missing.
+    /// Returns the notes about the run that the page shows. Called once all layers are written; only the
+    /// total of the seconds is still missing in the result.
     std::function<PageNotes(const FileResult&)> notes;
 };
 
-/// What is to be sliced, how, and where to.
+/// The input of a job, how it is sliced, and its output.
 struct FileJob {
-    /// What stands on the plate, at least one; all of it is sliced on common planes.
+    /// The files on the plate, at least one; all are sliced on common planes.
     std::vector<PlateInput> inputs;
-    /// Where set, every part must lie in the box from the origin to this point.
+    /// If set, every part must lie in the box from the origin to this point.
     std::optional<Point3> build_volume;
-    /// What is read of 3MF and AMF files; see MeshReadOptions.
+    /// Roles of the bodies in 3MF and AMF files that are read as solids; see MeshReadOptions.
     MeshRoles include = {};
-    /// A limit of reading; `strict` below holds for it, too.
+    /// Largest number of triangles that are read; see MeshReadOptions. `strict` below holds for reading, too.
     std::uint64_t max_triangles = 0;
-    /// Bytes that the run may take, with all threads, in each process; 0: three quarters of the memory there
-    /// is. STL files that could not be sliced whole with that are sliced range by range, by way of a temporary
-    /// file without a name in $TMPDIR, else /var/tmp, with the same result. What can only be done with the
-    /// whole mesh is Error{limit} then: inspection, strict, the repairs that change a mesh, adaptive layers,
-    /// engines that weld, and formats other than STL. Without an explicit limit these still run.
+    /// Upper bound on the memory of each process with all its threads, in bytes; 0: three quarters of the
+    /// available memory. If an STL file is too large to be sliced as a whole, it is sliced in ranges of
+    /// planes, with the same result; a temporary file without a name in $TMPDIR, else /var/tmp, may hold its
+    /// triangles. Jobs that need whole meshes are Error{limit} if they exceed an explicit bound: inspection,
+    /// strict, repairs that change a mesh, adaptive layers, engines that weld, and files that are not plain
+    /// STL. Without an explicit bound they run nevertheless.
     std::uint64_t max_memory = 0;
 
-    /// Where the parts are cut. Uniform layers are stacked from the bottom of all parts.
+    /// The layers that the parts are cut into. Uniform layers are stacked from the bottom of all parts.
     Layering layering;
 
-    /// Where set: of these layers, only those of this shard. Error{usage} where there are more shards than
-    /// layers. merge_layer_files puts the slice files of all together.
+    /// If set, only the layers of this shard are written. Error{usage} if there are more shards than layers.
+    /// merge_layer_files joins the slice files of all shards.
     std::optional<Shard> shard;
 
-    /// What to mend before and after slicing. Inspection and `strict` look at the mesh before that.
+    /// Repairs before and after slicing. Inspection and `strict` examine the mesh before repairs.
     RepairPolicies repair;
 
-    std::string engine; ///< by name; "" is the default engine
-    /// Weld the mesh and count its defects first.
+    std::string engine; ///< name; "" is the default engine
+    /// Welds the mesh and counts its defects first.
     bool inspect = false;
-    /// Inspect, and make an Error{defect} of any defect, of level faces within rounding of a plane, of rings
-    /// that bound no material, of material that no scan vectors reach, and of steps that leave no contour in
-    /// any layer, before anything is written.
+    /// Inspects, and throws Error{defect} before anything is written for: any defect, level faces within
+    /// rounding of a plane, rings that bound no material, material that no scan vectors reach, and steps that
+    /// leave no contour in any layer.
     bool strict = false;
-    /// Measure and hash every layer.
+    /// Measures and hashes every layer.
     bool layer_statistics = false;
 
-    /// What is made of the layers of each part before they are written.
+    /// Steps applied to the layers of each part before they are written.
     LayerSteps steps;
-    /// Where set, scan vectors of what the steps make are written in the place of contours (with_exposures).
-    /// Skins see the planes beside those that are written, too, whichever `layering` and `shard` leave out.
+    /// If set, scan vectors of the layers after `steps` are written instead of contours (with_exposures).
+    /// Skins take account of the planes above and below, even those that `layering` or `shard` exclude.
     std::optional<ScanStrategy> scan;
 
-    std::string output; ///< "" writes nothing, "-" is standard output
-    std::string format; ///< by name; "" goes by the extension of `output`
+    std::string output; ///< path; "" writes nothing, "-" is standard output
+    std::string format; ///< name; "" means the format of the extension of `output`
     LayerWriteOptions write;
     FileReport report;
 };
@@ -101,48 +103,48 @@ struct LayerStatistics {
     std::uint64_t index = 0;
     double z = 0;
     double thickness = 0;
-    LayerMeasure measure;       ///< of all parts together
-    OpenGaps open_gaps;         ///< of all parts together, after contour gaps were closed
-    InvertedRings inverted;     ///< of all parts together; see FileResult::doubts
-    std::vector<GapJoin> joins; ///< with RepairPolicies::close_gaps_mm
+    LayerMeasure measure;       ///< sum over all parts
+    OpenGaps open_gaps;         ///< sum over all parts, after contour gaps were closed
+    InvertedRings inverted;     ///< sum over all parts; see FileResult::doubts
+    std::vector<GapJoin> joins; ///< gaps closed, with RepairPolicies::close_gaps_mm
     std::uint64_t hash = 0; ///< content_hash of all contours, whichever part they belong to (see `merged`)
-    LayerChanges changes;   ///< by FileJob::steps
-    std::vector<ScanFigures> scan; ///< with FileJob::scan: of each of FileResult::exposures
-    /// Then of the vectors: the stack hash of the content hashes of all exposures, part by part, in their
-    /// order.
+    LayerChanges changes;   ///< made by FileJob::steps
+    std::vector<ScanFigures> scan; ///< one for each of FileResult::exposures, with FileJob::scan
+    /// Hash of the vectors, with FileJob::scan: the stack hash of the content hashes of all exposures, part
+    /// by part, in their order.
     std::uint64_t scan_hash = 0;
 };
 
-/// What became of one part.
+/// The result for one part.
 struct PartResult {
     std::string label;
-    std::size_t file = 0; ///< in FileResult::files
+    std::size_t file = 0; ///< index in FileResult::files
     std::uint64_t triangles = 0;
-    Box3 box; ///< as it stands on the plate
+    Box3 box; ///< box of the part as placed on the plate
     std::uint64_t contours = 0;
     std::uint64_t open_chains = 0;
     std::uint64_t inverted_rings = 0; ///< see FileResult::doubts
     std::uint64_t points = 0;
 };
 
-/// What was read, done and written.
+/// The result of a job.
 struct FileResult {
     std::vector<PlateFile> files; ///< one for each input
     std::vector<PartResult> parts;
-    std::uint64_t triangles = 0; ///< of all parts
-    Box3 box;                    ///< of all parts
-    double mesh_volume_mm3 = 0;  ///< signed, of all parts; meaningful when they are closed
-    /// Counts of all parts together.
+    std::uint64_t triangles = 0; ///< sum over all parts
+    Box3 box;                    ///< box of all parts
+    double mesh_volume_mm3 = 0;  ///< signed volume of all parts; meaningful if they are closed
+    /// Sums over all parts.
     std::optional<Inspection> inspection;
-    std::vector<std::size_t> unsound; ///< those of `files` whose meshes have defects, where inspected
+    std::vector<std::size_t> unsound; ///< indices of the `files` whose meshes have defects, if inspected
 
-    /// What the policies did to the meshes: one entry for each mesh that is sliced.
+    /// Repairs of a mesh by the policies: one entry for each mesh that is sliced.
     struct MeshRepair {
-        std::size_t file = 0; ///< in `files`
+        std::size_t file = 0; ///< index in `files`
         MeshRepairs repairs;
     };
     std::vector<MeshRepair> repairs;
-    /// Ends of contours that were joined.
+    /// Gaps of contours that were closed.
     struct Gaps : AffectedLayers {
         std::uint64_t closed = 0;
         double longest_mm = 0;
@@ -151,42 +153,43 @@ struct FileResult {
 
     std::string engine;
     unsigned threads = 0;
-    std::uint64_t ranges = 0; ///< the meshes were too large for the memory: in so many shares of the planes
-                              ///< they were sliced, by all processes
-    /// What each process did, in their order.
+    std::uint64_t ranges = 0; ///< number of plane ranges that the job was divided into to fit memory, over
+                              ///< all processes; 0: not divided
+    /// One for each process, in their order.
     std::vector<ProcessFigures> processes;
-    SliceReport report;                  ///< contours and chains as they are after contour gaps were closed
-    std::optional<LayerChanges> changes; ///< by FileJob::steps, where there are any
-    /// With FileJob::scan; the other figures are those of the layers that vectors are made of.
+    SliceReport report; ///< counts of contours and chains are those after contour gaps were closed
+    std::optional<LayerChanges> changes; ///< made by FileJob::steps, if there are any
+    /// With FileJob::scan. All other figures are those of the layers that vectors are made of.
     std::vector<ExposureResult> exposures;
     UnreachedMaterial unreached;                      ///< with FileJob::scan
     std::vector<UnreachedMaterial> unreached_by_file; ///< the same for each of `files`
-    /// What the layers tell, of each of the files. Inverted rings are those of the layers that `steps` are
-    /// taken with, found where rings that cross are searched for anyway: for `scan` and offsets. With a
-    /// FillRule, which says what of them is material, none are counted.
+    /// Signs of defects that were found in the layers, for each of the files. Inverted rings are counted
+    /// before `steps`. The search is complete with `scan`, an offset or negative volumes; otherwise it finds
+    /// those that need no search for crossings. With a FillRule, which defines the material, none are
+    /// counted.
     std::vector<MeshDoubts> doubts;
-    std::vector<NearFaceLayers>
-        near_faces;                   ///< of each of `files`, where rounding decides what its layers are
-    std::uint64_t planned_layers = 0; ///< by all shards
-    PlaneRange shard;                 ///< which of them by this one: all, where there are no shards
-    double bottom = 0;                ///< of the first layer
-    double top = 0;                   ///< of the last layer
-    std::string format;               ///< of the slice file, "" when none was written
-    std::uint64_t bytes = 0;          ///< written
-    /// What the format has no place for, one line each (LayerWriter::warnings).
+    std::vector<NearFaceLayers> near_faces; ///< layers that depend on rounding, for each of `files`
+    std::uint64_t planned_layers = 0;       ///< number of layers of all shards
+    PlaneRange shard;        ///< range of the layers of this shard; all layers if there are no shards
+    double bottom = 0;       ///< bottom of the first layer
+    double top = 0;          ///< top of the last layer
+    std::string format;      ///< format of the slice file, "" if none was written
+    std::uint64_t bytes = 0; ///< number of bytes written
+    /// Losses in the slice file, because its format cannot represent something; one line each
+    /// (LayerWriter::warnings).
     std::vector<std::string> warnings;
-    /// The same of the report.
+    /// The same for the page.
     std::vector<std::string> report_warnings;
 
-    /// With FileJob::layer_statistics: in ascending z, and the sum of area times thickness.
+    /// One for each layer in ascending z, and the sum of area times thickness; with
+    /// FileJob::layer_statistics.
     std::vector<LayerStatistics> layers;
     double volume_mm3 = 0;
 
-    /// Wall time. `read` includes finding the bounding box;
-    /// `weld` includes the inspection, the repair of meshes, and the weld of engines that need one; `write`
-    /// is the part of writing that must be done in order, while formatting is done in parallel and part of
-    /// `slice`. So is what is made of the layers; `polygon` is its time on all threads added up, and `scan`
-    /// that of scan vectors.
+    /// Wall times. `read` includes finding the bounding box; `weld` includes the inspection, the repair of
+    /// meshes, and the weld of engines that need one. `write` is the part of writing that must be done in
+    /// order; formatting is done in parallel and is part of `slice`. Layer steps and scan vectors count
+    /// towards `slice`, too; `polygon` and `scan` are their times summed over threads.
     struct Seconds {
         double read = 0;
         double weld = 0;
@@ -199,33 +202,33 @@ struct FileResult {
     } seconds;
 };
 
-/// The planes that `slice_file` cuts a plate at, by the layering of the job; its files are not read. Throws
-/// Error{input} for a part without height, Error{usage} for an impossible plan and for one that misses every
-/// part.
+/// Returns the planes at which `slice_file` cuts a plate, by the layering of the job; does not read its
+/// files. Throws Error{input} for a part without height, Error{usage} for an impossible plan and for one that
+/// misses every part, and Error{limit} if the plan takes too much memory.
 [[nodiscard]] Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution = {});
 
-/// Slices files into a file. The layers of a single part are written while slicing goes on; several parts are
-/// sliced one after the other on so many planes at a time as memory is meant for, and so is what becomes scan
-/// vectors, which are made a few planes at a time. So memory holds a bounded number of layers. Nothing
-/// appears at the output path before all went well.
+/// Slices files into a file. The layers of a single part are written while it is sliced. Several parts are
+/// sliced one after the other in ranges of planes sized to the memory bound; jobs with scan vectors likewise,
+/// a few planes at a time. So memory holds a bounded number of layers. Nothing appears at the output path
+/// before all of it is complete.
 ///
 /// Throws Error{usage} for an impossible plan, Error{input} for a file that cannot be read or a mesh without
-/// height, Error{defect} with FileJob::strict, and what reading, slicing and writing throw.
+/// height, Error{defect} with FileJob::strict, and the errors of reading, slicing and writing.
 ///
-/// Several processes slice a job together: all of them call this with the same job. The same bytes are
-/// written as by one alone, whatever the number; the result is that of the whole job, on each of them, with
-/// the longest times of all. Each reads a part of each binary STL file, and slices planes of equal work.
-/// Other files, and whatever needs the whole mesh (other engines, inspection, repair, adaptive layers), are
-/// read by each process as a whole; the planes are shared out all the same. Formats whose files are layers
-/// one after the other are written by all processes, each its piece, so the output must be on a file system
-/// that all of them see; layers for other formats and for standard output go to process 0, which writes.
-/// Errors are agreed on: whatever is thrown on one process, all of them throw. Besides, Error{usage} for
-/// standard input, which reaches one process only, for a shard and for a report.
+/// Several processes can slice a job together: all of them call this function with the same job. The bytes
+/// written are those that one process writes alone, for any number of processes. Each process returns the
+/// result of the whole job, with the longest times of all. Each reads a part of each binary STL file, and
+/// slices planes of equal work. Other files, and jobs that need the whole mesh (other engines, inspection,
+/// repair, adaptive layers), are read by each process as a whole; the planes are divided nevertheless.
+/// Formats whose files are layers one after the other are written by all processes, each its own part, so the
+/// output must be on a file system that all of them see. Layers for other formats and for standard output go
+/// to process 0, which writes them. If one process throws an error, all of them throw it. With several
+/// processes, standard input (which reaches only one of them), a shard and a page are Error{usage}.
 [[nodiscard]] FileResult slice_file(const FileJob& job, const Execution& execution = {},
                                     Communicator& processes = alone());
 
-/// The same for a plate that was made of the job's inputs before (load_plate): they are not read again. It
-/// is sliced whole, whatever FileJob::max_memory says.
+/// The same for a plate that was already loaded from the inputs of the job (load_plate): they are not read
+/// again. It is sliced as a whole, whatever FileJob::max_memory is.
 [[nodiscard]] FileResult slice_file(const FileJob& job, Plate plate, const Execution& execution = {});
 
 } // namespace lamella
