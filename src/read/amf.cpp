@@ -95,12 +95,12 @@ class AmfReader {
         source_.owner.reset();
     }
 
-    /// Volumes of meshes that were skimmed know their runs so far.
+    /// Volumes of skimmed meshes count in runs of triangles so far; this converts them to triangles.
     void count_triangles_of_volumes() {
         for (AmfObject& object : document_.objects) {
             if (has_parts_only(object))
                 continue;
-            std::vector<std::uint64_t> before{0}; // each run
+            std::vector<std::uint64_t> before{0}; // number of triangles before each run
             for (const std::string_view run : object.text.triangles)
                 before.push_back(before.back() + elements_in(run, amf_text_form().triangle));
             for (VolumeRange& volume : object.volumes) {
@@ -119,9 +119,9 @@ class AmfReader {
         return read_amf_document(source_.text(), source_.name, skim, limits_, progress);
     }
 
-    /// Objects and constellations are nodes alike.
+    /// Makes a node of each object and each constellation.
     void make_nodes() {
-        std::size_t uses = document_.objects.size() + document_.constellations.size(); // as roots, at most
+        std::size_t uses = document_.objects.size() + document_.constellations.size(); // roots, at most
         for (const AmfConstellation& constellation : document_.constellations)
             uses += constellation.instances.size();
         count_assembly(document_.objects.size() + document_.constellations.size(), uses, limits_);
@@ -146,7 +146,8 @@ class AmfReader {
                     fmt::format("{}: an object has the same id; instances of this id are of the object",
                                 nodes_.back().location));
         }
-        // Slic3r and its descendants number objects and constellations each by themselves: the object counts.
+        // Slic3r and its descendants number objects and constellations separately: an instance means the
+        // object.
         const auto node_of = [&](const AmfInstance& instance) {
             for (const NodesById* const known : {&objects, &constellations})
                 if (const auto found = known->find(instance.object); found != known->end())
@@ -178,7 +179,8 @@ class AmfReader {
             fail("each constellation is a part of another, expected one that is not");
     }
 
-    /// Scaled, mirrored, turned about x, then y, then z, and moved.
+    /// Returns the placement of an instance: scaled, mirrored, rotated about x, then y, then z, and
+    /// translated.
     [[nodiscard]] Transform placement(const AmfInstance& instance, double unit) const {
         const double scale = instance.number("scale", 1);
         const auto factor = [&](std::string_view axis_scale, std::string_view mirror) {
@@ -208,7 +210,7 @@ class AmfReader {
             }
             degenerate += degenerate_triangles(object.mesh);
             if (has_parts_only(object))
-                object.volumes.clear(); // where each begins was not counted
+                object.volumes.clear(); // their ranges are not counted in triangles
             nodes_[i].is_body = true;
             for (RoleMesh& mesh : divided_by_role(std::move(object.mesh), object.volumes, object.name,
                                                   selection_, file_.bodies, limits_)) {

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int deepest = 64;
 constexpr std::uint64_t most_instances = std::uint64_t{1} << 20;
-constexpr std::uint64_t instance_bytes = 1024; ///< with what the plate notes of it
+constexpr std::uint64_t instance_bytes = 1024; ///< with the notes of the plate
 
 std::uint64_t sum(std::uint64_t a, std::uint64_t b) {
     return a > std::numeric_limits<std::uint64_t>::max() - b ? std::numeric_limits<std::uint64_t>::max()
@@ -38,7 +38,7 @@ class Placer {
 
     std::vector<MeshInstance> location(std::span<const AssemblyUse> roots) {
         for (std::size_t node = 0; node < nodes_.size(); ++node)
-            total(node, 0); // a loop is an error also where no root leads to it
+            total(node, 0); // a cycle is an error even if no root leads to it
         Total all;
         for (const AssemblyUse& root : roots)
             all.add(total(root.node, 0));
@@ -63,7 +63,7 @@ class Placer {
   private:
     enum class State { unknown, open, known };
 
-    /// What comes of one use of a node; sums stay at the largest number.
+    /// The contents of one use of a node. Sums saturate at the largest number.
     struct Total {
         State state = State::unknown;
         std::uint64_t instances = 0;
@@ -95,7 +95,7 @@ class Placer {
         return known;
     }
 
-    /// The uses that lead to a mesh: the others are skipped once, not again for each instance.
+    /// Returns the uses that lead to a mesh. The others are skipped once, not for each instance.
     [[nodiscard]] std::vector<const AssemblyUse*> filled(std::span<const AssemblyUse> uses) const {
         std::vector<const AssemblyUse*> result;
         for (const AssemblyUse& use : uses)
@@ -104,7 +104,7 @@ class Placer {
         return result;
     }
 
-    // A node that was counted in one place may be used deeper down in another.
+    // Depth is checked again: a node counted at one depth may be used at a greater one.
     void put(const AssemblyUse& use, const Transform& outer, const std::string& name, MeshRole outer_role,
              std::uint64_t body, int depth = 0) {
         const AssemblyNode& node = nodes_[use.node];
@@ -180,7 +180,7 @@ std::string UsePosition::text() const {
 }
 
 void count_assembly(std::size_t nodes, std::size_t uses, ReadLimits& limits) {
-    constexpr std::uint64_t of_place = 64; // where the node is, in words
+    constexpr std::uint64_t of_place = 64; // the text of AssemblyNode::location
     limits.add_bytes_at(nodes * (sizeof(AssemblyNode) + of_place) + uses * sizeof(AssemblyUse),
                         [&] { return fmt::format("{} uses of {}", uses, counted(nodes, "object")); });
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Objects that consist of other objects, down to meshes, and where each mesh ends up.
+// Places meshes of objects that consist of other objects.
 
 #include "lamella/mesh/transform.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -19,24 +19,25 @@ namespace lamella {
 class Executor;
 class ReadLimits;
 
-/// Where a file puts a node, for errors: a text is made when there is one, as a file may put very many.
+/// Location of a use in a file, for errors. The text is made only for an error, since a file may have very
+/// many uses.
 struct UsePosition {
-    std::string_view part = {}; ///< of the package that the file is; empty for others
+    std::string_view part = {}; ///< part of the package; empty if the file is no package
     std::size_t line = 0;
     std::string_view what = {}; ///< such as "this use"
 
-    /// "part '3D/3dmodel.model', line 7: this use".
+    /// Returns a text such as "part '3D/3dmodel.model', line 7: this use".
     [[nodiscard]] std::string text() const;
 };
 
-/// A node put somewhere.
+/// A use of a node in another node or as a root.
 struct AssemblyUse {
     std::size_t node = 0;
     Transform placement;
     UsePosition position;
-    /// Of all that the node consists of, unless that says otherwise: part, support or negative.
+    /// Role of everything in the node that has no role of its own: part, support or negative.
     MeshRole role = MeshRole::part;
-    std::string name; ///< of what is put there, instead of that of the node; "" for none
+    std::string name; ///< overrides the name of the node; "" for none
 };
 
 /// A mesh of a node.
@@ -45,28 +46,29 @@ struct AssemblyMesh {
     MeshRole role = MeshRole::part;
 };
 
-/// Meshes, one for each role, or a list of uses of other nodes.
+/// A node with meshes, one for each role, or with uses of other nodes.
 struct AssemblyNode {
     std::string name;
     std::vector<AssemblyMesh> meshes;
     Transform unit; ///< from the meshes to millimetres
     std::vector<AssemblyUse> uses;
-    std::string location; ///< in the file, for errors
-    /// Its negative volumes are subtracted from its own parts only, not from all of what a root places.
+    std::string location; ///< location in the file, for errors
+    /// True if its negative volumes are subtracted from its own parts only, not from all parts under the
+    /// root.
     bool is_body = false;
 };
 
-/// Whether there is nothing that they could be subtracted from.
+/// True if all instances are negative volumes, so that there is nothing to subtract them from.
 [[nodiscard]] bool all_negative(std::span<const MeshInstance> instances);
 
-/// Counts what so many nodes and uses of them take, before they are made: once the file is read.
+/// Counts the memory of this number of nodes and uses before they are made. Call it once the file is read.
 void count_assembly(std::size_t nodes, std::size_t uses, ReadLimits& limits);
 
-/// One instance for each path from a root to a mesh, in the order of the file. Named after the mesh, or after
-/// the nearest one on the path that has a name.
+/// Returns one instance for each path from a root to a mesh, in the order of the file. An instance is named
+/// after the mesh, or after the nearest node on the path that has a name.
 ///
-/// What is counted is counted before it is spent: a few lines can describe more instances than there are
-/// atoms. Throws Error{input} where a node contains itself, is nested deeper than 64, or a mesh lands where
+/// All instances are counted before any is made, since a few lines can describe more of them than there are
+/// atoms. Throws Error{input} if a node contains itself, is nested deeper than 64, or places a mesh where
 /// coordinates overflow, and Error{limit} for more than 2^20 instances or more triangles or memory than the
 /// limits allow.
 [[nodiscard]] std::vector<MeshInstance> place_meshes(const std::string& file_name,

@@ -30,7 +30,7 @@ constexpr std::size_t longest_file_name = 200;
     throw Error(ErrorKind::input, fmt::format("{}: {}", package.name(), what));
 }
 
-/// The model parts of a package: the root and all that it refers to, with their meshes.
+/// Loads the model parts of a package with their meshes: the root and all parts that it refers to.
 class PartLoader {
   public:
     struct Part {
@@ -50,15 +50,15 @@ class PartLoader {
         progress_.finish();
     }
 
-    /// The root first.
+    /// The parts of the package, the root first.
     [[nodiscard]] std::vector<Part>& parts() noexcept { return parts_; }
-    /// The number of the part that an object is used from.
+    /// Returns the number of the part that contains a used object.
     [[nodiscard]] std::size_t part_of(const ThreeMfUse& use, std::size_t user) const {
         return use.part.empty() ? user : part_index_.at(use.part);
     }
 
   private:
-    /// Of all entries: which of them are needed shows late.
+    /// Returns the size of all entries, since the needed ones are known late.
     static std::uint64_t bytes_of(const ZipReader& zip) {
         std::uint64_t bytes = 0;
         for (const ZipEntry& entry : zip.entries())
@@ -98,7 +98,7 @@ class PartLoader {
         return entry->name;
     }
 
-    /// The relationships of a part, with a remark about what is wrong with them.
+    /// Returns the relationships of a part. Adds remarks about their defects.
     std::vector<OpcRelationship> relationships_of(const std::string& part) {
         std::vector<OpcRelationship> found = opc_relationships(package_, part);
         std::size_t tickets = 0;
@@ -118,7 +118,7 @@ class PartLoader {
         return found;
     }
 
-    /// The root part and all that it refers to.
+    /// Loads the root part and all parts that it refers to.
     void load_parts(const std::string& root) {
         parts_.emplace_back().model.part = root;
         part_index_.emplace(root, 0);
@@ -147,7 +147,7 @@ class PartLoader {
             load_parts_from(1);
     }
 
-    /// Takes down the part that an object is used from, under its name in the archive.
+    /// Adds the part that contains a used object to `others`, under its name in the archive.
     void find_part(ThreeMfUse& use, std::vector<std::string>& others) {
         const ThreeMfModel& root = parts_[0].model;
         use.part = opc_resolved(package_, root.part, use.part);
@@ -160,7 +160,7 @@ class PartLoader {
         others.push_back(use.part);
     }
 
-    /// Unpacks and reads parts, in parallel: first their structure, then the numbers of all meshes.
+    /// Decompresses and reads parts in parallel: first their structure, then the numbers of all meshes.
     void load_parts_from(std::size_t first) {
         const std::uint64_t unpacked = package_.unpacked();
         executor_.for_chunks(parts_.size() - first, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
@@ -228,7 +228,7 @@ class ThreeMfReader {
     }
 
   private:
-    /// One node for each object of each part.
+    /// Makes one node for each object of each part.
     void make_nodes() {
         std::size_t objects = 0;
         std::size_t uses = parts_[0].model.items.size();
@@ -297,7 +297,7 @@ class ThreeMfReader {
         }
     }
 
-    /// What a slicer says of the volumes or the components of an object. Ids of components may repeat.
+    /// Applies a slicer's settings of the volumes or components of an object. Ids of components may repeat.
     static void configure(ThreeMfObject& object, AssemblyNode& node, SlicerObject& known) {
         for (VolumeRange& volume : known.volumes)
             object.volumes.push_back(std::move(volume));
@@ -318,7 +318,7 @@ class ThreeMfReader {
         return fmt::format("part '{}', line {}: {}", printable(model.part, longest_file_name), line, what);
     }
 
-    /// Those nodes, and all that they consist of.
+    /// Returns which nodes these nodes consist of, including themselves.
     [[nodiscard]] std::vector<bool> reached_from(std::vector<std::size_t> open) const {
         std::vector<bool> reached(nodes_.size());
         while (!open.empty()) {
@@ -333,7 +333,7 @@ class ThreeMfReader {
         return reached;
     }
 
-    /// Leaves out uses of bodies that are not read. What uses have the same node and role are one body.
+    /// Removes uses of bodies that are not read. Uses with the same node and role count as one body.
     void select(std::vector<AssemblyUse>& uses) {
         std::erase_if(uses, [&](const AssemblyUse& use) {
             if (selection_.takes(use.role))
@@ -348,7 +348,7 @@ class ThreeMfReader {
         });
     }
 
-    /// Leaves out uses, and finds with which roles each node is used then.
+    /// Removes uses of bodies that are not read. Returns the roles with which each node is then used.
     [[nodiscard]] std::vector<std::set<MeshRole>> selected() {
         std::vector<std::set<MeshRole>> roles(nodes_.size());
         std::vector<std::pair<std::size_t, MeshRole>> open;
@@ -374,7 +374,7 @@ class ThreeMfReader {
         return roles;
     }
 
-    /// The meshes of an object, by their roles. `used`: the roles with which the object is used.
+    /// Adds the meshes of an object by role. `used` is the set of roles with which the object is used.
     void add_meshes(AssemblyNode& node, ThreeMfObject& source, const std::set<MeshRole>& used) {
         std::vector<MeshBody> bodies;
         for (RoleMesh& mesh : divided_by_role(std::move(source.mesh), source.volumes, source.name, selection_,
@@ -390,7 +390,7 @@ class ThreeMfReader {
             }
     }
 
-    /// The meshes that the build reaches, and where they stand.
+    /// Adds the meshes that the build reaches, and their placements.
     void make_file() {
         if (parts_[0].model.items.empty())
             refuse_package(package_, "holds nothing to slice: its build is empty");
@@ -430,7 +430,7 @@ class ThreeMfReader {
         if (degenerate != 0)
             remarks_.add(counted(degenerate, "triangle uses a vertex twice; it bounds nothing",
                                  "triangles use a vertex twice; they bound nothing"));
-        // These break no rule, and stop no strict caller.
+        // These break no rule, so `strict` accepts them.
         selection_.report(remarks_);
         const auto note_count = [&](std::size_t count, std::string_view thing, std::string_view what) {
             if (count == 1)
@@ -460,7 +460,7 @@ class ThreeMfReader {
     std::vector<AssemblyUse> roots_;
     SlicerConfig config_;
     std::set<std::pair<std::size_t, MeshRole>> left_out_; ///< nodes
-    std::vector<std::size_t> not_printed_;                ///< nodes of items that are not to be
+    std::vector<std::size_t> not_printed_;                ///< nodes of items that are not printed
     MeshFile file_;
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Telling whether a file is still the one that it was.
+// Detects whether a file has changed.
 
 #include "lamella/core/execution.hpp"
 
@@ -10,9 +10,9 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// A 64-bit hash of all bytes of a file (XXH3), in little memory; the same on every machine. It guards
-/// against accidents, not against forgery. Throws Error{input} when the file cannot be read,
-/// Error{cancelled}.
+/// Returns a 64-bit hash of all bytes of a file (XXH3). It is the same on every machine and guards against
+/// accidental changes, not against forgery. Takes little memory, also for large files. Throws Error{input} if
+/// the file cannot be read, and Error{cancelled}.
 [[nodiscard]] std::uint64_t file_hash(const std::string& path, const Execution& execution = {});
 
 } // namespace lamella
