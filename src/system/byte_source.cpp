@@ -51,7 +51,7 @@ namespace {
 
 } // namespace
 
-/// A regular file, and how many bytes it had when it was opened. It is closed at the end.
+/// A regular file and its size when it was opened. The destructor closes it.
 class OpenFile {
   public:
     explicit OpenFile(int descriptor) : descriptor_(descriptor) {}
@@ -60,7 +60,8 @@ class OpenFile {
     OpenFile& operator=(const OpenFile&) = delete;
 
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
-    /// False if the process has so many open files that others will need the rest.
+    /// False if the process has opened so large a part of the files it may have that the rest should be kept
+    /// for other uses.
     [[nodiscard]] bool may_stay_open() const noexcept { return descriptor_ < sysconf(_SC_OPEN_MAX) / 2; }
 
     std::uint64_t size = 0;
@@ -75,7 +76,7 @@ std::uint64_t ByteSource::size() const noexcept {
 
 namespace {
 
-/// Memory that the system mapped.
+/// Memory mapped by the system.
 class Mapping {
   public:
     Mapping(void* data, std::size_t bytes) : data_(data), bytes_(bytes) {}
@@ -88,7 +89,7 @@ class Mapping {
     std::size_t bytes_;
 };
 
-/// The file has no name: nobody else can shorten it.
+/// Maps a temporary file. It has no name, so no other process can shorten it.
 ByteSource map_spilled(std::string name, const SpillFile& file, std::size_t bytes) {
     void* const data = mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
     if (data == MAP_FAILED)
@@ -107,7 +108,7 @@ ByteSource map_spilled(std::string name, const SpillFile& file, std::size_t byte
                           " bytes, and ends after " + std::to_string(end) + " now");
 }
 
-/// Reads until `to` is full or the file ends. How many bytes there were.
+/// Reads until `to` is full or the file ends. Returns the number of bytes read.
 std::size_t read_at(int descriptor, std::uint64_t offset, std::span<std::byte> to, const std::string& name) {
     std::size_t done = 0;
     while (done < to.size()) {
@@ -123,8 +124,8 @@ std::size_t read_at(int descriptor, std::uint64_t offset, std::span<std::byte> t
     return done;
 }
 
-/// The first bytes of a regular file, `most` of them if it has as many: some files of the system have fewer
-/// bytes than they say.
+/// Reads up to `most` bytes from the beginning of a regular file. Some files of the system have fewer bytes
+/// than they report.
 ByteSource read_beginning(int descriptor, std::string name, std::size_t most) {
     const auto memory = std::make_shared<Pages>(most);
     auto* const data = static_cast<std::byte*>(memory->data());
@@ -146,7 +147,7 @@ void wait_for_bytes(int descriptor, const Execution& execution) {
     }
 }
 
-/// Reads some bytes, once there are any. 0 at the end.
+/// Waits for bytes and reads some of them. Returns 0 at the end.
 std::size_t read_some(int descriptor, std::span<std::byte> room, const std::string& name,
                       const Execution& execution) {
     for (;;) {
@@ -159,7 +160,7 @@ std::size_t read_some(int descriptor, std::span<std::byte> room, const std::stri
     }
 }
 
-/// What has come already, and all that is still to come, by way of a spill file.
+/// Copies the bytes read before and all further ones to a spill file.
 ByteSource spool(int descriptor, std::string name, std::span<const std::byte> begin,
                  const Execution& execution) {
     SpillFile file;
@@ -200,10 +201,11 @@ ByteSource take(std::shared_ptr<OpenFile> file, std::string name, std::uint64_t 
         fail_with_errno(name, errno);
     if (S_ISDIR(status.st_mode))
         fail_with_errno(name, EISDIR);
-    // Devices may have no end; a terminal has one when its user says so.
+    // A device may have no end; a terminal ends when its user ends the input.
     if (S_ISBLK(status.st_mode) || (S_ISCHR(status.st_mode) && isatty(descriptor) == 0))
         fail(name, "is a device, expected a file or a pipe");
-    // Some files of the system claim to have no bytes, and standard input may be half read: those are read.
+    // Some files of the system report a size of 0, and standard input may be half read: these are read to
+    // their end.
     if (!S_ISREG(status.st_mode) || status.st_size <= 0 || lseek(descriptor, 0, SEEK_CUR) != 0)
         return read_to_end(descriptor, std::move(name), most_in_memory, execution);
     file->size = static_cast<std::uint64_t>(status.st_size);
@@ -211,7 +213,7 @@ ByteSource take(std::shared_ptr<OpenFile> file, std::string name, std::uint64_t 
         read_beginning(descriptor, std::move(name), std::min<std::uint64_t>(file->size, window_beginning));
     if (file->size < window_beginning && file->size <= most_in_memory)
         return source;
-    posix_fadvise(descriptor, 0, 0, POSIX_FADV_SEQUENTIAL); // reads twice as much ahead from a cold disk
+    posix_fadvise(descriptor, 0, 0, POSIX_FADV_SEQUENTIAL); // doubles the read-ahead from a cold disk
     const std::size_t expected = std::min<std::uint64_t>(file->size, window_beginning);
     source.file = std::move(file);
     if (source.bytes.size() < expected)
@@ -227,7 +229,7 @@ ByteSource open_bytes(const std::string& path, const Execution& execution, std::
                       WindowTest* in_windows) {
     const bool standard_input = path == "-";
     std::string name = standard_input ? "standard input" : path;
-    // Not blocking: a pipe that nobody writes to yet must not hold up a request to stop.
+    // Non-blocking: waiting for the writer of a pipe must not delay cancellation.
     const int descriptor = standard_input ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
                                           : open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
     if (descriptor < 0)
@@ -274,7 +276,7 @@ void copy_out(const ByteSource& source, std::uint64_t offset, std::span<std::byt
 void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept {
     if (!source.on_disk)
         return;
-    // The first and the last page may be in use by others: then those bring them back.
+    // Other readers may use the first and the last page; they are then read again.
     static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
     const std::byte* const base = source.bytes.data(); // at the beginning of a page
     const auto begin = static_cast<std::size_t>(stretch.data() - base);

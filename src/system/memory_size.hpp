@@ -12,11 +12,12 @@ namespace lamella {
 
 /// Returns the default memory limit of a job: three quarters of `memory_size`.
 [[nodiscard]] std::uint64_t usual_memory();
-/// Returns the wished limit, or the default if that is 0.
+/// Returns the requested limit, or the default if that is 0.
 [[nodiscard]] inline std::uint64_t memory_limit(std::uint64_t wished) {
     return wished != 0 ? wished : usual_memory();
 }
-/// How much of that a file may take while it is read; a longer one is read through a temporary file.
+/// Returns the part of that limit that a file may take while it is read; a longer file is read through a
+/// temporary file.
 [[nodiscard]] inline std::uint64_t memory_of_file(std::uint64_t wished) {
     return memory_limit(wished) / 4;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Stores data on disk that do not fit into memory for a while.
+// Stores data on disk that temporarily do not fit into memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace lamella {
 
-/// A temporary file as long as this object lives. It has no name once it is open, so nothing is left behind
-/// no matter how the program ends.
+/// A temporary file that exists as long as this object. It has no name once it is open, so nothing is left
+/// behind however the program ends.
 ///
 /// It is in the folder that the environment variable TMPDIR names, else in /var/tmp (which is on a disk,
-/// whereas /tmp may be memory). All failures are Error{output} that name this folder. May be used by any
-/// number of threads at once.
+/// whereas /tmp may be in memory). All failures are Error{output} and name this folder. Any number of threads
+/// may use it at once.
 class SpillFile {
   public:
     /// `bytes` is the total size, 0 if unknown. If the file system can, it is reserved at once, so that a
@@ -26,7 +26,7 @@ class SpillFile {
 
     void write(std::uint64_t offset, std::span<const std::byte> bytes);
     void read(std::uint64_t offset, std::span<std::byte> bytes) const;
-    /// Frees the disk space of a range of bytes, if the file system can. It must not be read again.
+    /// Frees the disk space of a range of bytes, if the file system can. The range must not be read again.
     void forget(std::uint64_t offset, std::uint64_t bytes) noexcept;
 
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }

@@ -54,8 +54,9 @@ struct Execution {
     std::function<void(const Progress&)> progress = {};
 
     /// After a request the computation ends with Error{ErrorKind::cancelled} at its next step, usually within
-    /// a fraction of a second. The work on one layer, and some readers, cannot be interrupted, so very large
-    /// ones take longer. The flag must outlive the computation; nullptr: not cancellable.
+    /// a fraction of a second. Offsets, boolean operations and scan vectors end within a layer, too; some
+    /// readers and writers take longer for very large files or layers. The flag must outlive the computation;
+    /// nullptr: not cancellable.
     const CancelFlag* cancel = nullptr;
 
     [[nodiscard]] bool cancelled() const noexcept { return cancel != nullptr && cancel->requested(); }

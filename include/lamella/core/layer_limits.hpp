@@ -1,6 +1,6 @@
 #pragma once
 
-// What the work on one layer may take.
+// Limits of the work on one layer.
 
 #include "lamella/core/api.hpp"
 #include "lamella/core/execution.hpp"
@@ -10,17 +10,17 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Handed to what is made of a layer, such as an offset or scan vectors. Results never depend on it.
+/// Limits of an operation on a layer, such as an offset or scan vectors. Results never depend on them.
 struct LayerLimits {
-    /// Once this is requested the work ends with Error{ErrorKind::cancelled}, also amid a layer. nullptr:
-    /// nobody will ask.
+    /// After a request the operation ends with Error{ErrorKind::cancelled}, even in the middle of a layer.
+    /// nullptr: not cancellable.
     const CancelFlag* cancel = nullptr;
 
-    /// Bytes for what is made besides the layer: crossings, points of offsets, scan vectors. They are
-    /// estimated before memory is asked for, and more are Error{ErrorKind::limit}. 0: as much as there is.
+    /// Memory for data other than the layer, in bytes: crossings, points of offsets, scan vectors. It is
+    /// estimated before memory is allocated; more is Error{ErrorKind::limit}. 0: no limit.
     std::uint64_t memory = 0;
 
-    /// What is left of them while so many bytes are kept.
+    /// Returns the remaining limits while this number of bytes is kept.
     [[nodiscard]] LayerLimits without(std::uint64_t bytes) const noexcept {
         LayerLimits left = *this;
         if (memory != 0)
@@ -29,8 +29,8 @@ struct LayerLimits {
     }
 };
 
-/// Returns the limits of each of so many layers that are worked on at the same time in a run that may take
-/// `max_memory` bytes: a quarter of that in all. 0: as much as there is.
+/// Returns the limits of each of `layers` layers that are processed at the same time in a run that may take
+/// `max_memory` bytes: together they may take a quarter of that. 0: no limit.
 [[nodiscard]] LayerLimits layer_limits(const Execution& execution, std::uint64_t max_memory = 0,
                                        unsigned layers = 1);
 
