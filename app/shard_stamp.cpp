@@ -23,7 +23,7 @@
 namespace lamella::app {
 namespace {
 
-/// As text: a JSON number loses digits beyond 2^53.
+/// Returns the hash of a file as text, since a JSON number loses digits beyond 2^53.
 std::string hash_text(const std::string& path, const Execution& execution) {
     return fmt::format("{:016x}", file_hash(path, execution));
 }
@@ -121,11 +121,11 @@ std::string first_difference(const Json& one, const Json& other) {
     if (changes.empty())
         return {};
     const Json::json_pointer first(changes[0]["path"].get<std::string>());
-    const auto told = [&](const Json& object) {
+    const auto value_in = [&](const Json& object) {
         return object.contains(first) ? compact_json(object[first]) : "nothing";
     };
-    return fmt::format("{} is {} in the one and {} in the other", first.to_string().substr(1), told(one),
-                       told(other));
+    return fmt::format("{} is {} in the one and {} in the other", first.to_string().substr(1), value_in(one),
+                       value_in(other));
 }
 
 Json job_parameters(const Command& command, const FileJob& job) {

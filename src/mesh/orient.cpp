@@ -64,7 +64,7 @@ PageArray<std::uint32_t> find_neighbours(Executor& executor, const IndexedMesh& 
 struct Patches {
     Shells shells;             ///< the patches, as if they were shells
     std::vector<bool> flipped; ///< triangles flipped
-    std::vector<bool> one_sided;
+    std::vector<bool> non_orientable;
 };
 
 Patches flood(const IndexedMesh& mesh, const PageArray<std::uint32_t>& neighbours) {
@@ -80,7 +80,7 @@ Patches flood(const IndexedMesh& mesh, const PageArray<std::uint32_t>& neighbour
             continue;
         const auto patch = static_cast<std::uint32_t>(shells.first.size());
         shells.first.push_back(start);
-        patches.one_sided.push_back(false);
+        patches.non_orientable.push_back(false);
         members.assign(1, start);
         shells.of_triangle[start] = patch;
         for (std::size_t next = 0; next < members.size(); ++next) {
@@ -96,11 +96,11 @@ Patches flood(const IndexedMesh& mesh, const PageArray<std::uint32_t>& neighbour
                     patches.flipped[j] = turn;
                     members.push_back(j);
                 } else if (patches.flipped[j] != turn) {
-                    patches.one_sided[patch] = true;
+                    patches.non_orientable[patch] = true;
                 }
             }
         }
-        if (patches.one_sided[patch])
+        if (patches.non_orientable[patch])
             for (const std::uint32_t i : members)
                 patches.flipped[i] = false;
     }
@@ -185,7 +185,7 @@ std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& m
             patches_here.emplace_back(patches.shells.of_triangle[use.triangle], upwards(use) ? 1 : -1);
         add_up(patches_here);
         for (const auto& [patch, balance] : patches_here)
-            if (!patches.one_sided[patch])
+            if (!patches.non_orientable[patch])
                 found[worker].push_back({ends_of(mesh, uses[0]), patch, balance});
     });
     std::vector<UnevenUse> all;
@@ -472,7 +472,7 @@ void flip_by_volume(Executor& executor, const IndexedMesh& mesh, Patches& patche
     for (const Content& content : contents)
         asked.push_back(content.certain());
     for (std::size_t p = 0; p < patches.shells.size(); ++p)
-        if (const std::uint32_t s = shells.of_triangle[patches.shells.first[p]]; patches.one_sided[p])
+        if (const std::uint32_t s = shells.of_triangle[patches.shells.first[p]]; patches.non_orientable[p])
             asked[s] = shells.closed[s] = false;
     const std::vector<Sense> senses = find_senses(executor, now, shells, boxes, asked);
     const auto turns = [&](std::uint32_t s) {
@@ -529,8 +529,8 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
                 use.balance = -use.balance;
     }
 
-    result.non_orientable_patches =
-        static_cast<std::uint64_t>(std::count(patches.one_sided.begin(), patches.one_sided.end(), true));
+    result.non_orientable_patches = static_cast<std::uint64_t>(
+        std::count(patches.non_orientable.begin(), patches.non_orientable.end(), true));
     result.mesh = flipped_where(mesh, flipped);
     for (std::size_t i = 0; i < n; ++i)
         if (flipped[i]) {

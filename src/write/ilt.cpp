@@ -133,11 +133,11 @@ class IltWriter final : public OrderedWriter {
 
     std::vector<std::string> warnings() const override {
         std::vector<std::string> lines = OrderedWriter::warnings();
-        std::map<std::string, std::vector<std::string_view>> told; // with the sections that are affected
+        std::map<std::string, std::vector<std::string_view>> sections_by_line;
         for (std::size_t i = 0; i < sections_.size(); ++i)
             for (const std::string& line : entries_[i].writer->warnings())
-                told[line].push_back(sections_[i].name);
-        for (const auto& [line, by] : told)
+                sections_by_line[line].push_back(sections_[i].name);
+        for (const auto& [line, by] : sections_by_line)
             lines.push_back(fmt::format(
                 "{}: {}{}", by.front(), line,
                 by.size() == 1 ? "" : fmt::format(" (and in {} more of its files)", by.size() - 1)));
