@@ -46,7 +46,7 @@ def compared(paper, cell, stopped_after):
     """`paper` is a number, None if the authors stopped, "" if they give none."""
     if cell is None:
         return ""
-    said = "not told" if paper == "" else (f"> {stopped_after:,}" if paper is None else brief(paper))
+    said = "not given" if paper == "" else (f"> {stopped_after:,}" if paper is None else brief(paper))
     mine = cell.best_known
     if mine is None or paper == "" or cell.lower_bound:
         return f"{said} / {ours(cell)}"

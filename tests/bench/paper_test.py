@@ -63,7 +63,7 @@ class Cells(unittest.TestCase):
         self.assertEqual(tables.compared(10.0, bound, 14400), "10.0 / ≥ 40.0")
         self.assertEqual(tables.compared(None, measured, 14400), "> 14,400 / 2.00 = > 7,200")
         self.assertEqual(tables.compared(10.0, Cell("p", "ecc", "wrong"), 14400), "10.0 / wrong")
-        self.assertEqual(tables.compared("", measured, 14400), "not told / 2.00")
+        self.assertEqual(tables.compared("", measured, 14400), "not given / 2.00")
 
     def test_a_part_of_the_planes_gives_the_searches_of_all(self):
         """Of a sheet all planes are alike, so the estimate of a count is exact."""
