@@ -108,7 +108,7 @@ Json layers_json(const FileResult& result) {
                           {"area_mm2", layer.measure.area_mm2},
                           {"perimeter_mm", layer.measure.perimeter_mm},
                           {"open_chains", layer.measure.open_chains},
-                          // As text: a JSON number loses digits beyond 2^53.
+                          // Text, since a JSON number loses digits beyond 2^53.
                           {"hash", fmt::format("{:016x}", layer.hash)}});
         if (layer.open_gaps.count > 0)
             layers.back().update(open_gaps_json(layer.open_gaps));

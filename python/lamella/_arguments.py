@@ -47,7 +47,7 @@ def described(value: object) -> str:
     if value is None or isinstance(value, numbers.Number):
         try:
             return excerpt(value)
-        except ValueError:  # Python does not convert integers of so many digits
+        except ValueError:  # Python does not convert integers of thousands of digits
             return "a number of thousands of digits"
     return f"an object of type {excerpt(type(value).__name__)}"
 

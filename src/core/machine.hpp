@@ -16,7 +16,7 @@ inline constexpr std::size_t large_page = std::size_t{2} << 20;
 
 /// Large memory whose bytes are zero. The start is a multiple of 64 bytes.
 struct LargeMemory {
-    void* data = nullptr;  ///< null where the machine has not so much memory
+    void* data = nullptr;  ///< nullptr if the machine lacks the memory
     std::size_t bytes = 0; ///< as `release_large_memory` takes them
 };
 [[nodiscard]] LargeMemory take_large_memory(std::size_t bytes) noexcept;

@@ -1,4 +1,4 @@
-// What the standard library knows of a machine: for systems that no other source is written for.
+// Implements machine.hpp with the standard library alone, for systems without a source of their own.
 
 #include "core/machine.hpp"
 

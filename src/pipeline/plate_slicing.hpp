@@ -25,8 +25,8 @@ using PlateSink = std::function<std::function<void()>(std::span<const Layer> par
 using ShapeVisitor =
     std::function<void(std::size_t shape, const Mesh& mesh, std::uint64_t begin, std::uint64_t end)>;
 
-/// Size of the data that a sink makes of layers: about that of the layers, or so much more that only a few
-/// planes may be in flight, whatever `points_in_flight` is.
+/// Size of the data that a sink makes of layers: about that of the layers, or so large that only a few planes
+/// may be in flight, whatever `points_in_flight` is.
 enum class SinkCost { proportional, expanding };
 
 /// Returns the layers of the parts on one plane, with the negative volumes subtracted; takes the arguments of

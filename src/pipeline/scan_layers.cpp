@@ -53,7 +53,7 @@ LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& stra
 
 namespace {
 
-/// What errors call the parts of a file.
+/// Returns the names of the parts of a file in errors.
 std::vector<std::string> names_of(const LayerFileInfo& info, const std::string& file) {
     std::vector<std::string> names;
     for (const PartInfo& part : info.parts) {

@@ -20,13 +20,13 @@ int open_nameless(const std::string& folder, mode_t permissions) {
     do
         descriptor = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, permissions);
     while (descriptor < 0 && errno == EINTR);
-    // What file systems and kernels say that cannot do that.
+    // File systems and kernels without O_TMPFILE report one of these.
     if (descriptor < 0 && (errno == EISDIR || errno == EINVAL))
         errno = EOPNOTSUPP;
     return descriptor;
 }
 
-// A name for what is not finished: hidden, beside the target.
+// Returns a name for an unfinished file: hidden, in the folder of the target.
 std::string temporary_name(const std::filesystem::path& target, std::string_view owner, int attempt) {
     // Room for the rest of the name: most file systems end at 255 bytes.
     const std::string stem = target.filename().string().substr(0, 200);

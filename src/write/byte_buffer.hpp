@@ -92,7 +92,7 @@ class BufferPool : public std::enable_shared_from_this<BufferPool> {
     }
 
   private:
-    // As many buffers as there may be working threads; more would only keep memory.
+    // Enough for all working threads; more would only waste memory.
     static constexpr std::size_t most_idle = 64;
 
     void give_back(std::unique_ptr<ByteBuffer> buffer) noexcept {

@@ -115,9 +115,9 @@ inline std::vector<std::pair<std::size_t, std::size_t>> match(const std::vector<
 
 } // namespace pairing
 
-/// Assigns new links to nodes with equal ends. `crowded` must contain every such node at least once; nodes
-/// not in use are ignored. Returns the number of non-manifold edges. O(nodes of the graph + c log c) for c
-/// crowded nodes; only called if there are any.
+/// Assigns new links to nodes with equal ends. `non_manifold` must contain every such node at least once;
+/// nodes not in use are ignored. Returns the number of non-manifold edges. O(nodes of the graph + c log c)
+/// for c nodes in `non_manifold`; only called if there are any.
 template <class Ends>
 std::uint64_t pair_non_manifold_edges(CutGraph<Ends>& graph, std::vector<std::uint32_t> non_manifold,
                                       Executor& executor) {
