@@ -47,7 +47,7 @@ def report(title, stats, *checks):
 
 
 def view(program, mesh, page):
-    """Writes a page of the layers, unless the program was built without the viewer, and says why then."""
+    """Writes a page of the layers. If the program was built without the viewer, prints that and returns False."""
     result = subprocess.run([program, "view", mesh, "-o", page], capture_output=True, text=True, check=False)
     if result.returncode == 2 and "no viewer" in result.stderr:
         print(f"The page is left out: {result.stderr.strip().removeprefix('lamella: error: ')}")
@@ -58,7 +58,7 @@ def view(program, mesh, page):
 
 
 def run(*command):
-    """What the command prints; its complaint ends the demo."""
+    """Returns the output of the command. If it fails, prints its output and exits."""
     result = subprocess.run([str(part) for part in command], capture_output=True, text=True, check=False)
     if result.returncode != 0:
         sys.exit(f"demo: {' '.join(str(part) for part in command)}\n{result.stdout}{result.stderr}"

@@ -97,8 +97,8 @@ class Bench:
         told = {"seconds": seconds, "ratio": seconds["ranges"] / seconds["whole"], "ranges": ranges["ranges"],
                 "peak_rss_bytes": {"whole": whole["peak_rss_bytes"], "ranges": ranges["peak_rss_bytes"]}}
         print(f"whole: {seconds['whole']:.2f} s, {whole['peak_rss_bytes'] / 1e6:.0f} MB; with "
-              f"{self.options.fitting_memory} in {slabs['slabs']} slabs: {seconds['slabs']:.2f} s, "
-              f"{slabs['peak_rss_bytes'] / 1e6:.0f} MB: {told['ratio']:.2f} times the time", flush=True)
+              f"{self.options.fitting_memory} in {ranges['slabs']} slabs: {seconds['slabs']:.2f} s, "
+              f"{ranges['peak_rss_bytes'] / 1e6:.0f} MB: {told['ratio']:.2f} times the time", flush=True)
         self.remove(mesh, whole["output"])
         return told
 

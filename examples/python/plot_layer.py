@@ -30,7 +30,7 @@ def main(mesh, height, image):
     axes.set(xlim=stack.bounds[:, 0], ylim=stack.bounds[:, 1], aspect="equal", xlabel="x in mm", ylabel="y in mm")
     axes.set_title(f"z = {layer.z:.2f} mm: {layer.area:.1f} mm²")
     figure.savefig(image)
-    print(f"{picture}: layer {layer.index} of {len(stack)}, {layer.area:.3f} mm2")
+    print(f"{image}: layer {layer.index} of {len(stack)}, {layer.area:.3f} mm2")
 
 
 if __name__ == "__main__":

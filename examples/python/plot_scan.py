@@ -32,7 +32,7 @@ def main(mesh, height, image, strategy=None):
     axes.set_title(f"z = {scanned.z:.2f} mm: {sum(f.build_seconds for f in scanned.figures):.1f} s")
     axes.legend()
     figure.savefig(image)
-    print(f"{picture}: layer {scanned.index}, {len(vectors)} lines")
+    print(f"{image}: layer {scanned.index}, {len(vectors)} lines")
 
 
 if __name__ == "__main__":
