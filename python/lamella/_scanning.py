@@ -112,8 +112,8 @@ def scan(
 ) -> Iterator[ScanLayer]:
     """Makes scan vectors of layers in ascending z, such as a Stack or a stream from `iter_layers`. Yields them one by
     one, and holds no more layers than skins need. Skins take account of layers that `iter_layers` leaves out by its
-    options; above and below other layers, and a Stack with only some of its part's layers, there is no material. Points of
-    a Stack from a file are left out if they are collinear except for the rounding of the file.
+    options; above and below other layers, and a Stack with only some of its part's layers, there is no material. Points
+    of a Stack from a file are left out if they are collinear except for the rounding of the file.
 
     strategy: a ScanStrategy, of which a copy is taken; the path of a TOML file, as for the program (needs Python 3.11);
         the same tables as a dict, such as {"hatch": {"distance": 0.08}}; None is the default strategy.
