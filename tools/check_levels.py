@@ -11,7 +11,7 @@ import re
 import sys
 from pathlib import Path
 
-# The levels, lowest first. A module may include itself and the modules that MODULES allows it, which are on levels below.
+# The levels, lowest first. A module may include itself and its modules in MODULES, which are on lower levels.
 LEVELS = [
     ["core"],
     ["mesh", "contour", "system"],
@@ -20,7 +20,7 @@ LEVELS = [
     ["pipeline"],
 ]
 
-# The modules of the engine. No other module may be included by them.
+# The modules of the engine. They may include no other module.
 ENGINE = ["core", "mesh", "contour", "slicing", "polygon", "scan"]
 
 # The modules that each module may include besides itself.
@@ -32,15 +32,15 @@ MODULES = {
     "container": ["core", "system"],
     "read": ["core", "system", "container", "mesh", "contour"],
     "slicing": ["core", "mesh", "contour"],  # not container: engines know no formats
-    "polygon": ["core", "contour"],  # not mesh: layers, whoever made them
-    "raster": ["core", "contour"],  # not container: what becomes of pixels is another matter
-    "scan": ["core", "contour", "polygon"],  # not mesh: layers, whoever made them
+    "polygon": ["core", "contour"],  # not mesh: layers of any source
+    "raster": ["core", "contour"],  # not container: pixels, not files
+    "scan": ["core", "contour", "polygon"],  # not mesh: layers of any source
     "write": ["core", "system", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
     "pipeline": ["core", "system", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "scan", "write"],
 }
 
-# Third-party headers of the library: each is visible in one source (zlib in one that packs and one that unpacks,
-# the hash in one for layers and one for files), text formatting in all of them.
+# Third-party headers of the library. Each may be included by one source (zlib by those that compress and decompress,
+# the hash by one for layers and one for files). Text formatting is allowed everywhere.
 THIRD_PARTY = {
     "expat.h": "src/container/xml.cpp",
     "fast_float": "src/container/parse_number.cpp",
@@ -49,14 +49,14 @@ THIRD_PARTY = {
     "zlib.h": "src/container/deflate.cpp src/container/gzip.cpp",
 }
 THIRD_PARTY_ANYWHERE = {"fmt"}
-# Of the programs.
+# Third-party headers of the programs.
 THIRD_PARTY_OF_CONSUMERS = {
     "mpi.h": "app/mpi_processes.cpp",
     "polyclipping/clipper.hpp": "bench/offsets_of_others.cpp bench/scan.cpp",
     "toml++/toml.h": "app/toml_file.cpp",
 }
 
-# The one consumer that opens private headers: it times the kernels alone.
+# The only consumer that may include private headers: it measures the kernels alone.
 KERNEL_BENCHMARK = "bench/kernels.cpp"
 
 STANDARD = set(
@@ -71,12 +71,12 @@ STANDARD = set(
     valarray variant vector version""".split()
 )
 
-# Headers of the operating system, which the sources of one module include.
+# Headers of the operating system, which only the sources of one module may include.
 SYSTEM = re.compile(r"^((sys|linux|net|netinet|arpa)/.*|(unistd|fcntl|sched|pthread|poll|signal|spawn|dirent|dlfcn|"
                     r"malloc|errno|limits|stdlib|stdint)(\.h)?)$")
 SYSTEM_MODULE = "src/system/"
 
-# Types at the level of the namespace, as headers lay them out.
+# Types at namespace level, as headers lay them out.
 TYPE = re.compile(r"^(?:template <[^\n]*>\n)?(?:class|struct|union|enum class) (\w+)(?: final)?(?: : [^{;\n]*)? \{", re.MULTILINE)
 
 INCLUDE = re.compile(r'^[ \t]*#[ \t]*include[ \t]*(?:<([^>\n]+)>|"([^"\n]+)")', re.MULTILINE)
@@ -99,7 +99,7 @@ class Architecture:
         return self.findings
 
     def check_type_names(self):
-        """All modules share one namespace: two types of one name are undefined, even where nobody sees both."""
+        """All modules share one namespace, so types must have distinct names, even if no source sees both."""
         known = {}
         for folder in ["include", "src"]:
             for path in sorted((self.root / folder).rglob("*.hpp")):
@@ -110,7 +110,7 @@ class Architecture:
                         self.findings.append(f"{name}: {match[1]} is the name of a type in {first}, too")
 
     def check_exports(self):
-        """A shared library exports what is between two macros, for compilers of all kinds (lamella/core/api.hpp)."""
+        """A shared library exports the declarations between two macros (lamella/core/api.hpp)."""
         for path in sorted((self.root / "include").rglob("*.hpp")):
             text = path.read_text(encoding="utf-8")
             ends = ["LAMELLA_API_BEGIN\nnamespace lamella {", "} // namespace lamella\nLAMELLA_API_END\n"]
@@ -129,7 +129,7 @@ class Architecture:
 
     def check_file(self, path):
         name = path.relative_to(self.root).as_posix()
-        # Comments keep their line breaks, so that line numbers stay right.
+        # Line breaks of comments are kept, so that line numbers stay right.
         text = COMMENT.sub(lambda m: "\n" * m.group().count("\n"), path.read_text(encoding="utf-8"))
         for match in INCLUDE.finditer(text):
             line = text.count("\n", 0, match.start()) + 1
@@ -147,7 +147,7 @@ class Architecture:
         return self.judge_own(name, target)
 
     def resolve(self, name, header, quoted):
-        """The file of this project that an include means, relative to the root, or None."""
+        """Returns the file of this project that an include names, relative to the root, or None."""
         places = ["include", "src", "tests", "."] if quoted else ["include"]
         if quoted:
             places.insert(0, str(Path(name).parent))
@@ -204,7 +204,7 @@ class Architecture:
         return f"only public headers may be included here, not {target}"
 
     def judge_folder(self, name, target):
-        """What lies in a folder of a module is known there only: engines of different folders do not know each other."""
+        """Headers in a folder of a module may be included only there, so engines in different folders are independent."""
         folder = Path(target).parent
         if target.startswith("src/") and len(folder.parts) > 2 and Path(name).parent != folder:
             return f"only sources of {folder.as_posix()} may include {target}"
@@ -212,7 +212,7 @@ class Architecture:
 
 
 def module_of(name):
-    """The module that a path belongs to: "core", ..., "main header", or None outside the library and its tests."""
+    """Returns the module of a path: "core", ..., "main header", or None outside the library and its tests."""
     parts = name.split("/")
     if parts[0] == "include":
         return parts[2] if len(parts) > 3 else "main header"

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Makes in a folder what is released: a source archive, which has the page of the viewer ready made, so that nobody who
-# builds it needs Node.js or npm; a Debian package of the program in BUILD; and a wheel, built from that archive. The
-# sources are those that git tracks, as they are now; the same ones give the same archive.
+# Makes the files of a release in FOLDER: a source archive, which contains the finished page of the viewer, so that its
+# build needs no Node.js or npm; a Debian package of the program in BUILD; and a wheel, built from that archive. The
+# sources are the files that git tracks, with local changes; the same sources give the same archive.
 # usage: tools/dist.sh BUILD FOLDER
 set -euo pipefail
 build=$(realpath "$1")
@@ -28,7 +28,7 @@ trap 'rm -rf "$work"' EXIT
 git -c safe.directory="$PWD" archive --prefix="$name/" "$tree" | tar --extract --directory "$work"
 cp "$page" "$work/$name/viewer/"
 cp "$build/viewer/packages/dist/index.html" "$work/$name/viewer/viewer.html"
-# Root's tar keeps the modes of files where that of others takes the umask.
+# The modes are set, since tar keeps those of the files as root and applies the umask otherwise.
 tar --create --sort=name --mtime="@$SOURCE_DATE_EPOCH" --owner=0 --group=0 --numeric-owner --mode=a+rX,u+w,go-w \
     --directory "$work" "$name" |
     gzip --no-name >"$dist/$name.tar.gz"
@@ -39,7 +39,7 @@ cpack --config "$build/CPackConfig.cmake" -B "$work/debian" >"$work/log" || {
 }
 mv "$work"/debian/*.deb "$dist/"
 
-# Debian's packages belong to Debian's interpreter, whichever comes first in the path. A compiler cache may have the objects of
-# these sources in another folder.
+# Debian's packages work only with Debian's interpreter, which need not be the first in the path. A compiler cache may
+# have the objects of these sources from another folder.
 export CMAKE_ARGS="${CMAKE_ARGS:-} -D CMAKE_UNITY_BUILD=ON -D CMAKE_MODULE_LINKER_FLAGS=-s"
 CCACHE_BASEDIR=$work/$name /usr/bin/python3 -m pip --quiet wheel "$work/$name" --no-build-isolation --no-deps --no-index --wheel-dir "$dist"

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Draws a layered SVG file as a picture: the stack of layers opened at one of them, and that layer from above.
+"""Draws a layered SVG file as an image: the stack of layers opened at one of them, and that layer from above.
 
-usage: tools/draw_layers.py LAYERED.svg PICTURE.svg [HEIGHT]
+usage: tools/draw_layers.py LAYERED.svg IMAGE.svg [HEIGHT]
 
-HEIGHT is where the stack is opened, as a part of the whole (default 0.93). The geometry is that of the file;
-only every few layers are drawn, and points less than a fifth of a pixel off a straight line are left out.
+HEIGHT is the height at which the stack is opened, as a part of the whole (default 0.93). The geometry is that of the
+file; only every few layers are drawn, and points less than a fifth of a pixel off a straight line are left out.
 """
 
 import math
@@ -13,14 +13,14 @@ import xml.etree.ElementTree as xml
 
 WIDTH, HEIGHT, MARGIN = 960, 560, 40
 SHEETS = 56  # layers drawn in the stack
-GAP = 0.2  # how far the stack is opened, as a part of the model's height
-TILT = math.radians(24)  # of the view, above the horizon
-TURN = math.radians(32)  # of the model, about the vertical
+GAP = 0.2  # height by which the stack is opened, as a part of the model's height
+TILT = math.radians(24)  # of the view above the horizon
+TURN = math.radians(32)  # of the model about the vertical axis
 PAPER, INK, LOW, HIGH, CUT = "#fbfaf7", "#2f3437", (0x8f, 0xa3, 0xad), (0xe9, 0xee, 0xf0), "#e8762c"
 
 
 def read_layers(path):
-    """Tops and layers: a list of z and a list of layers, each a list of rings, each a list of (x, y)."""
+    """Returns the tops, a list of z, and the layers: each is a list of rings, each ring a list of (x, y)."""
     tops, layers = [], []
     for group in xml.parse(path).getroot().iter("{http://www.w3.org/2000/svg}g"):
         rings = []
@@ -34,7 +34,7 @@ def read_layers(path):
 
 
 def path_data(rings, project):
-    """SVG path data of the projected rings, thinned to what can be seen."""
+    """Returns SVG path data of the projected rings, without points that cannot be seen."""
     parts = []
     for ring in rings:
         points = thinned([project(point) for point in ring], 0.2)
@@ -43,7 +43,7 @@ def path_data(rings, project):
 
 
 def thinned(points, tolerance):
-    """Douglas and Peucker 1973 on a ring, without recursion."""
+    """Simplifies a ring by Douglas and Peucker 1973, without recursion."""
     middle = max(range(len(points)), key=lambda i: math.dist(points[0], points[i]))
     ring = points + points[:1]
     keep = {0, middle}

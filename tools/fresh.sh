@@ -1,16 +1,16 @@
 #!/bin/bash
-# `make demo` and `make test` on a Debian 12 that is up to date and has git and make, and nothing else. Such a machine is
-# made in a folder, from the mirror that apt uses here, and removed at the end; the files are those that git tracks, as
-# they are now. Of this machine it knows only how to reach mirror and npm's registry. What has been done here with the very
-# same bytes is not done again: what a compiler cache has is not compiled, and test programs of modules that passed are built
-# and compared instead of run. Where no machine can be made, this says why and ends well.
+# Runs `make demo` and `make test` on an up-to-date Debian 12 with git, make and nothing else. Such a machine is
+# made in a folder, from the mirror that apt uses here, and removed at the end. The sources are the files that git tracks,
+# with local changes. From this machine it takes only the settings to reach the mirror and npm's registry. Work done here
+# on the same bytes is not repeated: objects in a compiler cache are reused, and test programs of modules that passed are
+# built and compared instead of run. If no machine can be made, the script prints the reason and exits with 0.
 # usage: tools/fresh.sh
 # shellcheck disable=SC2317 # functions are called by the shell that unshare starts
 set -euo pipefail
 cd "$(dirname "$0")/.."
 umask 022
 
-readonly no_machine=77 # the status of what cannot make one
+readonly no_machine=77 # exit status if no machine can be made
 readonly aside=/var/cache/compiled
 
 skip() {
@@ -19,9 +19,9 @@ skip() {
 }
 
 make_machine() {
-    # Users other than root, too, must get into it.
+    # Users other than root must be able to enter it.
     mkdir "$root" && chmod 0755 "$root" || return
-    # What need not have reached the disk is installed sooner.
+    # Packages are installed faster without waiting for the disk.
     mkdir -p "$root/etc/dpkg/dpkg.cfg.d" && echo force-unsafe-io >"$root/etc/dpkg/dpkg.cfg.d/no-hurry"
     debootstrap --variant=minbase --include=git,make bookworm "$root" "$mirror" >"$folder/log" 2>&1 || return
     mount -t proc proc "$root/proc" && mount --rbind /dev "$root/dev" && mount --rbind /sys "$root/sys" || return
@@ -37,8 +37,8 @@ make_machine() {
     { on_it / apt-get update --quiet=2 && on_it / apt-get upgrade --quiet=2 --yes; } >>"$folder/log" 2>&1
 }
 
-# What the same compiler made here of the same source and headers, as these are found there, need not be made again. The
-# cache lies where nothing finds it that is not told of it: there is still nothing but git and make.
+# Lets the machine reuse objects that the same compiler made here from the same source and headers. The cache is in a
+# folder that only `cache` refers to, so the machine still has only git and make.
 bring_compiled() {
     local program library
     program=$(command -v ccache) || return 0
@@ -53,7 +53,7 @@ bring_compiled() {
     echo "fresh: what was compiled here is not compiled there again" >>"$folder/summary"
 }
 
-# Runs a command in a folder of that machine. Nothing comes along from here but the way to the network, and `cache`.
+# Runs a command in a folder of that machine. Only the network settings and `cache` are passed on from here.
 on_it() {
     local name way=("${cache[@]}")
     for name in http_proxy https_proxy no_proxy HTTP_PROXY HTTPS_PROXY NO_PROXY; do
@@ -79,13 +79,13 @@ make_test() {
     on_it "$PWD" make test TESTS="$others"
 }
 
-# The modules whose tests `make test` has run here, as the program that was built there, too, byte for byte.
+# Prints the modules whose tests passed here in `make test` and whose test program was built there with the same bytes.
 passed_here() {
     local program module modules=
     for program in build/tests/*/lamella_*_test; do
         module=${program#build/tests/}
         module=${module%/*}
-        # That of the whole way stands for tests of the program, too, which differ by what a machine has.
+        # The module agreement also runs tests of the program, which depend on the machine.
         if [ "$module" != agreement ] && [ "$program" = "build/tests/$module/lamella_${module}_test" ] &&
             [ build/tests/passed -nt "$program" ] && cmp --quiet "$program" "$root$PWD/$program"; then
             modules=$modules${modules:+|}$module
@@ -98,7 +98,7 @@ run() {
     local cache=()
     make_machine || exit "$no_machine"
     bring_compiled
-    # In a folder of the same name, since objects contain it; as private as root's own, where users often clone to.
+    # The folder has the same name, since objects contain it, and the modes of root's home, where users often clone to.
     mkdir -p "$root$PWD" && chmod 0700 "$root$PWD"
     git -c safe.directory="$PWD" archive "$tree" | tar --extract --directory "$root$PWD"
 
@@ -111,7 +111,7 @@ run() {
             status=1
         }
     done
-    # A registry out of reach is no fault of ours; what else leaves the page out is.
+    # An unreachable registry is no failure; any other reason for a missing page is.
     if [ ! -e "$root$PWD/out/rook.html" ]; then
         echo "fresh: make demo left the page out" >>"$folder/summary"
         [ ! -e "$root$PWD/build/viewer/packages/installed" ] || status=1
@@ -131,9 +131,9 @@ mirror=$(sed -n 's/^deb \(.*\) bookworm main$/\1/p' <<<"$sources" | head -n 1)
 tree=$(git -c safe.directory="$PWD" stash create 2>/dev/null) || skip "this is no checkout by git"
 tree=${tree:-HEAD}
 certificates=/etc/ssl/certs/ca-certificates.crt
-registry=$(npm config get registry 2>/dev/null || true) # without one, npm knows its own
+registry=$(npm config get registry 2>/dev/null || true) # without one, npm uses its default
 
-# The mounts end with the processes that see them, and these with the first of them, the one that unshare starts.
+# The mounts disappear with the processes that see them, and those end with the first one, which unshare starts.
 folder=$(mktemp -d "${TMPDIR:-/var/tmp}/lamella-fresh.XXXXXX")
 root=$folder/root
 trap 'rm -rf --one-file-system "$folder"' EXIT

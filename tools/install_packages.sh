@@ -1,6 +1,6 @@
 #!/bin/sh
-# Installs the Debian packages of the given lists, skipping those that are there. An entry PACKAGE=COMMAND is skipped
-# where the command is there, too; an entry PACKAGE:ARCHITECTURE is the package for another kind of processor.
+# Installs the Debian packages of the given lists, skipping those that are installed. An entry PACKAGE=COMMAND is also
+# skipped if the command exists; an entry PACKAGE:ARCHITECTURE is the package for another kind of processor.
 # usage: tools/install_packages.sh LIST...
 set -eu
 
@@ -11,7 +11,7 @@ fi
 
 native=$(dpkg --print-architecture)
 
-# Of a package for several kinds of processors dpkg-query tells each that is there, unless one is named.
+# dpkg-query lists a package for each architecture that is installed, unless one is given.
 is_installed() {
     case $1 in
     *:*) kind=${1#*:} ;;
@@ -54,7 +54,7 @@ for kind in $foreign; do
     $as_root dpkg --add-architecture "$kind"
 done
 $as_root apt-get update --quiet=2
-# Word splitting is meant: one argument per package.
+# Word splitting is intended: one argument per package.
 # shellcheck disable=SC2086
 $as_root env DEBIAN_FRONTEND=noninteractive apt-get install --quiet=2 --yes --no-install-recommends \
     --option Dpkg::Use-Pty=0 $missing >/dev/null

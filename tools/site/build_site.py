@@ -3,8 +3,8 @@
 
 usage: tools/site/build_site.py BUILD_FOLDER SITE_FOLDER
 
-BUILD_FOLDER is where Lamella was built; of its Python module, python/ in there, the reference is made. The pages go through
-MkDocs, which complains of every link that leads nowhere.
+BUILD_FOLDER is the build tree of Lamella; the Python reference is made from the module in its folder python/. MkDocs
+builds the pages and reports every broken link.
 """
 
 import re
@@ -18,7 +18,7 @@ import cpp_reference
 import python_reference
 
 ROOT = Path(__file__).resolve().parents[2]
-# Pages that live elsewhere in the tree, and what they are called in the site.
+# Pages outside docs/, and their names in the site.
 ADOPTED = {"bench/README.md": "measuring.md", "CHANGELOG.md": "changelog.md", "CONTRIBUTING.md": "contributing.md"}
 LINK = re.compile(r"(\]\()([^)#\s]+)((?:#[^)]*)?\))")
 
@@ -41,7 +41,7 @@ def main(build, site):
 
 
 def with_all_pages(configuration):
-    """The configuration with a line for each page in place of a pattern such as `algorithms/*.md`; MkDocs has no patterns."""
+    """Returns the configuration with patterns such as `algorithms/*.md` expanded to pages; MkDocs has no patterns."""
 
     def lines(match):
         pages = sorted(page.relative_to(ROOT / "docs").as_posix() for page in (ROOT / "docs").glob(match[2]))
@@ -51,8 +51,8 @@ def with_all_pages(configuration):
 
 
 def relinked(page):
-    """The text of a page with its links leading to where their targets are in the site; links to what the site does not
-    have, such as sources, become plain words."""
+    """Returns the text of a page with links that lead to the targets in the site. Links to files that the site lacks,
+    such as sources, become plain words."""
     place = site_place(page)
 
     def follow(match):
@@ -69,7 +69,7 @@ def relinked(page):
 
 
 def site_place(path):
-    """Where a file of the tree is in the site, or None."""
+    """Returns the path of a file of the tree in the site, or None."""
     inside = path.relative_to(ROOT).as_posix()
     if inside in ADOPTED:
         return Path(ADOPTED[inside])

@@ -31,7 +31,7 @@ class Declaration:
 
     @property
     def name(self):
-        """What it declares: a type, a function or a constant."""
+        """Name of the declared type, function or constant."""
         text = " ".join(line.split("//")[0] for line in self.code)
         text = re.sub(r"\[\[.*?\]\]", "", text)
         found = (re.search(r"^\s*(?:template\s*<.*?>\s*)?(?:enum\s+class|class|struct|union)\s+(\w+)", text)
@@ -96,7 +96,7 @@ def module_page(module, headers):
 
 
 def with_tables(comment):
-    """Markdown takes indented lines for what is to be kept as it is only behind an empty line."""
+    """Adds empty lines before indented lines, as Markdown needs for preformatted text."""
     for before, line in zip(["", *comment], comment):
         if line.startswith("    ") and before and not before.startswith("    "):
             yield ""

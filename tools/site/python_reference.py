@@ -29,7 +29,7 @@ def entry(name, thing):
 
 
 def signature(name, thing):
-    """None for what cannot tell it: functions written in C++ say it in their docstrings, properties have none."""
+    """Returns the lines of a signature. Empty for properties and for C++ functions, whose docstrings contain it."""
     try:
         found = inspect.signature(thing) if callable(thing) else None
     except ValueError:
@@ -44,7 +44,7 @@ def signature(name, thing):
 
 
 def parameters(found):
-    """One by one, with the star before those that have to be named."""
+    """Yields the parameters, with a star before those that must be passed by name."""
     starred = False
     for parameter in found.parameters.values():
         if parameter.kind is parameter.KEYWORD_ONLY and not starred:
@@ -54,12 +54,12 @@ def parameters(found):
 
 
 def unquoted(text):
-    """Annotations are kept as the text that they were written in."""
+    """Returns a parameter without the quotes around its annotation."""
     return re.sub(r"(: |-> )'([^']*)'", r"\1\2", text)
 
 
 def documented(thing):
-    """Lines that begin with names and a colon tell of arguments: each is an item of a list."""
+    """Returns the docstring. Lines that begin with names and a colon describe arguments: each becomes a list item."""
     if not (callable(thing) or inspect.isdatadescriptor(thing)):
         return []
     lines = []
