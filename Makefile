@@ -1,27 +1,28 @@
-# The short way to everything. Each target works on a Debian 12 that has only git, make, and root or sudo; the
-# build itself is CMake's (CMakePresets.json).
+# Entry points for common work. Each target works on a Debian 12 that has only git, make, and root or sudo; CMake does
+# the build itself (CMakePresets.json).
 
 PREFIX ?= /usr/local
 JOBS := $(shell nproc)
-# One more than there are processors: some tests mostly wait.
+# One more than the number of processors: some tests mostly wait.
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
 MODULES := core mesh parts contour slicing polygon scan system container read raster write pipeline
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include parts python src tests -name '*.[ch]pp' 2>/dev/null)
 
-# Where nothing was built before, the sources of a module are compiled together: in two thirds of the time.
+# The first build of a tree compiles the sources of a module together, which takes two thirds of the time.
 ifeq ($(wildcard build/CMakeCache.txt),)
 RELEASE := -D CMAKE_UNITY_BUILD=ON
 endif
 
-# A compiler cache is used where there is one, for the same sources in another folder and with messages in another language, too.
+# A compiler cache is used if there is one; it also serves the same sources in another folder and messages in another
+# language.
 ifneq ($(shell command -v ccache),)
 export CMAKE_CXX_COMPILER_LAUNCHER := ccache
 export CCACHE_BASEDIR := $(CURDIR)
 export CCACHE_SLOPPINESS := locale
 endif
 
-help:  ## this list
+help:  ## print this list
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' $(MAKEFILE_LIST) | expand -t 16
 
 packages:  ## install the Debian packages that building and testing need
@@ -34,15 +35,15 @@ build: packages  ## build the program, build/lamella, and the Python package, bu
 	cmake --preset release $(RELEASE)
 	cmake --build build --target lamella_programs lamella_python_package
 
-# Of all there is, the program alone is built, in the quickest way.
-demo:  ## make, slice and verify two parts; slice files, pictures and a page are left in out/
+# Builds only the program, in the quickest configuration.
+demo:  ## make, slice and verify two parts; writes slice files, images and a page to out/
 	@echo "Installing what is missing and building the program: about three minutes the first time."
 	@tools/install_packages.sh tools/packages.txt tools/packages-viewer.txt
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=OFF
 	cmake --build build --target lamella_app
 	@python3 tools/demo.py build/lamella out
 
-# TESTS are options of ctest, for some of the tests.
+# TESTS are options of ctest that select tests.
 test: packages  ## build everything and run the tests: a few minutes
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D LAMELLA_LARGE_TESTS=OFF
 	cmake --build build
@@ -50,9 +51,9 @@ test: packages  ## build everything and run the tests: a few minutes
 	$(CTEST) --test-dir build $(TESTS)
 	$(if $(TESTS),,@touch build/tests/passed)
 
-test-all: test-large test-asan test-tsan test-arm64 test-shared fresh  ## the long suites: large programs, sanitizers, ARM64, fresh
+test-all: test-large test-asan test-tsan test-arm64 test-shared fresh  ## run the long suites: large programs, sanitizers, ARM64, fresh
 
-# Each of these is a part of test-all.
+# The targets from here to `fresh` are parts of test-all.
 packages-all: packages packages-viewer
 	@tools/install_packages.sh tools/packages-all.txt tools/packages-dist.txt tools/packages-docs.txt
 
@@ -71,15 +72,15 @@ test-tsan: packages-all
 	cmake --build build-tsan --target $(MODULES:%=lamella_%_test)
 	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(MODULES)))$$'
 
-# The modules that compute, and the bodies that these are tried on.
+# Tests the modules that compute, and the test bodies they use.
 test-arm64: packages-all
 	@tools/install_packages.sh tools/packages-arm64.txt
 	cmake --preset arm64
 	cmake --build build-arm64
 	$(CTEST) --test-dir build-arm64
 
-# What was compiled for the static library serves the shared one, which differs by how it is installed and linked. Compilers
-# differ in what visibility holds for.
+# The shared library reuses the objects of the static one; only installation and linking differ. Two compilers are
+# tested, since they apply visibility to different entities.
 test-shared: packages-all
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D BUILD_SHARED_LIBS=ON
 	cmake --build build --target lamella_programs lamella_app_files
@@ -88,10 +89,10 @@ test-shared: packages-all
 	cmake --build build-shared-clang --target lamella_app lamella_app_files
 	$(CTEST) --test-dir build-shared-clang --tests-regex '^project.install$$'
 
-fresh:  ## `make demo` and `make test` on a Debian 12 with git, make and nothing else, made for it (root only)
+fresh:  ## run `make demo` and `make test` in a fresh Debian 12 with git, make and nothing else (root only)
 	@tools/fresh.sh
 
-fuzz: packages-all  ## fuzz readers and strategies, each for MINUTES (10 unless given); what is found is left in out/fuzz/
+fuzz: packages-all  ## fuzz readers and strategies, each for MINUTES (default 10); writes findings to out/fuzz/
 	cmake --preset fuzz
 	cmake --build build-fuzz --target tests/fuzz/all
 	$(CTEST) --test-dir build-fuzz --label-regex '^fuzz$$'
@@ -111,13 +112,13 @@ bench: packages  ## build and run the benchmarks (bench/README.md)
 	build-bench/bench/hostile_layers
 	build-bench/bench/kernels
 
-scaling: build  ## bytes and seconds of lamella-mpi, measured and predicted: out/scaling/ (bench/README.md)
+scaling: build  ## measure and predict bytes and seconds of lamella-mpi: out/scaling/ (bench/README.md)
 	python3 -B -m bench.scaling $(OPTIONS)
 
-soak: build  ## random good and bad files through the batch mode, for ten minutes (bench/README.md)
+soak: build  ## slice random good and bad files in batch mode for ten minutes (bench/README.md)
 	python3 -B -m bench.soak $(OPTIONS)
 
-# The comparisons need other people's programs, and run for an hour or more in full; see bench/README.md for options.
+# The comparisons need third-party programs, and a full one takes an hour or more; see bench/README.md for options.
 packages-rivals: packages
 	@tools/install_packages.sh tools/packages-bench.txt tools/packages-rivals.txt
 
@@ -134,7 +135,7 @@ read-meshes: build packages-rivals  ## compare with other readers of meshes: out
 	cmake --build build-bench --target bench/read_meshes/all
 	python3 -B -m bench.read_meshes $(OPTIONS)
 
-resin: build packages-rivals  ## compare pictures for resin printers with PrusaSlicer's: out/resin/ (bench/README.md)
+resin: build packages-rivals  ## compare images for resin printers with PrusaSlicer's: out/resin/ (bench/README.md)
 	python3 -B -m bench.resin $(OPTIONS)
 
 out-of-core: build  ## slice a lattice of 5 GB with 1 GB of memory: out/out_of_core/ (bench/README.md)
@@ -143,32 +144,32 @@ out-of-core: build  ## slice a lattice of 5 GB with 1 GB of memory: out/out_of_c
 	cmake --build build-bench --target lamella_stream_areas
 	python3 -B -m bench.out_of_core $(OPTIONS)
 
-python-bench: build packages-rivals  ## compare with other ways to slice in Python: out/python/ (bench/README.md)
+python-bench: build packages-rivals  ## compare with other slicers in Python: out/python/ (bench/README.md)
 	cmake --preset bench
 	cmake --build build-bench --target lamella_library_slicer lamella_cgal_slicer
 	python3 -B -m bench.python $(OPTIONS)
 
-page-bench: packages-viewer build  ## how soon pages show something in a browser: out/pages/ (bench/README.md)
+page-bench: packages-viewer build  ## measure the time until pages show something in a browser: out/pages/ (bench/README.md)
 	@tools/install_packages.sh tools/packages-all.txt
 	python3 -B -m bench.pages $(OPTIONS)
 
 paper: build packages-rivals  ## measure every table of the EECC paper again: out/paper/ (bench/README.md)
 	python3 -B -m bench.paper $(OPTIONS)
 
-# Debian's packages belong to Debian's interpreter, whichever comes first in the path.
+# Debian's packages work only with Debian's interpreter, which need not be the first in the path.
 docs: build  ## build the documentation site: out/site/
 	@tools/install_packages.sh tools/packages-docs.txt
 	/usr/bin/python3 -B tools/site/build_site.py build out/site
 
-format:  ## lay out the sources by .clang-format
+format:  ## format the sources by .clang-format
 	@tools/install_packages.sh tools/packages-lint.txt
 	@clang-format -i $(SOURCES)
 
-format-check:  ## fail where `make format` would change something
+format-check:  ## fail if `make format` would change something
 	@tools/install_packages.sh tools/packages-lint.txt
 	@clang-format --dry-run --Werror $(SOURCES)
 
-lint: packages  ## static analysis by .clang-tidy
+lint: packages  ## run static analysis by .clang-tidy
 	@tools/install_packages.sh tools/packages-lint.txt
 	cmake --preset debug
 	run-clang-tidy -quiet -j $(JOBS) -p build-debug
@@ -177,12 +178,12 @@ install: build  ## install to PREFIX (default /usr/local)
 	cmake --build build --target lamella_app_files
 	cmake --install build --prefix '$(PREFIX)'
 
-dist: packages-viewer build  ## what is released, into dist/: source archive, Debian package, wheel
+dist: packages-viewer build  ## make the files of a release in dist/: source archive, Debian package, wheel
 	@tools/install_packages.sh tools/packages-dist.txt
 	cmake --build build --target lamella_app_files
 	tools/dist.sh build dist
 
-clean:  ## remove what was built
+clean:  ## remove all build and output folders
 	rm -rf build build-* dist out
 
 .NOTPARALLEL:

@@ -12,13 +12,13 @@ install(EXPORT lamella-targets NAMESPACE lamella:: DESTINATION ${package_dir})
 install(EXPORT lamella-io-targets NAMESPACE lamella:: DESTINATION ${package_dir})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/LICENSES-third-party.txt
         DESTINATION ${CMAKE_INSTALL_DOCDIR})
-# The pages that headers refer to, with all that they show or link to, in the folders of the sources.
+# The pages that headers refer to, with all files they show or link to, in the folders of the sources.
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs ${PROJECT_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
         PATTERN CMakeLists.txt EXCLUDE PATTERN __pycache__ EXCLUDE)
 install(FILES ${PROJECT_SOURCE_DIR}/bench/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/bench)
 install(FILES ${PROJECT_SOURCE_DIR}/tools/packages.txt ${PROJECT_SOURCE_DIR}/tools/packages-test.txt
         DESTINATION ${CMAKE_INSTALL_DOCDIR}/tools)
-# PageOptions::viewer: what the program carries in itself. Absent where it could not be built.
+# The page for PageOptions::viewer, which the program contains. It is missing if it could not be built.
 if(LAMELLA_VIEWER_HTML)
     install(FILES ${LAMELLA_VIEWER_HTML} DESTINATION ${CMAKE_INSTALL_DATADIR}/lamella RENAME viewer.html OPTIONAL)
 endif()
@@ -36,7 +36,8 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/lamella-config-version.cm
 install(FILES ${PROJECT_BINARY_DIR}/lamella-config.cmake ${PROJECT_BINARY_DIR}/lamella-config-version.cmake
         DESTINATION ${package_dir})
 
-# A static library leaves it to its user to link the libraries that it needs; a shared one has linked them.
+# A program that links a static library must link the library's dependencies, too; a shared library has already linked
+# them.
 function(lamella_pkgconfig pc_name pc_description)
     cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "LIBRARIES;PACKAGES")
     list(JOIN arg_PACKAGES " " packages)
@@ -64,7 +65,7 @@ foreach(program lamella_app lamella_mpi)
         set_target_properties(${program} PROPERTIES INSTALL_RPATH $ORIGIN/${bin_to_lib})
     endif()
 endforeach()
-# The component `program` is what goes into a package of it.
+# The component `program` is the content of a package of the program.
 if(TARGET lamella_app)
     install(TARGETS lamella_app OPTIONAL COMPONENT program)
 endif()

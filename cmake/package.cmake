@@ -1,6 +1,6 @@
 # The Debian package that `cpack` makes (tools/dist.sh): the program with its man page and completions.
 
-# Debian has these two in places of its own, where `cmake --install` does not put them.
+# Debian has its own paths for these two, where `cmake --install` does not put them.
 file(READ ${PROJECT_SOURCE_DIR}/LICENSE own_licence)
 file(READ ${PROJECT_SOURCE_DIR}/LICENSES-third-party.txt other_licences)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS LICENSE LICENSES-third-party.txt)
