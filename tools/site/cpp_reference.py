@@ -1,7 +1,7 @@
 """Pages of the public headers, one for each module: every declaration with the comment that is its contract.
 
 Headers are regular enough to be read line by line: an introduction in `//` behind `#pragma once`, then, within the
-namespace, declarations with `///` before them. The levels' test sees to what headers may hold.
+namespace, declarations with `///` before them. The test of levels checks the content of headers.
 """
 
 import re
