@@ -97,7 +97,7 @@ class Bench:
         told = {"seconds": seconds, "ratio": seconds["ranges"] / seconds["whole"], "ranges": ranges["ranges"],
                 "peak_rss_bytes": {"whole": whole["peak_rss_bytes"], "ranges": ranges["peak_rss_bytes"]}}
         print(f"whole: {seconds['whole']:.2f} s, {whole['peak_rss_bytes'] / 1e6:.0f} MB; with "
-              f"{self.options.fitting_memory} in {ranges['slabs']} slabs: {seconds['slabs']:.2f} s, "
+              f"{self.options.fitting_memory} in {ranges['ranges']} ranges: {seconds['ranges']:.2f} s, "
               f"{ranges['peak_rss_bytes'] / 1e6:.0f} MB: {told['ratio']:.2f} times the time", flush=True)
         self.remove(mesh, whole["output"])
         return told
@@ -107,7 +107,7 @@ class Bench:
         sliced = self.slice(mesh, self.options.memory)
         limit = bytes_of(self.options.memory)
         print(f"sliced with {self.options.memory} on {self.options.threads} threads: {len(sliced['layers'])} layers, "
-              f"{sliced['output_bytes'] / 1e9:.2f} GB, {sliced['slabs']} slabs, {sliced['seconds']:.1f} s "
+              f"{sliced['output_bytes'] / 1e9:.2f} GB, {sliced['ranges']} ranges, {sliced['seconds']:.1f} s "
               f"({', '.join(f'{name} {s:.1f}' for name, s in sliced['seconds_of'].items() if s)}), "
               f"peak memory {sliced['peak_rss_bytes'] / 1e6:.0f} MB, {sliced['peak_rss_bytes'] / limit:.0%} of the limit",
               flush=True)
