@@ -351,7 +351,8 @@ void join_bundles(Arrangement& arrangement, const LayerBudget& budget) {
     std::uint64_t cuts = 0;
     for (const Side& side : sides) {
         budget.check();
-        const auto& [lo, hi] = side.line;
+        const Point2 lo = side.line.lo; // clang 14 captures no structured binding
+        const Point2 hi = side.line.hi;
         const std::vector<Seat>& low = seats_of(lo);
         const std::vector<Seat>& high = seats_of(hi);
         const std::vector<Seat>& fewer = low.size() <= high.size() ? low : high;

@@ -99,12 +99,12 @@ class NestingSearch {
             // Not the winding number inside of its parent, which varies if that ring crosses itself.
             winding = inside ? placement_.winding_inside(edge.ring) : placement_.winding(edge.ring);
         }
-        placement_.position(ring, parent, winding);
+        placement_.place(ring, parent, winding);
         below_[ring] = winding;
     }
 
     void place_amid(const Surroundings& around, std::uint32_t ring) {
-        placement_.position(ring, parent_of(around), around.winding);
+        placement_.place(ring, parent_of(around), around.winding);
         for (std::uint32_t copy = ring; copy != Nesting::none; copy = copies_.next(copy))
             below_[copy] = around.below_all;
     }

@@ -37,7 +37,7 @@ RingPlacement::RingPlacement(std::span<const LeftEnd> ends, const RingCopies& co
     result_.inside.resize(ends.size());
 }
 
-void RingPlacement::position(std::uint32_t ring, std::uint32_t parent, Windings winding) {
+void RingPlacement::place(std::uint32_t ring, std::uint32_t parent, Windings winding) {
     assert(copies_.representative(ring) == ring);
     outside_[ring] = innermost_[ring] = parent;
     if (ends_[ring].flat) {

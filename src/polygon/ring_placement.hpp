@@ -23,7 +23,7 @@ class RingPlacement {
     void place_empty(std::uint32_t ring) { result_.nesting.order.push_back(ring); }
     /// Places a ring and its copies, one within the other. `ring` represents them, `parent` was placed before
     /// or is Nesting::none, and `winding` holds the winding numbers just outside of their left end.
-    void position(std::uint32_t ring, std::uint32_t parent, Windings winding);
+    void place(std::uint32_t ring, std::uint32_t parent, Windings winding);
 
     /// Return the ring around all copies of a placed ring, and the innermost one of its copies.
     [[nodiscard]] std::uint32_t outside(std::uint32_t ring) const noexcept { return outside_[ring]; }
