@@ -77,6 +77,18 @@ class Documentation(unittest.TestCase):
                 found = re.search(rf"\({suite},\s+{test}\)", cpp)
             self.assertTrue(found, name)
 
+    def test_words_that_were_replaced_do_not_come_back(self):
+        """See the glossary in CONTRIBUTING.md."""
+        gone = re.compile(r"\b(crowded|torn corners?|one-sided|so many|so much|told|abscissa|oddity|"
+                          r"slabs?|(WoundRing|LayerWay|HeldWriter|SinkYield|ScanMemory)|(one_sided|wish_for)\w*)\b", re.IGNORECASE)
+        fragment = re.compile(r"^ *(///?|[-*])? *(What|Of|How|Whether|As) [a-z][^?\n]*$", re.MULTILINE)
+        texts = [path for folder in ("src", "include", "app", "python", "docs") for path in (ROOT / folder).rglob("*")
+                 if path.suffix in (".cpp", ".hpp", ".py", ".pyi", ".md")]
+        for path in [ROOT / "README.md", *texts]:
+            text = path.read_text(encoding="utf-8")
+            found = [match[0].strip() for rule in (gone, fragment) for match in rule.finditer(text)]
+            self.assertEqual(found, [], path)
+
     def test_the_main_header_shows_the_example(self):
         header = (ROOT / "include/lamella/io.hpp").read_text(encoding="utf-8")
         shown = [line.strip() for line in re.findall(r"^// {5}(.*)$", header, re.MULTILINE)]

@@ -15,7 +15,7 @@
 #include <memory>
 #include <vector>
 
-// How the graph is built
+// Construction of the graph
 //
 // Collect. Workers take chunks of consecutive triangles. Each worker looks edges up in a small private table
 // that stays in its second-level cache, because most files have the two triangles of an edge close together.
