@@ -63,21 +63,6 @@ LAMELLA_VECTOR_CLONES Box2 find_block_boxes(std::span<const Point2> ring, Box2* 
     return all;
 }
 
-constexpr std::size_t many_points = 64;
-
-/// Returns the box of evenly spread points of a ring. To read all points takes as long as slicing them.
-Box2 sampled_box(std::span<const Point2> ring, std::size_t samples) noexcept {
-    Box2 box = Box2::of(ring.front());
-    for (std::size_t i = 1; i < samples; ++i)
-        box.add(Box2::of(ring[i * ring.size() / samples]));
-    return box;
-}
-
-/// Returns a box that probably contains the ring, grown from the box of samples.
-Box2 likely_box(const Box2& sampled, double margin) noexcept {
-    return sampled.grown(margin * std::max(sampled.width(), sampled.height()));
-}
-
 /// Divides heights into rows of equal height.
 class Rows {
   public:
@@ -105,9 +90,8 @@ int crossing(const Point2& a, const Point2& b, const Point2& p) noexcept {
 /// The left end of a clockwise ring.
 struct Hole {
     std::uint32_t ring;
-    Box2 box;                ///< of some of its points
     std::int32_t around = 0; ///< winding number just left of its left end
-    bool contained = false;  ///< true if that box lies in the box of a counter-clockwise ring around it
+    bool contained = false;  ///< true if its box lies in the box of a counter-clockwise ring around it
 };
 
 /// A ring whose box contains the left end of a hole.
@@ -129,11 +113,6 @@ class HoleCheck {
     [[nodiscard]] const Point2& left_end(const Hole& hole) const noexcept {
         return layer_.contour(hole.ring).front();
     }
-    [[nodiscard]] bool is_hole(std::uint32_t ring) const noexcept {
-        const auto found = std::lower_bound(holes_.begin(), holes_.end(), ring,
-                                            [](const Hole& hole, std::uint32_t i) { return hole.ring < i; });
-        return found != holes_.end() && found->ring == ring;
-    }
     /// Returns whether the remaining budget suffices. More expensive layers need another method.
     [[nodiscard]] bool spend(std::size_t work) noexcept {
         const bool enough = work <= work_left_;
@@ -148,8 +127,7 @@ class HoleCheck {
                 return false;
             const int direction = direction_at_begin(ring);
             if (direction < 0)
-                holes_.push_back(
-                    {.ring = i, .box = sampled_box(ring, ring.size() > many_points ? 4 : ring.size())});
+                holes_.push_back({.ring = i});
             else if (direction == 0 && !orientation_is_lost(ring, rounding_))
                 return false;
         }
@@ -160,16 +138,8 @@ class HoleCheck {
     Box2 find_boxes() {
         boxes_.reserve(layer_.rings);
         first_blocks_.reserve(layer_.rings);
-        rough_.resize(layer_.rings);
-        auto hole = holes_.begin();
         for (std::uint32_t i = 0; i < layer_.rings; ++i) {
             first_blocks_.push_back(blocks_.size());
-            if (hole != holes_.end() && hole->ring == i) {
-                rough_[i] = layer_.contour(i).size() > many_points;
-                boxes_.push_back(rough_[i] ? likely_box(hole->box, 0.25) : hole->box);
-                ++hole;
-                continue;
-            }
             const std::span<const Point2> ring = layer_.contour(i);
             blocks_.resize(blocks_.size() + number_of_blocks(ring));
             boxes_.push_back(find_block_boxes(ring, &blocks_[first_blocks_.back()]));
@@ -223,16 +193,12 @@ class HoleCheck {
             if (!spend(1))
                 return false;
             Entry& entry = entries_[*link];
-            Box2& box = boxes_[entry.ring];
+            const Box2& box = boxes_[entry.ring];
             if (box.x1 < p.x) {
                 *link = entry.next;
                 continue;
             }
             link = &entry.next;
-            if (within(box) && rough_[entry.ring]) {
-                box = likely_box(sampled_box(layer_.contour(entry.ring), 16), 1.0 / 32);
-                rough_[entry.ring] = false;
-            }
             if (within(box))
                 candidates_.push_back({entry.ring, hole});
         }
@@ -285,13 +251,7 @@ class HoleCheck {
         }
         const std::span<const Point2> ring = layer_.contour(number);
         const std::size_t blocks = number_of_blocks(ring);
-        std::vector<Box2> of_hole;
-        const Box2* boxes = blocks_.data() + first_blocks_[number];
-        if (is_hole(number)) {
-            of_hole.resize(blocks);
-            find_block_boxes(ring, of_hole.data());
-            boxes = of_hole.data();
-        }
+        const Box2* const boxes = blocks_.data() + first_blocks_[number];
         for (std::size_t i = 0; i < blocks; ++i) {
             const Box2& box = boxes[i];
             if (box.y0 > y1 || box.y1 < y0)
@@ -315,7 +275,7 @@ class HoleCheck {
         for (const Position& position : positions) {
             Hole& hole = holes_[position.hole];
             hole.around += position.around;
-            const Box2& inner = hole.box;
+            const Box2& inner = boxes_[hole.ring];
             const Box2& outer = boxes_[number];
             hole.contained |=
                 position.around > 0 && inner.x1 <= outer.x1 && outer.y0 <= inner.y0 && inner.y1 <= outer.y1;
@@ -361,9 +321,8 @@ class HoleCheck {
     const Rounding& rounding_;
     std::size_t work_left_;
     std::vector<Hole> holes_;
-    std::vector<Box2> boxes_;               ///< of all rings; estimates for holes of many points
-    std::vector<bool> rough_;               ///< true for rings whose box is estimated from few points
-    std::vector<Box2> blocks_;              ///< boxes of consecutive edges of counter-clockwise rings
+    std::vector<Box2> boxes_;               ///< of all rings
+    std::vector<Box2> blocks_;              ///< boxes of consecutive edges of all rings
     std::vector<std::size_t> first_blocks_; ///< for each ring its first box in blocks_
     std::vector<std::uint32_t> first_;      ///< for each row its first entry, or none
     std::vector<Entry> entries_;

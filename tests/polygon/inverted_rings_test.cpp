@@ -9,6 +9,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 namespace lamella::inverted_cases {
@@ -67,6 +68,32 @@ TEST(InvertedRings, AreFoundInAHoleAndBesideOneThatEndsWhereTheyBegin) {
               4);
     EXPECT_EQ(
         inverted_rings(normal_layer({rectangle(0, 0, 9, 9), reversed(rectangle(9, 2, 12, 5))})).area_mm2, 9);
+}
+
+TEST(InvertedRings, AreFoundInASpikeOfAHoleOfManyPoints) {
+    Random random(14);
+    for (int round = 0; round < 200; ++round) {
+        // A round hole; one of its many sides is a spike of two points, at a random place.
+        const std::int64_t corners = random.integer(100, 400);
+        const std::int64_t spike = random.integer(0, corners - 1);
+        Contour hole;
+        Point2 tip;
+        for (std::int64_t i = 0; i < corners; ++i) {
+            const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(corners);
+            const Point2 on{10 * std::cos(angle), 10 * std::sin(angle)};
+            hole.push_back(on);
+            if (i == spike) {
+                tip = {3 * on.x, 3 * on.y};
+                hole.push_back(tip);
+            }
+        }
+        // In the middle of the spike, which is 0.09 mm wide or more there.
+        const double aside = 0.3 * 2 * std::sin(std::numbers::pi / static_cast<double>(corners)) / 3;
+        const Point2 inside{0.6 * tip.x - aside * tip.y, 0.6 * tip.y + aside * tip.x};
+        const Layer layer = normal_layer(
+            {rectangle(-50, -50, 50, 50), reversed(hole), reversed(diamond(inside.x, inside.y, 0.005))});
+        EXPECT_EQ(inverted_rings(layer).rings, 1U) << "round " << round;
+    }
 }
 
 TEST(InvertedRings, AreNoneWhereHolesTouchTheRingAroundThem) {
