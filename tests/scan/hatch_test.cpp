@@ -347,7 +347,7 @@ TEST(Hatch, FitsWhereThereIsRoomForItsVectors) {
             constexpr std::uint64_t of_vector = 250;
             const PointArray again =
                 hatch(layer, rule, 1, nullptr, LayerBudget({.memory = of_vector * vectors.size() / 2}, 0, 0));
-            EXPECT_TRUE(std::ranges::equal(vectors.span(), again.span()));
+            EXPECT_TRUE(std::equal(vectors.begin(), vectors.end(), again.begin(), again.end()));
         }
     }
 }
