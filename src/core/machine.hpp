@@ -14,7 +14,7 @@ inline constexpr std::size_t large_page = std::size_t{2} << 20;
 /// Returns the number of processors that this process may use; at least 1.
 [[nodiscard]] unsigned usable_processors() noexcept;
 
-/// Large memory whose bytes are zero. The start is a multiple of 64 bytes.
+/// Large memory whose bytes are zero. It starts at a multiple of `large_page`.
 struct LargeMemory {
     void* data = nullptr;  ///< nullptr if the machine lacks the memory
     std::size_t bytes = 0; ///< as `release_large_memory` takes them

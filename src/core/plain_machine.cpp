@@ -10,7 +10,7 @@
 namespace lamella {
 
 namespace {
-constexpr std::align_val_t line{64};
+constexpr std::align_val_t alignment{large_page};
 }
 
 unsigned usable_processors() noexcept {
@@ -18,7 +18,7 @@ unsigned usable_processors() noexcept {
 }
 
 LargeMemory take_large_memory(std::size_t bytes) noexcept {
-    void* const data = ::operator new(bytes, line, std::nothrow);
+    void* const data = ::operator new(bytes, alignment, std::nothrow);
     if (data == nullptr)
         return {};
     std::memset(data, 0, bytes);
@@ -26,7 +26,7 @@ LargeMemory take_large_memory(std::size_t bytes) noexcept {
 }
 
 void release_large_memory(LargeMemory memory) noexcept {
-    ::operator delete(memory.data, line);
+    ::operator delete(memory.data, alignment);
 }
 
 void prefer_large_pages(void* /*data*/, std::size_t /*bytes*/) noexcept {}
