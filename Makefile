@@ -83,10 +83,10 @@ test-arm64: packages-all
 # tested, since they apply visibility to different entities.
 test-shared: packages-all
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D BUILD_SHARED_LIBS=ON
-	cmake --build build --target lamella lamella_programs lamella_app_files
+	cmake --build build --target lamella_programs lamella_app_files
 	$(CTEST) --test-dir build --tests-regex '^project.install$$'
 	cmake --preset shared-clang
-	cmake --build build-shared-clang --target lamella lamella_app lamella_app_files
+	cmake --build build-shared-clang --target lamella_app lamella_app_files
 	$(CTEST) --test-dir build-shared-clang --tests-regex '^project.install$$'
 
 fresh:  ## run `make demo` and `make test` in a fresh Debian 12 with git, make and nothing else (root only)
