@@ -10,25 +10,24 @@ from bench.harness.page import Chart, Page, Table
 def build_page(found, public, present, absent, here):
     page = Page("Broken meshes, as slicers see them")
     page.say(
-        "Meshes that were broken on purpose, so that it is known what they are meant to be, cut by each program. Told is how "
-        "far the areas of the layers are off: the sum of the differences of all layers over the sum of the true areas, and "
-        "the layer where it is most. True areas come straight from the triangles of the sound solid; no slicer is asked.",
-        "Lamella cuts a mesh as it is unless it is told to mend it, and says what it left open. The others mend without being asked. "
-        "Tool paths (PrusaSlicer, CuraEngine) run within the contour and thin features get none: the first table, of a sound "
-        "body, says how near their areas can be.")
+        "Each program slices meshes that were damaged on purpose, so that the true area of every layer is known. The tables "
+        "give the sum of the absolute area errors of all layers, in percent of the sum of the true areas, and the layer with "
+        "the largest error. True areas are computed directly from the triangles of the sound solid, without a slicer.",
+        "Lamella repairs a mesh only on request, and reports open contours. The others repair every mesh. Tool paths "
+        "(PrusaSlicer, CuraEngine) run within the contour, and thin features get none: the table of the sound ring shows the "
+        "error of areas that are reconstructed from them.")
     page.show(Table(["", ""], [[name, text] for name, text in here.items()]
                     + [[rival.title, version] for rival, version in present], texts=2))
     if absent:
         page.say(f"Not installed: {', '.join(absent)}.")
     if found:
-        page.heading("Areas off, in percent")
+        page.heading("Area errors, in percent")
         page.show(overview(found))
     for finding in found:
-        show(page, finding, f"It is meant to be closed; {finding.broken}.")
+        show(page, finding, f"The solid is known. Defect: {finding.broken}.")
     if public:
         page.heading("Meshes of the folder")
-        page.say("Compared with Lamella's layers of the mesh as it is, where it is closed, else with those of the mesh mended by all "
-                 "policies.")
+        page.say("The layers are compared with Lamella's: without repairs if the mesh is closed, otherwise after all repairs.")
         page.show(overview(public))
     for finding in public:
         show(page, finding, f"The mesh is {finding.broken}.")
@@ -48,8 +47,8 @@ def overview(findings):
 def show(page, finding, words):
     page.heading(finding.title, 3)
     options = " ".join(finding.policies)
-    page.say(words + (f" Mended by `{options}`." if options else ""))
-    table = Table(["slicer", "areas off %", "layers", "open chains", "most at z", "there mm²"])
+    page.say(words + (f" Repaired by `{options}`." if options else ""))
+    table = Table(["slicer", "area error %", "layers", "open chains", "worst at z", "error there mm²"])
     for view, off in finding.rows:
         if off is None:
             table.add(view.title, view.ended, "", "", "", "")
@@ -59,7 +58,7 @@ def show(page, finding, words):
     page.show(table)
     for view, _ in finding.rows:
         if view.last_words:
-            page.say(f"{view.title} says: {view.last_words}")
+            page.say(f"Last output of {view.title}: {view.last_words}")
     if finding.expected:
         page.show(Chart(image_name(finding), f"{finding.title}, one layer", layer_image(finding)))
 

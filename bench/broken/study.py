@@ -57,7 +57,7 @@ class Study:
         """Slices without policies, and with them if there are any."""
         tries = [(OURS[0], "Lamella", ())]
         if policies:
-            tries.append((OURS[1], "Lamella, mended", policies))
+            tries.append((OURS[1], "Lamella, repaired", policies))
         return [our_view(self.program, mesh, self.folder, name, title, layer_height, options, self.timeout)
                 for name, title, options in tries]
 
