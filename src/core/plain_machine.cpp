@@ -18,6 +18,9 @@ unsigned usable_processors() noexcept {
 }
 
 LargeMemory take_large_memory(std::size_t bytes) noexcept {
+    // Rounding up to the alignment must not wrap around.
+    if (bytes > ~std::size_t{0} / 2)
+        return {};
     void* const data = ::operator new(bytes, alignment, std::nothrow);
     if (data == nullptr)
         return {};
