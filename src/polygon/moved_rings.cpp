@@ -21,8 +21,8 @@ namespace {
 // Construction of a moved ring, and the proof that it bounds the material.
 //
 // Strips and wedges. Every side sweeps a strip between its old and its moved location. Every corner at which
-// two strips part sweeps a wedge between them. Growing adds all strips and wedges to the material; shrinking
-// removes them.
+// two strips separate sweeps a wedge between them. Growing adds all strips and wedges to the material;
+// shrinking removes them.
 //
 // Loops. Let C be a corner between sides s and t whose strips overlap: C is concave as seen from the moving
 // side. Let N be the end of moved side s, P the beginning of moved side t, and M the intersection of both.
@@ -226,7 +226,7 @@ class RingSides {
     }
 
   private:
-    /// The sign of a fold's sine decides whether strips part, so it must be exact, and 1 + cosine has no
+    /// The sign of a fold's sine decides whether strips separate, so it must be exact, and 1 + cosine has no
     /// digits left.
     void look_at_fold(std::size_t i) {
         const std::size_t next = after(i);
@@ -271,7 +271,7 @@ class RingMover {
   private:
     [[nodiscard]] std::size_t after(std::size_t i) const noexcept { return sides_.after(i); }
 
-    /// Returns a positive number if strips part after a side.
+    /// Returns a positive number if strips separate after a side.
     [[nodiscard]] double parting(std::size_t i) const noexcept {
         return distance_ > 0 ? sides_.turn(i).sine : -sides_.turn(i).sine;
     }
@@ -297,13 +297,13 @@ class RingMover {
         return true;
     }
 
-    /// Returns whether strips do not part after a side, or by no more than rounding.
+    /// Returns whether strips do not separate after a side, or by no more than rounding.
     [[nodiscard]] bool goes_on(std::size_t i) const noexcept {
         const double sine = parting(i);
         return sine < 0 || (sides_.turn(i).cosine > 0 && reach_ * sine <= rounding_);
     }
 
-    /// Finds rows of sides between corners where strips part.
+    /// Finds rows of sides between corners where strips separate.
     void find_rows() {
         const std::size_t n = sides_.size();
         std::size_t first = 0;

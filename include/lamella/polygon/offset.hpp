@@ -13,7 +13,7 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// The join of two sides that part at a corner when they are moved.
+/// The join of two sides that separate at a corner when they are moved.
 enum class OffsetCorner : std::uint8_t {
     mitre, ///< both sides, extended to their intersection
     bevel, ///< a line between their ends
@@ -45,13 +45,13 @@ struct OffsetCorners {
 /// Outer rings move outwards, holes get smaller, and overlapping material is united. Material is where the
 /// winding number is above 0.
 ///
-/// Each side is moved parallel to itself. Sides that part are joined according to `corners`. By default they
-/// are extended to their intersection, so that parts keep their corners, but a corner that would move by more
-/// than twice the distance (sharper than 60 degrees) is cut off. Sides that run into one another end at their
-/// intersection. Growing adds a strip along each side and a wedge at each corner to the material; shrinking
-/// removes them. The result is exact except for the rounding of coordinates where sides meet, and for errors
-/// of at most some 2^-36 of the layer's extent: in rings that come to meet themselves or others, and by the
-/// removal of collinear points.
+/// Each side is moved parallel to itself. Sides that separate are joined according to `corners`. By default
+/// they are extended to their intersection, so that parts keep their corners, but a corner that would move by
+/// more than twice the distance (sharper than 60 degrees) is cut off. Sides that run into one another end at
+/// their intersection. Growing adds a strip along each side and a wedge at each corner to the material;
+/// shrinking removes them. The result is exact except for the rounding of coordinates where sides meet, and
+/// for errors of at most some 2^-36 of the layer's extent: in rings that come to meet themselves or others,
+/// and by the removal of collinear points.
 ///
 /// Open chains stay as they are. A distance of 0 returns the layer itself, bit for bit; other results have no
 /// hatches. `vanished`, if given, becomes the number of rings of which nothing remains: those of bodies that

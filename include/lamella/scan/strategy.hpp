@@ -76,7 +76,7 @@ inline constexpr std::uint32_t most_skin_layers = 1000;
 struct ContourRule {
     std::uint32_t count = 1; ///< at most `most_contours`; 0 leaves contours out
     double beam_offset =
-        0.05; ///< from the outline of the part inwards to the outermost contour: half of the melt pool
+        0.05; ///< from the outline of the part inwards to the outermost contour: half of the melt pool width
     double distance = 0.1; ///< from each contour to the next one inwards
     ContourOrder order = ContourOrder::inside_out;
     bool before_hatch = false;
