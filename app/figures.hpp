@@ -42,7 +42,7 @@ using Figures = std::vector<Figure>;
 [[nodiscard]] std::vector<PageFact> as_facts(const Figures& figures);
 
 [[nodiscard]] Json point_json(const Point3& p);
-/// Returns the JSON that `tell` makes of the first few locations.
+/// Returns the JSON that `describe` makes of the first few locations.
 template <class Places, class Describe>
 [[nodiscard]] Json list_json(const Places& places, const Describe& describe) {
     Json list = Json::array();

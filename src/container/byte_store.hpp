@@ -26,7 +26,7 @@ class ByteStore {
     void add(std::string_view bytes);
     [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-    /// Copies the bytes from offset `place` on into `bytes`. Requires that the store holds them.
+    /// Copies the bytes from offset `position` on into `bytes`. Requires that the store holds them.
     void read(std::uint64_t position, std::span<char> bytes) const;
 
     static constexpr std::size_t block_bytes = std::size_t{8} << 20;

@@ -14,7 +14,7 @@ namespace lamella {
 /// Errors are Error{input} with the offset in the file.
 class ProtobufReader {
   public:
-    /// Reads `bytes`, which begin at offset `place` of the file `name`.
+    /// Reads `bytes`, which begin at offset `position` of the file `name`.
     ProtobufReader(std::string_view bytes, std::uint64_t position, const std::string& name)
         : rest_(bytes), position_(position), name_(&name), field_offset_(position) {}
 
@@ -45,7 +45,7 @@ class ProtobufReader {
     /// Returns the offset of the field in the file.
     [[nodiscard]] std::uint64_t position() const noexcept { return field_offset_; }
 
-    /// Returns the message whose length is at offset `place` of the file, and moves `place` after the
+    /// Returns the message whose length is at offset `position` of the file, and moves `position` after the
     /// message.
     [[nodiscard]] static ProtobufReader delimited(std::string_view file, std::uint64_t& position,
                                                   const std::string& name);

@@ -238,7 +238,7 @@ void ZipReader::read_directory() {
     settle_names();
 }
 
-/// Reads the header of each entry, changes `place` to the offset of the compressed bytes, and checks that no
+/// Reads the header of each entry, changes `offset` to the offset of the compressed bytes, and checks that no
 /// two entries overlap.
 void ZipReader::settle_offsets(std::uint64_t directory_offset) {
     const std::string_view bytes = source_.text();

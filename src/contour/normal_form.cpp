@@ -107,7 +107,7 @@ class ContourSet {
         }
     }
 
-    // Returns the normal form; index, z, bottom and top are those of `head`; no hatches.
+    // Returns the normal form; index, z, bottom and top are those of `header`; no hatches.
     Layer laid_out(const Layer& header) && {
         std::size_t size = 0;
         for (std::vector<Rotated>* const group : {&rings_, &chains_}) {

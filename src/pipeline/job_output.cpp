@@ -58,7 +58,7 @@ std::vector<Layer> unpacked(const std::string& message) {
     return parts;
 }
 
-/// Writes the bytes at offset `place` of an existing file; errors call it `name`.
+/// Writes the bytes at offset `position` of an existing file; errors call it `name`.
 void write_at(const std::string& path, std::uint64_t position, const ByteStore& bytes,
               const std::string& name) {
     FileChunk chunk(path, position, name);

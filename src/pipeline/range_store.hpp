@@ -27,7 +27,7 @@ namespace lamella {
 /// range and shape are contiguous.
 class RangeStore {
   public:
-    /// `shares` are the ranges of the plan, ascending; `counts` give the number of triangles of each shape.
+    /// `ranges` are the ranges of the plan, ascending; `counts` give the number of triangles of each shape.
     RangeStore(const Plan& plan, std::span<const PlaneRange> ranges, std::span<const PlaneCounts> counts);
 
     /// Adds placed triangles of a shape; those that no range needs are ignored. May be called from any number

@@ -36,7 +36,7 @@ class Placer {
         : file_name_(file_name), nodes_(nodes), objects_(objects), limits_(limits), executor_(executor),
           totals_(nodes.size()) {}
 
-    std::vector<MeshInstance> location(std::span<const AssemblyUse> roots) {
+    std::vector<MeshInstance> place(std::span<const AssemblyUse> roots) {
         for (std::size_t node = 0; node < nodes_.size(); ++node)
             total(node, 0); // a cycle is an error even if no root leads to it
         Total all;
@@ -193,7 +193,7 @@ std::vector<MeshInstance> place_meshes(const std::string& file_name, std::span<c
                                        std::span<const AssemblyUse> roots,
                                        std::span<const MeshObject> objects, ReadLimits& limits,
                                        Executor& executor) {
-    return Placer(file_name, nodes, objects, limits, executor).location(roots);
+    return Placer(file_name, nodes, objects, limits, executor).place(roots);
 }
 
 } // namespace lamella

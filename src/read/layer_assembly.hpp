@@ -30,7 +30,7 @@ class CountedWarning {
     /// Takes the warning for one occurrence, and for several.
     CountedWarning(const char* one, const char* many) : one_(one), many_(many) {}
 
-    /// `place` is called only for the first one.
+    /// `location` is called only for the first one.
     template <class Location>
     void note(const Location& location) {
         if (count_++ == 0)

@@ -32,8 +32,8 @@ struct MeshText {
     std::string location; ///< for error messages
 };
 
-/// Appends the sequence from offset `place` of a document up to `end_tag` to `runs` and returns its length; 0
-/// if this tag is missing.
+/// Appends the sequence from offset `location` of a document up to `end_tag` to `runs` and returns its
+/// length; 0 if this tag is missing.
 [[nodiscard]] std::size_t take_run(std::string_view document, std::size_t location, std::string_view end_tag,
                                    std::vector<std::string_view>& runs);
 

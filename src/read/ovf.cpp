@@ -202,7 +202,7 @@ class OvfMessages {
                     fmt::format("{}, byte {}: found {}; {}", name_, offset, found, expected));
     }
 
-    /// Returns the 64-bit offset that is stored at `place`.
+    /// Returns the 64-bit offset that is stored at `offset`.
     std::uint64_t position_at(std::uint64_t offset) const {
         std::int64_t position = 0;
         if (offset > bytes_.size() || bytes_.size() - offset < sizeof position)
@@ -214,7 +214,7 @@ class OvfMessages {
         return static_cast<std::uint64_t>(position);
     }
 
-    /// Returns the message at `place`. Many tables can refer to the same message; if it were read again each
+    /// Returns the message at `offset`. Many tables can refer to the same message; if it were read again each
     /// time, a small file could take long.
     ProtobufReader at(std::uint64_t offset) {
         std::uint64_t end = offset;

@@ -60,7 +60,7 @@ class ReadLimits {
     void add_bytes(std::uint64_t count, std::string_view location = {}) {
         add_bytes_at(count, [&] { return location; });
     }
-    /// `place` is called only for the error.
+    /// `location` is called only for the error.
     template <class Location>
     void add_bytes_at(std::uint64_t count, const Location& location) {
         const std::uint64_t before = bytes_.fetch_add(count);

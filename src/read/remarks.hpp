@@ -63,7 +63,7 @@ class Remarks {
     std::vector<std::string> notes_;
 };
 
-/// Warns that `count` of `stored` triangles (`count` is not 0) were skipped, the first at `place`. Throws
+/// Warns that `count` of `stored` triangles (`count` is not 0) were skipped, the first at `location`. Throws
 /// Error{input} if no triangle is left.
 inline void report_nonfinite(Remarks& remarks, std::string_view location, std::uint64_t count,
                              std::uint64_t stored) {
@@ -77,7 +77,7 @@ inline void report_nonfinite(Remarks& remarks, std::string_view location, std::u
                             location, count, stored));
 }
 
-/// Warns that `count` faces (not 0) were skipped, the first at `place`.
+/// Warns that `count` faces (not 0) were skipped, the first at `location`.
 inline void report_thin_faces(Remarks& remarks, std::string_view location, std::uint64_t count) {
     remarks.add(fmt::format("{}: left out {} of fewer than three corners (this is the first)", location,
                             counted(count, "face")));

@@ -24,8 +24,8 @@ auto key_of(const Exposure& exposure) {
                       bits(power, speed, jump_speed, focus, spot, mark_delay, jump_delay));
 }
 
-/// Returns the index of an item in a list, and appends it if it is absent. `places` maps the keys of present
-/// items to their indices.
+/// Returns the index of an item in a list, and appends it if it is absent. `positions` maps the keys of
+/// present items to their indices.
 template <class Key, class T>
 std::size_t place_of(std::map<Key, std::size_t>& positions, const Key& key, std::vector<T>& known,
                      const T& item) {

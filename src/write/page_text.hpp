@@ -21,7 +21,7 @@ struct PageFrame {
 };
 [[nodiscard]] PageFrame page_frame(const PageOptions& options);
 
-/// Returns [a,b,c] of the texts that `tell` makes of each item.
+/// Returns [a,b,c] of the texts that `describe` makes of each item.
 template <class Range, class Describe>
 std::string json_list(const Range& range, const Describe& describe) {
     std::string text = "[";

@@ -18,7 +18,7 @@ class SequentialWriter : public OrderedWriter {
     [[nodiscard]] std::uint64_t bytes() const noexcept final { return file_ ? file_->bytes() : chunk_bytes_; }
 
   protected:
-    /// Creates the file and writes `head`.
+    /// Creates the file and writes `header`.
     SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view header,
                      Holds holds);
 
