@@ -255,7 +255,7 @@ class PackageReader {
         // The build of a package that contains only meshes may use features that are not supported here.
         if (has_slices(model))
             for (const ThreeMfUse& item : model.reader->items())
-                location(model, item, {}, false, 0);
+                place(model, item, {}, false, 0);
         if (placed_.empty())
             throw NoLayers(
                 fmt::format("{}: found no slice stack in the build; a 3MF file of layers has one for each "
@@ -343,8 +343,7 @@ class PackageReader {
         return found->second;
     }
 
-    void location(const Model& user, const ThreeMfUse& use, const Transform& outer, bool in_support,
-                  int depth) {
+    void place(const Model& user, const ThreeMfUse& use, const Transform& outer, bool in_support, int depth) {
         constexpr int deepest = 32;
         constexpr std::size_t most = std::size_t{1} << 20;
         if (!use.part.empty() && &user != &models_.at(root_))
@@ -381,7 +380,7 @@ class PackageReader {
             if (object->second.components.empty())
                 without_slices_.note(at_line(use.line));
             for (const ThreeMfUse& component : object->second.components)
-                location(model, component, placement, support, depth + 1);
+                place(model, component, placement, support, depth + 1);
             return;
         }
         limits_.make_room(placed_, 1, at_line(use.line));
