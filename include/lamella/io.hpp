@@ -1,6 +1,6 @@
 #pragma once
 
-// Files, formats, images and jobs, on top of the engine. From a mesh file to a slice file:
+// Files, formats, images and jobs, on top of the engine. This program slices a mesh file into a slice file:
 //
 //     #include <lamella/io.hpp>
 //
@@ -34,6 +34,6 @@
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/pipeline/verify.hpp"
 
-// Hash and write small files; remove temporary files when a signal ends the program.
+// Hash files, write small files, and remove temporary files when a signal ends the program.
 #include "lamella/container/file_hash.hpp"
 #include "lamella/system/whole_file.hpp"

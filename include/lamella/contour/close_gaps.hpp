@@ -11,7 +11,7 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// States that a chain was continued from its last point `from` to the first point `to` of a chain.
+/// A join of the last point `from` of a chain with the first point `to` of the same or another chain.
 struct GapJoin {
     Point2 from;
     Point2 to;
@@ -27,14 +27,15 @@ struct ClosedGaps {
     std::uint64_t left_out = 0; ///< ends that were dropped because chains overlapped, see below
 };
 
-/// Joins the last point of a chain to the first point of a chain no farther away than `within_mm`, so
-/// material stays on the left. The closest pairs are joined first, equally close ones in the order of the
-/// coordinates of their ends. Each end is joined at most once. A chain joined to itself becomes a ring.
+/// Joins the last point of a chain to the first point of the same or another chain if these are at most
+/// `within_mm` apart. Material thus stays on the left. Pairs are joined in ascending order of distance, equal
+/// distances in the order of the coordinates of their ends. Each end is joined at most once. A chain joined
+/// to itself becomes a ring.
 ///
 /// A pair is refused if the straight line between the ends would cross a contour or an earlier join, or pass
-/// through a point of one. It is also refused if it would make a ring of fewer than three points, or of a
-/// chain that is not at least twice as long as its gap: a short straight chain is no ring. For each last
-/// point the 64 closest first points are examined.
+/// through a point of one. It is also refused if it would make a ring of fewer than three points, or a ring
+/// of a single chain that is shorter than twice its gap: a short straight chain is no ring. Only the 64 first
+/// points closest to each last point are examined.
 ///
 /// If the two chains overlap, so that the segments before and after the join cross, one of the two ends is
 /// dropped. This happens where a vertex lies on the edge of a neighbour (a T-junction): both ends differ by

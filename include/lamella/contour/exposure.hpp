@@ -1,6 +1,7 @@
 #pragma once
 
-// Data of scan vectors besides their coordinates: parameters for the machine, lengths, time and energy.
+// Properties of scan vectors other than their coordinates: parameters for the machine, lengths, time and
+// energy.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
@@ -32,9 +33,9 @@ enum class VectorKind : std::uint8_t {
 /// Returns "contour" or "hatch".
 [[nodiscard]] std::string_view vector_kind_name(VectorKind kind) noexcept;
 
-/// Parameters of the beam along vectors and between them. Files and machines refer to it by its name. A
-/// strategy starts with the default values: for the hatch of 316L steel in layers of 0.03 mm. They are a
-/// starting point, not a recommendation for a certain machine.
+/// Parameters of the beam along vectors and between them. Files and machines refer to a set by its name. The
+/// default values suit the hatch of 316L steel in layers of 0.03 mm. They are a starting point, not a
+/// recommendation for a particular machine.
 struct ParameterSet {
     std::string name = "hatch";
     double power_w = 200;
@@ -48,11 +49,12 @@ struct ParameterSet {
     friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
 };
 
-/// Returns the parameters of vectors of which only the coordinates are known: without a name, all 0.
+/// Returns parameters for vectors of which only the coordinates are known: no name, and all values 0.
 [[nodiscard]] ParameterSet unknown_parameters();
 
-/// The vectors of one part on one layer that a machine executes together, with the same parameters. Slice
-/// files store it as a part: its layers have rings and chains for contours, and hatches for a hatch.
+/// The vectors of one part on one layer that a machine executes together, with the same parameters. In slice
+/// files each exposure is a part of its own, whose layers contain rings and chains (for contours) or hatch
+/// lines (for a hatch).
 struct Exposure {
     std::string part = "part"; ///< label of the part
     ScanRegion region = ScanRegion::core;
@@ -66,15 +68,16 @@ struct Exposure {
     [[nodiscard]] std::string label() const;
 };
 
-/// Parses a label, the inverse of `label`, for formats that store nothing else. The parameters are unknown.
+/// Parses a label, as the inverse of `label`, for formats that store nothing else. The parameters are
+/// `unknown_parameters`. Returns nullopt for any other text.
 [[nodiscard]] std::optional<Exposure> labelled_exposure(std::string_view label);
 
-/// The effort of a machine for vectors.
+/// Lengths, time and energy that a machine needs for vectors.
 struct ScanFigures {
     std::uint64_t vectors = 0;
     double marked_mm = 0;
     double jumped_mm = 0;
-    /// From the speeds and delays of the parameter sets alone, without acceleration.
+    /// Time from the speeds and delays of the parameter sets; acceleration is not considered.
     double build_seconds = 0;
     double energy_j = 0;      ///< power times marking time
     double unreached_mm2 = 0; ///< material to be scanned by these vectors that no vector of the layer reaches
@@ -83,8 +86,8 @@ struct ScanFigures {
 };
 
 /// Measures vectors executed one after the other with one parameter set. `beam` is the position before the
-/// first vector and is set to the position after the last one. Some files do not specify all speeds and have
-/// 0 instead: moves at such a speed count as if they took no time. O(vectors).
+/// first vector and is set to the position after the last one. Moves at speed 0, which stands for a speed
+/// that the file does not specify, count as if they took no time. O(vectors).
 [[nodiscard]] ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters,
                                           std::optional<Point2>& beam);
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Layers: the results of slicing. Flat points plus offsets, immutable and cheap to share.
+// Layers: the results of slicing. All points of a layer are in one shared array, divided into contours by
+// offsets.
 
 #include "lamella/core/point.hpp"
 
@@ -13,7 +14,8 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// A fixed array of points in shared memory: copies and arrays in the same allocation keep it alive.
+/// An immutable array of points in shared memory. The memory lives as long as any copy of the array, or any
+/// other array in the same allocation.
 class PointArray {
   public:
     PointArray() = default;
@@ -29,7 +31,7 @@ class PointArray {
     [[nodiscard]] auto begin() const noexcept { return points_.begin(); }
     [[nodiscard]] auto end() const noexcept { return points_.end(); }
 
-    /// The owner of the memory, which keeps it alive.
+    /// Returns the owner that keeps the memory alive.
     [[nodiscard]] const std::shared_ptr<const void>& owner() const noexcept { return owner_; }
 
   private:
@@ -48,8 +50,7 @@ class PointArray {
 /// Material lies to the left of the direction of a contour: outer rings run counter-clockwise, holes
 /// clockwise. Coordinates are finite (see `check`), and zero is +0 (-0 would hash differently).
 ///
-/// The members may be filled directly: an engine that knows its counts beforehand lets many layers share one
-/// allocation of points.
+/// The members may be filled directly. Layers may then share one allocation of points.
 struct Layer {
     std::uint64_t index = 0; ///< position in the whole plan, even if only a part of it was sliced
     double z = 0;            ///< height of the plane
@@ -71,8 +72,8 @@ struct Layer {
     }
 };
 
-/// Throws Error{usage} that names the layer and the contour if a length is NaN or infinite, or so large that
-/// sums overflow. Writers of slice files require a layer that passes. O(points).
+/// Throws Error{usage} that names the layer and the contour if a coordinate or height is NaN or infinite, or
+/// so large that sums overflow. Writers of slice files require a layer that passes this check. O(points).
 void check(const Layer& layer);
 
 /// Layers in ascending z.
@@ -87,10 +88,10 @@ class LayerBuilder {
     void end_contour(bool closed);
     /// Appends a whole contour; none may be under construction.
     void add_contour(std::span<const Point2> points, bool closed);
-    /// Returns the layer in normal form with these members. The builder is empty afterwards.
+    /// Returns a layer in normal form with the contours and these heights. The builder is empty afterwards.
     [[nodiscard]] Layer finish(std::uint64_t index, double z, double bottom, double top);
-    /// Does the same for contours whose order matters, such as scan vectors: rings, then chains, in the order
-    /// in which they were added, each from its first point.
+    /// Returns the layer for contours whose order matters, such as scan vectors: first the rings, then the
+    /// chains, in the order in which they were added, each from its first point.
     [[nodiscard]] Layer finish_as_added(std::uint64_t index, double z, double bottom, double top);
     [[nodiscard]] bool empty() const noexcept { return ends_.empty(); }
 
@@ -103,9 +104,9 @@ class LayerBuilder {
     std::vector<End> ends_;
 };
 
-/// Returns the contours of all layers in one layer, in normal form, and their hatches one after the other.
-/// Index, z, bottom and top are those of the first layer. Returns an empty layer if there are none. O(n + c
-/// log c) for n points in c contours.
+/// Returns one layer with the contours of all layers, in normal form, and their hatch lines one after the
+/// other. Index, z, bottom and top are those of the first layer. Returns an empty layer if `layers` is empty.
+/// O(n + c log c) for n points in c contours.
 [[nodiscard]] Layer merged(std::span<const Layer> layers);
 
 } // namespace lamella

@@ -11,12 +11,12 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Returns the signed area in mm^2: positive for a counter-clockwise ring. Computed about the ring's first
-/// point, so that a ring far from the origin loses no digits. O(n).
+/// Returns the signed area in mm^2: positive for a counter-clockwise ring. Coordinates are taken relative to
+/// the ring's first point, so that a ring far from the origin loses no precision. O(n).
 [[nodiscard]] double ring_area(std::span<const Point2> ring) noexcept;
 
-/// Returns whether a ring is so thin that rounding its points, or the last digits of numbers in memory, may
-/// have reversed its orientation. O(n).
+/// Returns whether a ring is so thin that `rounding` of its points, or that of double precision, may have
+/// reversed its orientation. O(n).
 [[nodiscard]] bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) noexcept;
 
 /// Returns the length in mm; for a ring it includes the segment back to the first point.

@@ -1,6 +1,6 @@
 #pragma once
 
-// The normal form of layers, which gives equal layers equal bytes; equality and the content hash.
+// The normal form of layers, in which equal layers have equal bytes; tests for equality and the content hash.
 
 #include "lamella/contour/layer.hpp"
 
@@ -21,12 +21,14 @@ namespace lamella {
 /// Returns whether a layer is in normal form. Stops at the first contour out of order. O(n).
 [[nodiscard]] bool in_normal_form(const Layer& layer) noexcept;
 
-/// The following two functions are the rules of the normal form, for code that orders contours by itself.
+/// This function and the next are the rules of the normal form, for code that orders contours by itself.
 ///
-/// Returns the index at which the normal form of a ring starts: the first one whose rotation of the ring is
-/// smallest. 0 for an empty ring. O(n), even for rings that repeat themselves.
+/// Returns the index of the point at which the normal form of a ring starts: the sequence of points from
+/// there is lexicographically smallest; the first such index if there are several. 0 for an empty ring. O(n),
+/// even for rings that repeat themselves.
 [[nodiscard]] std::size_t smallest_rotation(std::span<const Point2> ring) noexcept;
-/// Returns whether contour `a` comes before `b` in its group, both already rotated; false if equal. O(n).
+/// Returns whether contour `a` comes before contour `b` in the normal form; false if they are equal. Requires
+/// two rings that begin at their smallest_rotation, or two chains. O(n).
 [[nodiscard]] bool stands_before(std::span<const Point2> a, std::span<const Point2> b) noexcept;
 
 /// Returns whether the contours are the same, bit for bit. Index, z, bottom and top are ignored.
@@ -35,9 +37,9 @@ namespace lamella {
 /// Returns a 64-bit hash of the contours of a layer in normal form: XXH3 (64 bits, seed 0) over the following
 /// bytes, all little-endian. First the number of contours and the number of rings as 64-bit integers; then
 /// for each contour the number of points up to its end as a 64-bit integer (`offsets` without its first
-/// element); then x and y of all points as doubles; then those of hatch lines, if there are any. Index, z,
-/// bottom and top are ignored. For scan vectors, which are not in normal form, the hash depends on their
-/// order. O(n), at the speed of memory.
+/// element); then x and y of all points as doubles; then x and y of the points of hatch lines, if there are
+/// any. Index, z, bottom and top are ignored. For scan vectors, which are not in normal form, the hash
+/// depends on their order. O(n), limited by memory bandwidth.
 [[nodiscard]] std::uint64_t content_hash(const Layer& layer) noexcept;
 
 } // namespace lamella

@@ -9,7 +9,8 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// The gaps of a layer: each from the last point of a chain to the first point of its assumed continuation.
+/// The gaps of a layer. Each leads from the last point of a chain to the first point of its presumed
+/// continuation.
 struct OpenGaps {
     std::uint64_t count = 0; ///< equals the number of open chains
     double longest_mm = 0;
@@ -21,13 +22,14 @@ struct OpenGaps {
     OpenGaps& operator+=(const OpenGaps& other) noexcept;
 };
 
-/// Matches last points to first points as `close_gaps` would without a limit and without obstacles: the
-/// closest pairs first, each end once. A chain is matched with itself only if it is twice as long as its gap,
-/// or if nothing else remains. So `close_gaps` can close gaps up to the longest. If triangles are flipped, a
-/// gap is as long as the part of the contour that runs in the wrong direction.
+/// Matches last points to first points as `close_gaps` would without a limit and without refusals for
+/// crossings: the closest pairs first, each end once. A chain is matched with itself only if it is twice as
+/// long as its gap, or if no other end remains. So `longest_mm` is a useful limit for `close_gaps`. If
+/// triangles are flipped, a gap is as long as the part of the contour that runs in the wrong direction.
 ///
-/// O(1) for a layer without chains, otherwise O(c log c) for c chains on average. An end whose match was
-/// taken 16 times gets a remaining one, in the order of the chains; hostile layers may get gaps too long.
+/// O(1) for a layer without chains, otherwise O(c log c) for c chains on average. An end whose nearest
+/// partners were taken 16 times is matched with any remaining one, in the order of the chains, so that gaps
+/// of contrived layers may be reported too long.
 [[nodiscard]] OpenGaps open_gaps(const Layer& layer);
 
 } // namespace lamella

@@ -13,11 +13,11 @@ namespace lamella {
 
 /// Rounding of coordinates and heights by a format; none by default.
 struct Rounding {
-    double step_mm = 0;            ///< unit of which numbers become multiples; 0: none
+    double step_mm = 0;            ///< numbers are rounded to multiples of this; 0: not rounded
     bool single_precision = false; ///< numbers are rounded to 24 significant bits
 
-    /// Returns the largest distance between neighbouring numbers that the format distinguishes, up to this
-    /// magnitude: no number is moved by more than half of it.
+    /// Returns the largest distance between neighbouring numbers of the format, up to this magnitude.
+    /// Rounding moves no number by more than half of it.
     [[nodiscard]] double step_at(double magnitude_mm) const noexcept {
         constexpr double last_digit = 0x1p-23;
         return std::max(step_mm, single_precision ? std::abs(magnitude_mm) * last_digit : 0.0);
@@ -25,8 +25,8 @@ struct Rounding {
     friend bool operator==(const Rounding&, const Rounding&) = default;
 };
 
-/// Returns the largest distance by which a format may have moved the plane of a layer. If it stores bottom
-/// and top only, the plane is computed from these.
+/// Returns the largest distance by which rounding may have moved the plane of a layer, also in formats that
+/// store only bottom and top, from which the plane is computed.
 [[nodiscard]] inline double moved_cut(const Layer& layer, const Rounding& rounding) noexcept {
     return rounding.step_at(std::max(std::abs(layer.bottom), std::abs(layer.top))) / 2;
 }
@@ -39,8 +39,8 @@ struct Rounding {
     return largest;
 }
 
-/// Returns the largest distance by which a format may have moved one of these points, in mm, plus the last
-/// digits of numbers in memory. O(points) if the format rounds.
+/// Returns the largest distance by which a format may have moved one of these points, in mm, including the
+/// rounding errors of double precision. O(points) if the format rounds.
 [[nodiscard]] inline double moved_point(std::span<const Point2> points, const Rounding& rounding) noexcept {
     if (rounding == Rounding{})
         return 0;
@@ -49,7 +49,7 @@ struct Rounding {
     return (rounding.step_at(largest) / 2 + last_digits * largest) * std::sqrt(2.0);
 }
 
-/// The rounding of text formats without a unit of their own.
+/// The rounding of text formats that define no unit of their own.
 inline constexpr Rounding text_rounding{.step_mm = 0.001};
 
 } // namespace lamella

@@ -17,9 +17,9 @@ enum class Stage { read, weld, link, slice, polygon, write };
 /// Returns the name of a stage in progress lines and statistics, such as "link".
 [[nodiscard]] const char* stage_name(Stage stage) noexcept;
 
-/// Progress of a stage. `done` does not decrease before it has reached `total` at the end of the stage. The
-/// unit depends on the stage (bytes, triangles or layers). A stage that runs several times, such as for each
-/// of several files or parts, starts again from 0 each time.
+/// Progress of a stage. `done` only increases until it equals `total` at the end of the stage. The unit
+/// depends on the stage (bytes, triangles or layers). A stage that runs several times, for example once per
+/// file or part, starts again from 0 each time.
 struct Progress {
     Stage stage = Stage::read;
     std::uint64_t done = 0;
@@ -29,7 +29,7 @@ struct Progress {
 /// A request to end computations early, made from any thread or a signal handler. It cannot be withdrawn.
 class CancelFlag {
   public:
-    /// A request on `outer` counts as one on this flag. `outer` must outlive this flag.
+    /// Makes a flag on which a request on `outer` counts, too. `outer` must outlive this flag.
     explicit CancelFlag(const CancelFlag* outer = nullptr) noexcept : outer_(outer) {}
 
     void request() noexcept { requested_.store(true, std::memory_order_relaxed); }
@@ -49,14 +49,14 @@ struct Execution {
     /// cannot start more.
     unsigned threads = 0;
 
-    /// Called some ten to a hundred times per stage, from one thread at a time, but not always the same one.
-    /// May throw: the computation stops and the exception reaches the caller.
+    /// Called about ten to a hundred times per stage, from one thread at a time, but not always from the same
+    /// thread. May throw: the computation stops and the exception reaches the caller.
     std::function<void(const Progress&)> progress = {};
 
-    /// After a request the computation ends with Error{ErrorKind::cancelled} at its next step, usually within
-    /// a fraction of a second. Offsets, boolean operations and scan vectors end within a layer, too; some
-    /// readers and writers take longer for very large files or layers. The flag must outlive the computation;
-    /// nullptr: not cancellable.
+    /// After a request the computation throws Error{ErrorKind::cancelled}, usually within a fraction of a
+    /// second. Offsets, boolean operations and scan vectors stop even in the middle of a layer. Some readers
+    /// and writers take longer to stop if files or layers are very large. The flag must outlive the
+    /// computation; nullptr: not cancellable.
     const CancelFlag* cancel = nullptr;
 
     [[nodiscard]] bool cancelled() const noexcept { return cancel != nullptr && cancel->requested(); }

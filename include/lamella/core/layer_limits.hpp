@@ -1,6 +1,6 @@
 #pragma once
 
-// Limits of the work on one layer.
+// Limits of memory and time for an operation on one layer.
 
 #include "lamella/core/api.hpp"
 #include "lamella/core/execution.hpp"
@@ -12,15 +12,16 @@ namespace lamella {
 
 /// Limits of an operation on a layer, such as an offset or scan vectors. Results never depend on them.
 struct LayerLimits {
-    /// After a request the operation ends with Error{ErrorKind::cancelled}, even in the middle of a layer.
+    /// After a request the operation throws Error{ErrorKind::cancelled}, even in the middle of a layer.
     /// nullptr: not cancellable.
     const CancelFlag* cancel = nullptr;
 
-    /// Memory for data other than the layer, in bytes: crossings, points of offsets, scan vectors. It is
-    /// estimated before memory is allocated; more is Error{ErrorKind::limit}. 0: no limit.
+    /// Memory for data other than the layer, in bytes: crossings, points of offsets, scan vectors. The need
+    /// is estimated before memory is allocated; if it exceeds the limit, the operation throws
+    /// Error{ErrorKind::limit}. 0: no limit.
     std::uint64_t memory = 0;
 
-    /// Returns the remaining limits while this number of bytes is kept.
+    /// Returns these limits with the memory reduced by `bytes`, which the caller holds in the meantime.
     [[nodiscard]] LayerLimits without(std::uint64_t bytes) const noexcept {
         LayerLimits left = *this;
         if (memory != 0)
@@ -29,8 +30,8 @@ struct LayerLimits {
     }
 };
 
-/// Returns the limits of each of `layers` layers that are processed at the same time in a run that may take
-/// `max_memory` bytes: together they may take a quarter of that. 0: no limit.
+/// Returns the limits for each of `layers` layers that are processed at the same time. Together they may take
+/// a quarter of `max_memory`, the memory limit of the whole job in bytes; 0: no limit.
 [[nodiscard]] LayerLimits layer_limits(const Execution& execution, std::uint64_t max_memory = 0,
                                        unsigned layers = 1);
 

@@ -19,14 +19,14 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// The rim of a hole: boundary edges joined end to end, in the direction in which the missing triangles would
-/// run through them. A loop passes no vertex twice: where holes touch, each has a loop of its own.
+/// The rim of a hole: boundary edges joined end to end, in the direction that they have in the missing
+/// triangles. A loop passes no vertex twice: where holes touch, each has a loop of its own.
 struct BoundaryLoop {
     std::vector<Point3> points; ///< the first point of a closed loop is not repeated at the end
     bool closed = true;         ///< false where a flipped triangle breaks the rim
     double length_mm = 0;
-    /// Largest distance of a point from the line through the first point and the point farthest from it. No
-    /// more than rounding where a vertex lies on an edge of a neighbour (a T-junction).
+    /// Largest distance of a point of the loop from the line through the loop's first point and the point
+    /// farthest from that. At a T-junction (a vertex on an edge of a neighbour) it is within rounding errors.
     double width_mm = 0;
     Box3 box;
 
@@ -49,11 +49,11 @@ struct Shell {
     std::uint32_t first_triangle = 0;
     std::uint64_t triangles = 0; ///< degenerate triangles belong to no shell
     Box3 box;
-    /// Signed; measured from the shell's first corner, so meaningful for closed shells.
+    /// Signed volume, about the shell's first corner; meaningful for closed shells only.
     double volume_mm3 = 0;
     ShellKind kind = ShellKind::body;
-    /// The shells that contain this one are those that wind around the centroid of its largest triangle.
-    /// `inside` is the one of least volume among them; `depth` is their number.
+    /// A shell contains this one if it winds around the centroid of this one's largest triangle. `inside` is
+    /// the containing shell of least volume; `depth` is the number of containing shells.
     std::optional<std::uint32_t> inside = {};
     std::uint32_t depth = 0;
 };
@@ -68,15 +68,15 @@ struct Diagnosis {
     Inspection counts;
 
     std::uint64_t boundary_loops = 0;
-    /// Number of closed loops no wider than the rounding of coordinates: edges that coincide without sharing
-    /// vertices. `widest_slit_mm` is the width of the widest.
+    /// Number of slits: closed loops no wider than the rounding of coordinates, where edges coincide without
+    /// sharing vertices. `widest_slit_mm` is the width of the widest.
     std::uint64_t slits = 0;
     double widest_slit_mm = 0;
     double boundary_length_mm = 0;
     /// Vertices at which parts of the surface touch: the triangles at such a vertex are not all connected by
     /// edges that end there.
     std::uint64_t nonmanifold_vertices = 0;
-    /// Pairs of duplicate triangles that run in opposite directions. (Each triangle is in at most one pair.)
+    /// Pairs of duplicate triangles of opposite orientation. Each triangle is in at most one pair.
     std::uint64_t opposite_pairs = 0;
 
     // Locations: the first `keep` of each kind.
@@ -100,8 +100,8 @@ struct DiagnosisOptions {
 };
 
 /// Finds the defects of a mesh. Throws Error{limit} beyond 2^32 / 3 triangles. Expected O(n) if few triangles
-/// lie above or below each shell; self-intersections cost what `find_self_intersections` states. The result
-/// is the same for any number of threads.
+/// lie above or below each shell; the search for self-intersections costs as much as
+/// `find_self_intersections`. The result is the same for any number of threads.
 [[nodiscard]] Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options = {},
                                  const Execution& execution = {});
 

@@ -25,7 +25,7 @@ struct Inspection {
     std::uint64_t boundary_edges = 0;
     /// Edges with more than two triangles.
     std::uint64_t nonmanifold_edges = 0;
-    /// Edges that triangles use more often in one direction than in the other; without boundary edges.
+    /// Edges that triangles use more often in one direction than in the other. Boundary edges do not count.
     std::uint64_t orientation_conflicts = 0;
     /// Triangles beyond the first with the same three vertices, in either orientation.
     std::uint64_t duplicate_triangles = 0;
@@ -33,12 +33,12 @@ struct Inspection {
     std::uint64_t degenerate_triangles = 0;
     /// Connected components: triangles connected by edges.
     std::uint64_t shells = 0;
-    /// Closed shells of negative volume inside the material of others: hollows that are oriented correctly.
+    /// Closed shells of negative volume inside the material of others: correctly oriented cavities.
     std::uint64_t cavities = 0;
     /// Closed shells of negative volume that are not inside material: inside out.
     std::uint64_t inverted_shells = 0;
 
-    /// Returns true if every edge is used equally often in both directions: slices have no open chains.
+    /// Returns true if every edge is used equally often in both directions. Slices then have no open chains.
     [[nodiscard]] bool closed() const noexcept { return boundary_edges == 0 && orientation_conflicts == 0; }
     /// Returns true if `defect_kinds` finds nothing: all counts of defects are 0.
     [[nodiscard]] bool sound() const noexcept;

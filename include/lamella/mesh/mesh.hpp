@@ -18,22 +18,21 @@ namespace lamella {
 /// A TriangleSoup or an IndexedMesh: immutable, shared, cheap to copy. Functions that accept both kinds take
 /// a Mesh. Its coordinates are finite, and its indices are those of existing vertices.
 ///
-/// Vertices with equal coordinates are the same vertex, in either kind: an indexed mesh may repeat vertices,
-/// as files do whose faces share none, and it is sliced, welded and inspected as if it did not.
+/// Vertices with equal coordinates are the same vertex, in either kind. An indexed mesh may therefore repeat
+/// vertices, as in files whose faces share none; slicing, welding and inspection treat them as one vertex.
 class Mesh {
   public:
     /// An empty soup.
     Mesh() = default;
     Mesh(TriangleSoup soup); // NOLINT(google-explicit-constructor): a soup is a mesh
-    /// Throws Error{input} that names the first triangle with a vertex that does not exist, or the first
-    /// vertex that is not finite or too far away (see `check`).
+    /// Throws the errors of `check`.
     Mesh(IndexedMesh mesh); // NOLINT(google-explicit-constructor): so is this; move it in to save a copy
 
-    /// The soup or the indexed mesh; the other of the two is null.
+    /// Return the soup or the indexed mesh; null for a mesh of the other kind.
     [[nodiscard]] const TriangleSoup* soup() const noexcept { return indexed_ ? nullptr : &soup_; }
     [[nodiscard]] const IndexedMesh* indexed() const noexcept { return indexed_.get(); }
 
-    /// Returns body(soup) or body(indexed mesh).
+    /// Calls `body` with the soup or the indexed mesh, and returns its result.
     template <class Body>
     decltype(auto) visit(const Body& body) const {
         return indexed_ ? body(*indexed_) : body(soup_);
@@ -55,9 +54,9 @@ class Mesh {
     /// from any number of threads. Expected O(n) for the first call.
     [[nodiscard]] Mesh with_joined_vertices(const Execution& execution = {}) const;
 
-    /// Returns the mesh under a map, still counter-clockwise seen from outside if the map mirrors. Throws
-    /// Error{usage} if the map is not finite, or moves vertices of an indexed mesh beyond 1e100 mm. O(1) for
-    /// a soup and for the identity; an indexed mesh is copied.
+    /// Returns the transformed mesh. If the map mirrors, triangles are flipped so that they stay
+    /// counter-clockwise seen from outside. Throws Error{usage} if the map is not finite, or moves vertices
+    /// of an indexed mesh beyond 1e100 mm. O(1) for a soup and for the identity; an indexed mesh is copied.
     [[nodiscard]] Mesh transformed(const Transform& map) const;
 
   private:
@@ -74,8 +73,9 @@ class Mesh {
 /// Joins all equal corners exactly; see `weld` of a TriangleSoup and of an IndexedMesh.
 [[nodiscard]] IndexedMesh weld(const Mesh& mesh, const Execution& execution = {});
 
-/// Returns all meshes as one, in this order; they share no vertices, and each soup among several is welded by
-/// itself. A single mesh is returned as it is. Throws Error{limit} beyond 2^32 - 1 vertices or triangles.
+/// Returns all meshes as one, in this order. Different meshes share no vertices in it. If there are several,
+/// each soup is welded by itself. A single mesh is returned as it is. Throws Error{limit} beyond 2^32 - 1
+/// vertices or triangles.
 [[nodiscard]] Mesh joined(std::span<const Mesh> meshes, const Execution& execution = {});
 
 } // namespace lamella

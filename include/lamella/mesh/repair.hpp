@@ -29,15 +29,15 @@ struct ToleranceWeld {
 
 /// Joins vertices that are close to one another, so that cracks up to that width close.
 ///
-/// Pairs of vertices no farther apart than the tolerance are visited, the closest first, equally close ones
-/// in the order of their coordinates. Each pair joins the groups of its two vertices, unless the box of both
-/// groups would have a diagonal above the tolerance. So no vertex moves farther than the tolerance and no
-/// chains form, but where vertices are dense compared with the tolerance some pairs stay apart. A group
-/// becomes the lexicographically smallest of its points. Triangles keep their order; those that lose a corner
-/// are dropped.
+/// Every vertex begins as a group of its own. Pairs of vertices no farther apart than the tolerance are
+/// visited in ascending order of distance, equal distances in the order of their coordinates. Each pair joins
+/// the groups of its two vertices, unless the bounding box of both groups together would have a diagonal
+/// above the tolerance. So no vertex moves farther than the tolerance. But where vertices are dense compared
+/// with the tolerance, some pairs stay apart. A group becomes the lexicographically smallest of its points.
+/// Triangles keep their order; triangles with two corners in one group are dropped.
 ///
 /// The resulting points are the same for any order of vertices and triangles. Throws Error{usage} for a
-/// tolerance that is not a positive finite number, and for one so large that there would be more than some 64
+/// tolerance that is not a positive finite number, and for one so large that there are more than about 64
 /// pairs per vertex. O(n log n) for n vertices and pairs within the tolerance.
 [[nodiscard]] ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm,
                                         const Execution& execution = {});
@@ -49,18 +49,18 @@ struct DroppedDuplicates {
     std::vector<Point3> locations;        ///< centroids of the first few
 };
 
-/// Drops triangles that have the same three vertices as others. Among those, triangles of opposite
-/// orientation cancel in pairs, since nothing lies between the two; of the rest the first is kept. So a body
-/// stored twice remains once, a wall between two touching bodies vanishes, and so does a body stored together
-/// with its inside-out copy. Triangles keep their order; vertices that become unused are dropped. Expected
-/// O(n).
+/// Drops triangles that have the same three vertices as others. Two such triangles of opposite orientation
+/// enclose nothing: they cancel in pairs. Of the rest the first is kept. So of a body that is stored twice
+/// one copy remains; a wall between two touching bodies vanishes; and a body stored together with its
+/// inside-out copy vanishes, too. Triangles keep their order; vertices that become unused are dropped.
+/// Expected O(n).
 [[nodiscard]] DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& execution = {});
 
 struct OrientedMesh {
     IndexedMesh mesh;
     std::uint64_t patches = 0;
     std::uint64_t flipped_triangles = 0; ///< triangles whose orientation was reversed
-    /// Patches flipped together with all patches tied to them, once these agree.
+    /// Patches flipped outward, as part of a whole group of tied patches.
     std::uint64_t flipped_outward = 0;
     std::uint64_t flipped_inward = 0; ///< likewise, inward
     std::uint64_t non_orientable_patches =
@@ -73,22 +73,22 @@ struct OrientedMesh {
 /// A patch is a part of the mesh connected by edges of exactly two triangles. Within a patch all triangles
 /// get the orientation of the majority. Patches that meet at a non-manifold edge are tied to one another. If
 /// the edge is balanced (used equally often in both directions), they keep their relative orientation. If
-/// flipping one of two patches would balance it, they are tied with opposite orientations, and again the
-/// smaller part is flipped. So if no edge is in conflict before, none is afterwards.
+/// flipping one of two patches would balance it, that flip is made; of the two groups of patches already
+/// tied, the one with fewer triangles is flipped. So if no edge is in conflict before, none is afterwards.
 ///
 /// Then each group of tied patches is flipped as a whole if necessary: outward, or inward if it is a void,
-/// that is, if it lies in an odd number of other closed groups. (A group lies in another one if that winds
-/// around the centroid of its largest triangle, if the other's box contains its box, and if their surfaces do
-/// not cross. A group that touches the other one stays as it is.) Outward means that the volume is positive;
-/// the volume of a group with open edges is measured from the centre of the box around these edges. A group
-/// keeps its orientation if its volume is within rounding, or if the fans that would close it have nearly
-/// half its area or more. So do non-orientable patches.
+/// that is, if it lies in an odd number of other closed groups. Group A lies in group B if B winds around the
+/// centroid of A's largest triangle, B's box contains A's box, and their surfaces do not cross. If they
+/// touch, A keeps its orientation. Outward means that the volume is positive; the volume of a group with open
+/// edges is measured from the centre of the box around these edges. Non-orientable patches keep their
+/// orientation. So does a group whose volume is 0 within rounding, and one whose holes, closed by fans, would
+/// have nearly half the area of the group or more.
 ///
-/// So a body within a body, both oriented outward, becomes a void in it: do not call this if the inner body
-/// should be filled. The result does not depend on the order of triangles nor on the first corner of each:
-/// the lexicographically smallest triangle decides ties. Throws Error{limit} beyond 2^31 - 1 triangles.
-/// Expected O(n) if few triangles lie above or below each patch, times the number of passes in which flipped
-/// patches make others fit: a few. O(n^2) for n nested patches.
+/// If a body lies within another one and both are oriented outward, the inner body becomes a void: do not
+/// call this function if it should be filled. The result does not depend on the order of triangles nor on the
+/// first corner of each: the lexicographically smallest triangle decides ties. Throws Error{limit} beyond
+/// 2^31 - 1 triangles. Expected O(n) per pass if few triangles lie above or below each patch; a flip can
+/// require another pass, and a few passes usually suffice. O(n^2) for n nested patches.
 [[nodiscard]] OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution = {});
 
 } // namespace lamella

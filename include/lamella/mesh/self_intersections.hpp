@@ -30,7 +30,7 @@ struct TriangleIntersection {
     Point3 at; ///< approximate location
 };
 
-/// Numbers of intersecting pairs of triangles of two parts of a mesh (or of one, where a == b).
+/// Numbers of intersecting pairs of triangles between two parts of a mesh, or within one part (a == b).
 struct PartIntersections {
     std::uint32_t part_a = 0; ///< not above part_b
     std::uint32_t part_b = 0;
@@ -45,9 +45,10 @@ struct SelfIntersections {
     std::uint64_t touching = 0;    ///< likewise
     /// Triangles without area (degenerate, or with all corners on a line), which are ignored.
     std::uint64_t flat_triangles = 0;
-    /// The first few pairs that cross or overlap, by (triangle_a, triangle_b); then the first few that touch.
+    /// The first few pairs that cross or overlap, ordered by (triangle_a, triangle_b); then the first few
+    /// that touch, in the same order.
     std::vector<TriangleIntersection> first;
-    /// By (part_a, part_b), if parts were given.
+    /// Ordered by (part_a, part_b); empty unless parts were given.
     std::vector<PartIntersections> parts;
 
     [[nodiscard]] std::uint64_t pairs() const noexcept { return crossing + overlapping + touching; }
@@ -81,7 +82,7 @@ struct IntersectionOptions {
 /// empty or has one entry per triangle.
 ///
 /// O(n log n + pairs of triangles with overlapping boxes), on all threads; the result is the same for any
-/// number of threads. The slow case is long slanted triangles whose boxes contain many others.
+/// number of threads. It is slow for long slanted triangles, because their boxes overlap many others.
 [[nodiscard]] SelfIntersections find_self_intersections(const IndexedMesh& mesh,
                                                         const IntersectionOptions& options = {},
                                                         const Execution& execution = {});

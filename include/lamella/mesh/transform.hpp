@@ -35,19 +35,18 @@ struct Transform {
 /// Returns the map that applies `inner` first, then `outer`.
 [[nodiscard]] Transform compose(const Transform& outer, const Transform& inner) noexcept;
 
-/// Returns the inverse. Throws Error{usage} if the map flattens (determinant 0) or is not finite.
+/// Returns the inverse. Throws Error{usage} if the map is singular (determinant 0) or not finite.
 [[nodiscard]] Transform inverse(const Transform& map);
 
 [[nodiscard]] Transform translation(double x, double y, double z) noexcept;
 [[nodiscard]] Transform scaling(double x, double y, double z) noexcept;
 
 /// Returns the right-handed rotation about a coordinate axis ('x', 'y' or 'z') by degrees. Multiples of 90
-/// degrees are exact: no rounded sine moves a flat face off its plane. Throws Error{usage} for another axis.
+/// degrees are exact, so that horizontal faces stay horizontal. Throws Error{usage} for another axis.
 [[nodiscard]] Transform rotation(char axis, double degrees);
 
-/// Returns the rotation from `direction` (any length, not zero) to +z: slicing the mapped mesh is slicing
-/// along `direction`. Coordinate axes give exact maps. Throws Error{usage} unless the length is finite and
-/// not 0.
+/// Returns the rotation from `direction` (any length) to +z. Slicing the rotated mesh means slicing along
+/// `direction`. Coordinate axes give exact maps. Throws Error{usage} unless the length is finite and not 0.
 [[nodiscard]] Transform upright(const Point3& direction);
 
 } // namespace lamella

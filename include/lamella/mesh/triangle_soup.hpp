@@ -31,12 +31,12 @@ struct Point3f {
 using Triangle3f = std::array<Point3f, 3>;
 using Triangle3 = std::array<Point3, 3>;
 
-/// An immutable view of n triangles with equal spacing in memory, which it keeps alive. It is cheap to copy.
-/// The records of a binary STL file are such a view (spacing 50 bytes).
+/// An immutable view of n triangles at equal spacing in memory, for example of the records of a binary STL
+/// file (spacing 50 bytes). It keeps that memory alive and is cheap to copy.
 ///
 /// A soup may carry a placement: an affine map applied in double precision to each corner when it is read.
-/// Corners are finite: constructors throw Error{input} that names the first triangle with a corner that is
-/// not. Equal corners are the same vertex, with -0 equal to +0.
+/// All corners are finite: constructors throw Error{input} that names the first triangle with another corner.
+/// Equal corners are the same vertex, with -0 equal to +0.
 class TriangleSoup {
   public:
     TriangleSoup() = default;
@@ -44,8 +44,8 @@ class TriangleSoup {
     /// A soup that owns its triangles. O(n).
     explicit TriangleSoup(std::vector<Triangle3f> triangles);
 
-    /// A view of `count` triangles of nine consecutive floats; the i-th starts at `first + i * stride`,
-    /// without alignment. `owner` keeps that memory alive as long as any copy of the soup. O(n).
+    /// A view of `count` triangles of nine consecutive floats. Triangle i starts at `first + i * stride`,
+    /// which need not be aligned. `owner` keeps that memory alive as long as any copy of the soup. O(n).
     TriangleSoup(std::shared_ptr<const void> owner, const std::byte* first, std::size_t stride,
                  std::size_t count);
 
@@ -69,7 +69,7 @@ class TriangleSoup {
         return t;
     }
 
-    /// Returns triangle i with the placement applied, still counter-clockwise if the placement mirrors.
+    /// Returns triangle i with the placement applied; counter-clockwise also if the placement mirrors.
     [[nodiscard]] Triangle3 placed(std::size_t i) const noexcept {
         const Triangle3f t = stored(i);
         const auto corner = [&](std::size_t k) {
@@ -85,8 +85,8 @@ class TriangleSoup {
     /// Returns true if the placement mirrors: `placed` swaps corners 1 and 2.
     [[nodiscard]] bool mirrored() const noexcept { return mirrored_; }
 
-    /// Returns the same triangles under a further map, applied after the present placement. Shares the
-    /// memory. Throws Error{usage} if the map is not finite.
+    /// Returns the same triangles with `map` applied after the present placement. Shares the memory. Throws
+    /// Error{usage} if the map is not finite.
     [[nodiscard]] TriangleSoup transformed(const Transform& map) const;
 
     /// Returns the triangles [begin, end). Shares the memory.

@@ -18,7 +18,7 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Number of layers of one kind, and the height at which the lowest was cut.
+/// Number of layers with a certain defect, and the height at which the lowest of them was cut.
 struct AffectedLayers {
     std::uint64_t layers = 0;
     double first_z = 0; ///< mm
@@ -27,7 +27,8 @@ struct AffectedLayers {
     void add(double z) noexcept;
 };
 
-/// Layers with horizontal faces on their planes up to rounding, which decides on which side these are cut.
+/// Layers whose planes coincide with horizontal faces except for rounding, so that rounding decides whether
+/// the cut is above or below the face.
 struct NearFaceLayers : AffectedLayers {
     double area_mm2 = 0;
     double farthest_mm = 0; ///< the largest distance of such a face from its plane
@@ -38,10 +39,10 @@ struct NearFaceLayers : AffectedLayers {
     [[nodiscard]] std::string text(std::uint64_t layers) const;
 };
 
-/// Finds them for a mesh cut by a plan. O(triangles + planes).
+/// Finds such layers for a mesh and a plan. O(triangles + planes).
 [[nodiscard]] NearFaceLayers near_faces(const Mesh& mesh, const Plan& plan, const Execution& execution = {});
 
-/// Layers with rings that bound no material, and the volume that these enclose.
+/// Layers with rings that bound no material (see inverted_rings), and the volume that these rings enclose.
 struct InvertedLayers : AffectedLayers {
     std::uint64_t rings = 0;
     double volume_mm3 = 0; ///< areas times the thickness of their layers
@@ -51,16 +52,17 @@ struct InvertedLayers : AffectedLayers {
     /// Returns a text such as "20 rings bound no material in 3 of 20 layers, first at z = 0.25 mm (360 mm3
     /// lost): they run clockwise outside of material". `of_layers` is the number of all layers.
     [[nodiscard]] std::string text(std::uint64_t of_layers) const;
-    /// Returns the same with a remedy for layers that were read: `fill`.
+    /// Returns the same text with the remedy for layers that were read from a file: `fill`.
     [[nodiscard]] std::string text_of_file(std::uint64_t of_layers) const;
 };
 
-/// Finds them in parts on the same planes. Parallel over planes. `max_memory`: see layer_limits.
+/// Finds such rings in the layers of parts on the same planes. Parallel over planes. `max_memory`: see
+/// layer_limits.
 [[nodiscard]] InvertedLayers inverted_layers(std::span<const LayerStack> parts, const Rounding& rounding,
                                              InversionSearch search, const Execution& execution = {},
                                              std::uint64_t max_memory = 0);
 
-/// Defects of a mesh file that its layers reveal.
+/// Defects of a mesh file that show in its layers.
 struct MeshDoubts {
     std::uint64_t layers = 0; ///< all layers
     AffectedLayers open = {}; ///< with open chains
@@ -71,14 +73,14 @@ struct MeshDoubts {
     std::vector<std::string> open_parts = {};
     std::vector<std::string> inverted_parts = {};
 
-    /// Adds the findings, if any, of the next plane above, at z.
+    /// Adds the findings, if any, on the next plane above, which is at z.
     void add(double z, double thickness, const OpenGaps& gaps, const InvertedRings& found) noexcept;
     /// Returns a line for each kind, such as "10 open chains in 5 of 20 layers, first at z = 0.5 mm: contours
     /// do not close where the mesh has holes or flipped triangles, the longest gap is 3 mm".
     [[nodiscard]] std::vector<std::string> texts() const;
 };
 
-/// Content of layers that scan vectors are not made of.
+/// Content of layers that is lost because scan vectors are not derived from it.
 struct ScanLosses {
     std::uint64_t layers = 0; ///< all layers
     std::uint64_t hatches = 0;
@@ -91,7 +93,7 @@ struct ScanLosses {
     [[nodiscard]] std::vector<std::string> texts() const;
 };
 
-/// Finds them in parts on the same planes, at least one part. Parallel over planes.
+/// Finds such content in the layers of parts, at least one, on the same planes. Parallel over planes.
 /// `max_memory`: see layer_limits.
 [[nodiscard]] ScanLosses scan_losses(std::span<const LayerStack> parts, const Rounding& rounding,
                                      const Execution& execution = {}, std::uint64_t max_memory = 0);

@@ -24,23 +24,24 @@ struct MergeResult {
     /// Warnings about files that are rewritten, and about their rings that bound no material. Each line
     /// begins with the path of the file.
     std::vector<std::string> file_warnings;
-    std::vector<std::string> warnings; ///< content that the format cannot hold
+    std::vector<std::string> warnings; ///< content that the format cannot represent
 };
 
 /// Merges slice files of one format with adjoining layers, such as the shards of one job; they may be in any
-/// order. Layers of the Common Layer Interface are copied unchanged if that is also the output format
-/// (`options` then have no effect): the result is, byte for byte, the file of a single run. Layers of other
-/// formats are read and rewritten. Memory holds one of the files at a time.
+/// order. If input and output have the format Common Layer Interface, layers are copied unchanged, and
+/// `options` have no effect. The result is then, byte for byte, the file that a job without shards writes.
+/// Layers of other formats are read and rewritten. One file at a time is held in memory.
 ///
-/// `format` is a name; "" selects by the extension of `output`. Throws
+/// `format` is the name of the output format; if it is "", the extension of `output` selects the format.
+/// Throws
 ///
-/// - Error{input}, naming both files, if they differ in their parts (formats of scan vectors list only parts
-///   that are not empty), the parameters of a part, units or header, or if one begins above the end of the
-///   one below it (a layer gap) or below it (an overlap);
-/// - Error{input} for files to be copied whose reading gives a warning;
-/// - Error{usage} for inputs that can be read only once, such as pipes, and if `output` exists and its layers
-///   adjoin those of the files, since it then is one of them;
-/// - the errors of reading and writing.
+/// - Error{input} that names two files if they differ in the parameters of a part, in units or header, or in
+///   their parts (except in formats of scan vectors, which list only parts that are not empty); or if there
+///   is a gap between their layers, or an overlap;
+/// - Error{input} if layers would be copied from a file whose reading gives a warning;
+/// - Error{usage} for inputs that can be read only once, such as pipes; and if `output` exists and its layers
+///   adjoin those of the inputs, because it then counts as one of them;
+/// - the errors of read_layers and of the writer.
 MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
                               std::string_view format = {}, const LayerWriteOptions& options = {},
                               const LayerReadOptions& reading = {}, const Execution& execution = {});

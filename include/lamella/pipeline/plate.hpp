@@ -23,37 +23,36 @@ namespace lamella {
 /// A mesh file to be put on the plate.
 struct PlateInput {
     std::string path = {}; ///< "-" is standard input
-    /// Millimetres per unit of a file that does not state its own; 1 if unset. For a file that does it is
-    /// Error{usage}.
+    /// Millimetres per unit, for a file that does not specify its unit; 1 if not set. Error{usage} for a file
+    /// that specifies its unit.
     std::optional<double> unit_mm = {};
     /// Placement of the whole file, in millimetres, applied after the transforms in the file itself.
     Transform placement = {};
-    /// Number of copies. They are arranged in rows along x, one behind the other in y, as nearly square as
-    /// possible.
+    /// Number of copies. They are arranged in a grid of rows along x that is as nearly square as possible.
     std::uint64_t copies = 1;
-    double spacing_mm = 5; ///< between the boxes of copies
-    /// Label of the file's parts. If empty, it is that in the file; else the name of the file, or "part" for
-    /// the only part of a plate.
+    double spacing_mm = 5; ///< distance between the bounding boxes of copies
+    /// Label of the file's parts. If empty, parts have their labels in the file; those without have the name
+    /// of the file, or "part" if there is no other part on the plate.
     std::string label = {};
     /// Treats all parts of the file as supports, whatever the file specifies.
     bool support = false;
 };
 
-/// A mesh to be sliced once. It is already placed, except for the offsets along x and y of parts that share
-/// it.
+/// A mesh that is sliced once for all parts that share it. It is already placed, except for the offsets of
+/// these parts along x and y.
 struct PlateShape {
     Mesh mesh;
-    std::size_t input = 0; ///< index of the file's input
+    std::size_t input = 0; ///< index of the input that it comes from
 };
 
-/// One body on the plate. Formats that can keep its layers separate.
+/// One body on the plate. Formats that can distinguish parts keep its layers separate.
 struct PlatePart {
     std::string label; ///< unique
     std::size_t shape = 0;
     double dx = 0; ///< mm; added to the layers of the shape
     double dy = 0;
     Box3 box;
-    bool support = false; ///< in scan vectors exposed as a support; otherwise treated as a part
+    bool support = false; ///< scanned with the parameters for supports; otherwise treated as a part
 };
 
 /// A volume that is subtracted from parts, because a file marks it as negative in their object.
@@ -79,26 +78,26 @@ struct PlateFile {
 struct Plate {
     std::vector<PlateFile> files; ///< one for each input
     std::vector<PlateShape> shapes;
-    std::vector<PlatePart> parts; ///< in the order of inputs, of their instances, of copies
+    std::vector<PlatePart> parts; ///< ordered by input, then by instance, then by copy
     std::vector<PlateNegative> negatives;
     Box3 box; ///< of all parts
 };
 
 /// Reads all inputs. Instances of one mesh that differ only in x and y share a shape: they are sliced once.
 /// Throws the errors of `read_mesh`, and Error{usage} if there are no inputs, for an invalid unit, number of
-/// copies or spacing, and for positions beyond the range of numbers.
+/// copies or spacing, and for positions that overflow.
 [[nodiscard]] Plate load_plate(std::span<const PlateInput> inputs, const MeshReadOptions& options = {},
                                const Execution& execution = {});
 
-/// Does the same for one input whose file has been read already.
+/// Makes the plate of one input whose file has already been read.
 [[nodiscard]] Plate load_plate(const PlateInput& input, MeshFile file, const Execution& execution = {});
 
 /// Returns all parts as one mesh (see `joined` of meshes), without negative volumes.
 [[nodiscard]] Mesh joined(const Plate& plate, const Execution& execution = {});
 
-/// Throws Error{limit} with the numbers of parts and triangles if this many bytes for each triangle of all
-/// parts exceed `max_memory` (0: three quarters of the physical memory). Call it before joining and
-/// inspecting the parts.
+/// Throws Error{limit} that reports the numbers of parts and triangles if `bytes_per_triangle` times the
+/// number of triangles of all parts exceeds `max_memory` (0: three quarters of the physical memory). Should
+/// be called before parts are joined and inspected.
 void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uint64_t max_memory);
 
 /// Slices all parts together, and subtracts negative volumes, as `slice` and `slice_to` do for a mesh.
@@ -107,7 +106,7 @@ void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uin
 void slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan, const Execution& execution = {},
               const Engine& engine = engines().front());
 
-/// Throws Error{usage} naming the first part that reaches out of the box from (0, 0, 0) to `size`.
+/// Throws Error{usage} that names the first part that is not inside the box from (0, 0, 0) to `size`.
 void check_build_volume(const Plate& plate, const Point3& size);
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// Several processes that slice one job together, on one machine or on many.
+// Communication of several processes that slice one job together, on one machine or on many.
 
 #include "lamella/core/api.hpp"
 
@@ -14,9 +14,9 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Communication between processes, numbered from 0: an interface, so that the library does not depend on a
-/// message passing library. Except for send and receive, all processes must call each function, in the same
-/// order. Messages may have any length. If one process ends early, the others end, too.
+/// Communication between processes, which are numbered from 0. It is an interface, so that the library does
+/// not depend on a message passing library. Except for send and receive, all processes must call the same
+/// functions in the same order. Messages may have any length. If one process ends early, the others end, too.
 class Communicator {
   public:
     Communicator() = default;
@@ -29,11 +29,11 @@ class Communicator {
     /// Returns the number of processes.
     [[nodiscard]] virtual std::size_t size() const noexcept = 0;
 
-    /// Adds up over all processes, element by element; all of them get the sums.
+    /// Replaces each element by its sum over all processes.
     virtual void sum(std::span<std::uint64_t> values) = 0;
     /// Returns the texts of all processes, in their order, on each of them.
     [[nodiscard]] virtual std::vector<std::string> gather(std::string_view mine) = 0;
-    /// Sends one number to each process; returns one from each.
+    /// Sends outgoing[p] to process p, and returns the numbers received, in the order of the processes.
     [[nodiscard]] virtual std::vector<std::uint64_t> exchange(std::span<const std::uint64_t> outgoing) = 0;
     /// Sends `outgoing[p]` to process p, and receives `incoming[p]` from it; both know the length of each
     /// message.
@@ -44,19 +44,19 @@ class Communicator {
     [[nodiscard]] virtual std::string receive(std::size_t from) = 0;
 };
 
-/// Returns the communicator of a single process: sums and gathered texts are its own, and it sends nothing.
+/// Returns the communicator for a job of a single process.
 [[nodiscard]] Communicator& alone() noexcept;
 
 /// Figures of each process, as in docs/scaling.md.
 struct ProcessFigures {
     std::uint64_t triangles_read = 0;   ///< of its part of the files
-    std::uint64_t triangles_sliced = 0; ///< triangles that its planes need
+    std::uint64_t triangles_sliced = 0; ///< triangles that its planes cut
     std::uint64_t bytes_sent = 0;       ///< triangles for other processes
     std::uint64_t planes = 0;
     std::uint64_t points = 0;
     double read_seconds = 0;     ///< three passes over its part of the files
-    double exchange_seconds = 0; ///< waiting for other processes included
-    double slice_seconds = 0;    ///< with formatting
+    double exchange_seconds = 0; ///< including waiting for other processes
+    double slice_seconds = 0;    ///< including formatting
     double write_seconds = 0;
 };
 

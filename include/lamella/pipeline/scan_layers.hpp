@@ -21,15 +21,15 @@ namespace lamella {
 
 /// Figures of one of the `exposures` of a strategy, or of one of its `support_exposures`.
 struct ExposureResult {
-    Exposure exposure; ///< of all parts, so without a part
+    Exposure exposure; ///< without the label of a part: the figures are those of all parts
     ScanFigures figures;
 };
 
-/// Returns the header of a slice file for scan vectors: each part is replaced by its exposures, with the
-/// label of the part and their own name, such as "bracket core hatch".
+/// Returns the header of a slice file for scan vectors. Each part is replaced by its exposures, whose labels
+/// are the label of the part followed by the name of the exposure, such as "bracket core hatch".
 [[nodiscard]] LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& strategy);
 
-/// Layers with more material out of reach of all vectors than the strategy accepts for a part.
+/// Layers with more material of a part that no vector reaches than the strategy accepts.
 struct UnreachedMaterial : AffectedLayers {
     double area_mm2 = 0; ///< of all of these layers
 
@@ -41,8 +41,8 @@ struct UnreachedMaterial : AffectedLayers {
 };
 
 struct ScanResult {
-    /// Figures in the order of execution, over all layers and parts, supports last. A beam exposes the parts
-    /// of a layer one after the other; its jumps between layers are not counted.
+    /// Figures of each exposure, over all layers and parts, in the order of execution, supports last. One
+    /// beam exposes the parts of a layer one after the other. Jumps between layers are not counted.
     std::vector<ExposureResult> exposures;
     /// The same figures for each layer.
     std::vector<std::vector<ScanFigures>> layers;
@@ -54,12 +54,12 @@ struct ScanResult {
     std::vector<std::string> warnings;
 };
 
-/// Scans the layers of parts, whose stacks have the same planes, and writes the vectors. `rounding` is that
-/// of their file, none for layers just cut; `info` is the header of a file of these layers. Existing hatches
-/// of layers are ignored. Runs on all threads, each of which holds the vectors of one plane. Throws the
-/// errors of `scan` and `write_layers`, and, with LayerWriteOptions::strict, Error{defect} for material that
-/// no vector reaches. `max_memory`: see layer_limits. `name` is what errors call the file that the layers
-/// come from.
+/// Computes the scan vectors of the layers of parts and writes them. The stacks of all parts must have the
+/// same planes. `rounding` is that of the file from which the layers were read; by default none. `info` is
+/// the header for a file of these layers. `name` is the name of their file in error messages. `max_memory`:
+/// see layer_limits. Existing hatch lines of layers are ignored. Uses all threads, each of which holds the
+/// vectors of one plane in memory. Throws the errors of `scan` and `write_layers`, and, with
+/// LayerWriteOptions::strict, Error{defect} for material that no vector reaches.
 [[nodiscard]] ScanResult scan_layers(const std::string& path, const LayerFormat& format,
                                      std::span<const LayerStack> parts, const Rounding& rounding,
                                      const LayerFileInfo& info, const ScanStrategy& strategy,

@@ -29,10 +29,9 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// One of several runs that divide the layers of a job, possibly on several machines. A shard is a range of
-/// layers that takes about as much work as each of the others, which is not the same as equal height. Each
-/// run computes the same division from the numbers of triangles on the planes (divide_evenly), and needs all
-/// files.
+/// A range of the layers of a job that is sliced by a process of its own, possibly on another machine. All
+/// shards of a job take about the same work; their heights may differ. Each process computes the same
+/// division from the numbers of triangles on the planes (divide_evenly), and needs all input files.
 struct Shard {
     std::uint32_t number = 1; ///< counted from 1
     std::uint32_t count = 1;
@@ -44,8 +43,8 @@ struct FileResult;
 struct FileReport {
     std::string path; ///< "": no page
     PageOptions page;
-    /// Returns the notes about the run that the page shows. Called once all layers are written; only the
-    /// total of the seconds is still missing in the result.
+    /// Returns the notes that the page shows. Called when all layers are written; in the result only the
+    /// total of the seconds is still missing.
     std::function<PageNotes(const FileResult&)> notes;
 };
 
@@ -57,44 +56,46 @@ struct FileJob {
     std::optional<Point3> build_volume;
     /// Roles of the bodies in 3MF and AMF files that are read as solids; see MeshReadOptions.
     MeshRoles include = {};
-    /// Largest number of triangles that are read; see MeshReadOptions. `strict` below holds for reading, too.
+    /// Largest number of triangles that are read; see MeshReadOptions. `strict` below also applies to
+    /// reading.
     std::uint64_t max_triangles = 0;
     /// Upper bound on the memory of each process with all its threads, in bytes; 0: three quarters of the
     /// available memory. If an STL file is too large to be sliced as a whole, it is sliced in ranges of
-    /// planes, with the same result; a temporary file without a name in $TMPDIR, else /var/tmp, may hold its
-    /// triangles. Jobs that need whole meshes are Error{limit} if they exceed an explicit bound: inspection,
-    /// strict, repairs that change a mesh, adaptive layers, engines that weld, and files that are not plain
-    /// STL. Without an explicit bound they run nevertheless.
+    /// planes, with the same result; an anonymous temporary file in $TMPDIR, else /var/tmp, may hold its
+    /// triangles. Some jobs need whole meshes: inspection, strict, repairs that change a mesh, adaptive
+    /// layers, engines that weld, and files that are not plain STL. They throw Error{limit} if they exceed an
+    /// explicit bound; the default bound does not apply to them.
     std::uint64_t max_memory = 0;
 
-    /// The layers that the parts are cut into. Uniform layers are stacked from the bottom of all parts.
+    /// Definition of the layers. Uniform layers are stacked from the bottom of the lowest part.
     Layering layering;
 
     /// If set, only the layers of this shard are written. Error{usage} if there are more shards than layers.
-    /// merge_layer_files joins the slice files of all shards.
+    /// merge_layer_files merges the slice files of all shards.
     std::optional<Shard> shard;
 
     /// Repairs before and after slicing. Inspection and `strict` examine the mesh before repairs.
     RepairPolicies repair;
 
     std::string engine; ///< name; "" is the default engine
-    /// Welds the mesh and counts its defects first.
+    /// Welds the meshes and counts their defects before slicing.
     bool inspect = false;
-    /// Inspects, and throws Error{defect} before anything is written for: any defect, level faces within
-    /// rounding of a plane, rings that bound no material, material that no scan vectors reach, and steps that
-    /// leave no contour in any layer.
+    /// Inspects the meshes, and throws Error{defect}, so that no file appears, for: any defect of a mesh,
+    /// horizontal faces within rounding of a plane, rings that bound no material, material that no scan
+    /// vector reaches, and steps that leave no contour in any layer.
     bool strict = false;
     /// Measures and hashes every layer.
     bool layer_statistics = false;
 
     /// Steps applied to the layers of each part before they are written.
     LayerSteps steps;
-    /// If set, scan vectors of the layers after `steps` are written instead of contours (with_exposures).
-    /// Skins take account of the planes above and below, even those that `layering` or `shard` exclude.
+    /// If set, scan vectors are computed from the layers after `steps`, and written instead of contours (see
+    /// with_exposures). Skins depend on the planes above and below, including those that `layering` or
+    /// `shard` exclude.
     std::optional<ScanStrategy> scan;
 
     std::string output; ///< path; "" writes nothing, "-" is standard output
-    std::string format; ///< name; "" means the format of the extension of `output`
+    std::string format; ///< name; "": the extension of `output` selects the format
     LayerWriteOptions write;
     FileReport report;
 };
@@ -103,15 +104,15 @@ struct LayerStatistics {
     std::uint64_t index = 0;
     double z = 0;
     double thickness = 0;
-    LayerMeasure measure;       ///< sum over all parts
-    OpenGaps open_gaps;         ///< sum over all parts, after contour gaps were closed
-    InvertedRings inverted;     ///< sum over all parts; see FileResult::doubts
-    std::vector<GapJoin> joins; ///< gaps closed, with RepairPolicies::close_gaps_mm
-    std::uint64_t hash = 0; ///< content_hash of all contours, whichever part they belong to (see `merged`)
-    LayerChanges changes;   ///< made by FileJob::steps
+    LayerMeasure measure;          ///< sum over all parts
+    OpenGaps open_gaps;            ///< sum over all parts, after contour gaps were closed
+    InvertedRings inverted;        ///< sum over all parts; see FileResult::doubts
+    std::vector<GapJoin> joins;    ///< gaps that were closed; with RepairPolicies::close_gaps_mm
+    std::uint64_t hash = 0;        ///< content_hash of the contours of all parts in one layer (see `merged`)
+    LayerChanges changes;          ///< made by FileJob::steps
     std::vector<ScanFigures> scan; ///< one for each of FileResult::exposures, with FileJob::scan
-    /// Hash of the vectors, with FileJob::scan: the stack hash of the content hashes of all exposures, part
-    /// by part, in their order.
+    /// Hash of the scan vectors, with FileJob::scan: the stack_hash of the content hashes of all exposures,
+    /// part by part, in their order.
     std::uint64_t scan_hash = 0;
 };
 
@@ -134,17 +135,17 @@ struct FileResult {
     std::uint64_t triangles = 0; ///< sum over all parts
     Box3 box;                    ///< box of all parts
     double mesh_volume_mm3 = 0;  ///< signed volume of all parts; meaningful if they are closed
-    /// Sums over all parts.
+    /// Sums over all parts, with FileJob::inspect or strict.
     std::optional<Inspection> inspection;
     std::vector<std::size_t> unsound; ///< indices of the `files` whose meshes have defects, if inspected
 
-    /// Repairs of a mesh by the policies: one entry for each mesh that is sliced.
+    /// Repairs of one mesh by the policies.
     struct MeshRepair {
         std::size_t file = 0; ///< index in `files`
         MeshRepairs repairs;
     };
     std::vector<MeshRepair> repairs;
-    /// Gaps of contours that were closed.
+    /// Gaps of contours that were closed, and the layers with such gaps.
     struct Gaps : AffectedLayers {
         std::uint64_t closed = 0;
         double longest_mm = 0;
@@ -158,38 +159,37 @@ struct FileResult {
     /// One for each process, in their order.
     std::vector<ProcessFigures> processes;
     SliceReport report; ///< counts of contours and chains are those after contour gaps were closed
-    std::optional<LayerChanges> changes; ///< made by FileJob::steps, if there are any
-    /// With FileJob::scan. All other figures are those of the layers that vectors are made of.
+    std::optional<LayerChanges> changes; ///< changes by FileJob::steps; none if there are no steps
+    /// Figures of scan vectors, with FileJob::scan. All other figures are those of the layers from which
+    /// vectors are computed.
     std::vector<ExposureResult> exposures;
     UnreachedMaterial unreached;                      ///< with FileJob::scan
     std::vector<UnreachedMaterial> unreached_by_file; ///< the same for each of `files`
-    /// Signs of defects that were found in the layers, for each of the files. Inverted rings are counted
-    /// before `steps`. The search is complete with `scan`, an offset or negative volumes; otherwise it finds
-    /// those that need no search for crossings. With a FillRule, which defines the material, none are
-    /// counted.
+    /// Signs of defects that were found in the layers, for each of `files`. Inverted rings are counted before
+    /// `steps`. The search for them is full with `scan`, an offset or negative volumes, otherwise quick (see
+    /// InversionSearch). With a FillRule, which itself defines the material, none are counted.
     std::vector<MeshDoubts> doubts;
-    std::vector<NearFaceLayers> near_faces; ///< layers that depend on rounding, for each of `files`
-    std::uint64_t planned_layers = 0;       ///< number of layers of all shards
+    std::vector<NearFaceLayers> near_faces; ///< layers whose cut depends on rounding, for each of `files`
+    std::uint64_t planned_layers = 0;       ///< number of layers of all shards together
     PlaneRange shard;        ///< range of the layers of this shard; all layers if there are no shards
     double bottom = 0;       ///< bottom of the first layer
     double top = 0;          ///< top of the last layer
     std::string format;      ///< format of the slice file, "" if none was written
     std::uint64_t bytes = 0; ///< number of bytes written
-    /// Losses in the slice file, because its format cannot represent something; one line each
-    /// (LayerWriter::warnings).
+    /// Losses in the slice file that its format causes; one line each (LayerWriter::warnings).
     std::vector<std::string> warnings;
-    /// The same for the page.
+    /// Losses in the page, likewise.
     std::vector<std::string> report_warnings;
 
-    /// One for each layer in ascending z, and the sum of area times thickness; with
+    /// Statistics of each layer in ascending z, and the volume as the sum of area times thickness; with
     /// FileJob::layer_statistics.
     std::vector<LayerStatistics> layers;
     double volume_mm3 = 0;
 
-    /// Wall times. `read` includes finding the bounding box; `weld` includes the inspection, the repair of
-    /// meshes, and the weld of engines that need one. `write` is the part of writing that must be done in
-    /// order; formatting is done in parallel and is part of `slice`. Layer steps and scan vectors count
-    /// towards `slice`, too; `polygon` and `scan` are their times summed over threads.
+    /// Wall times. `read` includes finding the bounding box; `weld` includes inspection and repair of meshes,
+    /// and welding for engines that need it. `write` is the part of writing that must be done in order.
+    /// `slice` includes formatting, which is done in parallel, layer steps and scan vectors; `polygon` and
+    /// `scan` are the times of the last two, summed over threads.
     struct Seconds {
         double read = 0;
         double weld = 0;
@@ -203,32 +203,32 @@ struct FileResult {
 };
 
 /// Returns the planes at which `slice_file` cuts a plate, by the layering of the job; does not read its
-/// files. Throws Error{input} for a part without height, Error{usage} for an impossible plan and for one that
-/// misses every part, and Error{limit} if the plan takes too much memory.
+/// files. Throws Error{input} for a part without height, Error{usage} for an impossible plan and for a plan
+/// whose planes miss every part, and Error{limit} if the plan takes too much memory.
 [[nodiscard]] Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution = {});
 
-/// Slices files into a file. The layers of a single part are written while it is sliced. Several parts are
-/// sliced one after the other in ranges of planes sized to the memory bound; jobs with scan vectors likewise,
-/// a few planes at a time. So memory holds a bounded number of layers. Nothing appears at the output path
-/// before all of it is complete.
+/// Slices mesh files into one slice file. The layers of a single part are written while it is sliced. Several
+/// parts are sliced one after the other, in ranges of planes that fit the memory bound; jobs with scan
+/// vectors likewise, in ranges of a few planes. So the number of layers in memory is bounded. No file appears
+/// at the output path before it is complete.
 ///
 /// Throws Error{usage} for an impossible plan, Error{input} for a file that cannot be read or a mesh without
 /// height, Error{defect} with FileJob::strict, and the errors of reading, slicing and writing.
 ///
-/// Several processes can slice a job together: all of them call this function with the same job. The bytes
-/// written are those that one process writes alone, for any number of processes. Each process returns the
-/// result of the whole job, with the longest times of all. Each reads a part of each binary STL file, and
-/// slices planes of equal work. Other files, and jobs that need the whole mesh (other engines, inspection,
-/// repair, adaptive layers), are read by each process as a whole; the planes are divided nevertheless.
-/// Formats whose files are layers one after the other are written by all processes, each its own part, so the
-/// output must be on a file system that all of them see. Layers for other formats and for standard output go
-/// to process 0, which writes them. If one process throws an error, all of them throw it. With several
-/// processes, standard input (which reaches only one of them), a shard and a page are Error{usage}.
+/// Several processes can slice a job together: all of them call this function with the same job. The file is,
+/// byte for byte, the one that a single process writes. Each process returns the result of the whole job, in
+/// which each time is the longest over all processes. Each process reads a part of each binary STL file, and
+/// slices a range of planes of about equal work. Other files, and jobs that need the whole mesh (other
+/// engines, inspection, repair, adaptive layers), are read by each process as a whole; the planes are divided
+/// nevertheless. If the format has LayerFormat::chunks, each process writes its layers to its part of the
+/// file, which must be on a shared file system. For other formats and for standard output, layers are sent to
+/// process 0, which writes them. If one process throws an error, all of them throw it. With several
+/// processes, a shard, a page, and standard input (which only one process could read) are Error{usage}.
 [[nodiscard]] FileResult slice_file(const FileJob& job, const Execution& execution = {},
                                     Communicator& processes = alone());
 
-/// The same for a plate that was already loaded from the inputs of the job (load_plate): they are not read
-/// again. It is sliced as a whole, whatever FileJob::max_memory is.
+/// Slices a plate that was already loaded from the inputs of the job (load_plate), and does not read them
+/// again. The plate is sliced as a whole, regardless of FileJob::max_memory.
 [[nodiscard]] FileResult slice_file(const FileJob& job, Plate plate, const Execution& execution = {});
 
 } // namespace lamella

@@ -1,7 +1,8 @@
 #pragma once
 
-// Checks of layers: closed and oriented contours without crossings, with the areas of the mesh. Checks of
-// scan vectors: within the material, at the required distance from its edges, and enough to fill it.
+// Checks of layers: contours must be closed, oriented and without crossings, and must have the areas of the
+// mesh. Checks of scan vectors: they must lie within the material, at the required distance from its edges,
+// and must fill it.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/open_gaps.hpp"
@@ -24,26 +25,27 @@ namespace lamella {
 
 /// Reference for the checks of layers or scan vectors.
 struct VerifyOptions {
-    /// Compares the area and centroid of each layer with the section of this mesh at the layer's z. The mesh
-    /// should be closed. Scan vectors must lie within the section; without a mesh, within the outermost
-    /// contour of their part.
+    /// Reference mesh, which should be closed. The area and centroid of each layer are compared with those of
+    /// its section at the layer's z. Scan vectors must lie within the section; without a mesh, within the
+    /// outermost contour of their part.
     std::optional<Mesh> mesh = {};
     /// The plate that `mesh` was made from. Its negative volumes, if any, are subtracted.
     std::optional<Plate> plate = {};
-    /// The rule by which the layers were cut; it matters for planes through flat faces only.
+    /// The rule by which the layers were cut. It matters only for planes through horizontal faces.
     PlaneRule rule = PlaneRule::section_above;
-    double snap_mm = 0;    ///< snap distance by which the layers were cut; see Plan
-    LayerSteps steps = {}; ///< steps applied to the layers of the mesh, one part; without steps, areas are
-                           ///< computed without linking. Moves by `simplify_mm` are tolerated.
-    /// Rounding of coordinates and heights by the format. The area tolerance grows with it and with the
-    /// layer's perimeter. Rings so thin that it can reverse them may have either orientation.
+    double snap_mm = 0;    ///< snap distance with which the layers were cut; see Plan
+    LayerSteps steps = {}; ///< steps applied to the layers of the mesh, as one part. Deviations by
+                           ///< `simplify_mm` are tolerated. Without steps, areas are computed with
+                           ///< section_areas.
+    /// Rounding of coordinates and heights by the format. The tolerance of areas is proportional to it and to
+    /// the layer's perimeter. Rings so thin that rounding can invert them may have either orientation.
     Rounding rounding = {};
     /// Additional tolerance of points, ends of lines and cuts, in mm, for coordinates rounded earlier.
     double tolerance_mm = 0;
-    /// Strategy by which scan vectors were made. Vectors must then keep its distances from the edges of the
-    /// material, each of its contours must be present at its depth, hatch lines must be at least `shortest`
-    /// long and have its angles and distances, and the length of lines times their distance must equal the
-    /// area that they fill.
+    /// Strategy by which scan vectors were made. If it is set, vectors must keep its distances from the edges
+    /// of the material; each of its contours must be present at its depth; hatch lines must be at least
+    /// `shortest` long and have its angles and distances; and the length of lines times their distance must
+    /// equal the area that they fill.
     std::optional<ScanStrategy> strategy = {};
 
     [[nodiscard]] bool subtracts() const noexcept { return plate && !plate->negatives.empty(); }
@@ -55,13 +57,13 @@ struct VerifyOptions {
     }
 };
 
-/// Sets z to the height at which layers were cut, for files that keep bottom and top only and are read as if
-/// cut in the middle. Leaves z unchanged if it is off by at most 1e-6 mm. Returns the corresponding rule.
-/// O(layers).
+/// Sets z to the height at which layers were cut, for files that store only bottom and top and whose layers
+/// are read as if cut in the middle. Leaves z unchanged if it is off by at most 1e-6 mm. Returns the
+/// corresponding rule. O(layers).
 PlaneRule place_cuts(LayerStack& layers, SliceAt at);
 
-/// Does the same for all parts of a file. For layers cut at their tops, the heights in the file are the tops:
-/// any other guess (LayerFile::guess) is reverted.
+/// Sets z likewise for all parts of a file. For layers cut at their tops, the heights in the file are the
+/// tops; if the reader guessed otherwise (LayerFile::guess), the guess is undone.
 PlaneRule place_cuts(LayerFile& file, SliceAt at);
 
 /// Height range of the layers, and of the mesh that they are compared with, in mm.
@@ -70,7 +72,7 @@ struct CoveredHeights {
     double top = 0;    ///< of the last layer
     double mesh_bottom = 0;
     double mesh_top = 0;
-    std::uint64_t gaps = 0;         ///< between a layer and the next one, if the mesh has material there
+    std::uint64_t gaps = 0;         ///< number of gaps between consecutive layers where the mesh has material
     double gaps_mm = 0;             ///< their sum
     std::uint64_t layers_above = 0; ///< layers that begin at the top of the mesh or higher
     std::uint64_t layers_below = 0; ///< layers that end at the bottom of the mesh or lower
@@ -91,30 +93,31 @@ struct Verification {
     std::vector<OpenLayer> open_layers; ///< in the order of the layers
     /// Pairs of segments that cross properly; touching is allowed.
     std::uint64_t crossings = 0;
-    /// Rings that contradict their nesting: clockwise rings outside of material, and all rings within these.
+    /// Number of rings that contradict their nesting: clockwise rings outside of material, and all rings
+    /// within these.
     std::uint64_t misoriented = 0;
-    /// Counter-clockwise rings within the material of others. They are not an error: contours of overlapping
-    /// bodies look like this. So does a hole with the wrong orientation.
+    /// Number of counter-clockwise rings within the material of other rings. They are not an error, because
+    /// contours of overlapping bodies look like this; a hole with the wrong orientation looks the same.
     std::uint64_t overlapping = 0;
     double volume_mm3 = 0; ///< sum of area times thickness
     /// Largest difference between the area of a layer without open chains and that of the mesh's section. Set
     /// with VerifyOptions::mesh if there is such a layer.
     std::optional<double> max_area_error_mm2;
-    /// True if each area lies within its tolerance: the rounding of the format and of sums, times the
-    /// perimeter.
+    /// True if each area agrees with that of the mesh's section within its tolerance, which is the rounding
+    /// of the format and of sums, times the perimeter.
     bool areas_agree = true;
-    /// Number of layers of the right area whose centroid differs from that of the mesh's section; with
-    /// VerifyOptions::mesh. A layer rotated about its centroid is not detected.
+    /// Number of layers whose area agrees but whose centroid differs from that of the mesh's section; with
+    /// VerifyOptions::mesh. A layer that is rotated about its centroid is not detected.
     std::uint64_t displaced = 0;
     /// Number of layers that begin within the height of another one, so that material is built twice. Layers
     /// with equal bottoms and tops do not count: they may belong to several parts.
     std::uint64_t height_overlaps = 0;
     /// Set with VerifyOptions::mesh if there are layers. Layers that cover only a part of the mesh's height
-    /// are no error, gaps between them are.
+    /// are not an error, but gaps between them are.
     std::optional<CoveredHeights> heights = {};
-    /// Hatch lines of the layers, which are not checked.
+    /// Number of hatch lines of the layers, which are not checked.
     std::uint64_t hatches = 0;
-    /// One line for each kind of finding, with the first layer and location of it.
+    /// One line for each kind of finding, with its first layer and location.
     std::vector<std::string> findings;
 
     [[nodiscard]] bool ok() const noexcept {
@@ -136,46 +139,49 @@ struct VectorVerification {
     // Checks of contours, each exposure by itself.
     std::uint64_t open_chains = 0;
     std::uint64_t crossings = 0;
-    /// Includes rings within material of their own exposure, if the exposure has the number of its contour.
+    /// Number of rings of wrong orientation (see Verification); if the number of the contour is known, also
+    /// of rings within material of their own exposure.
     std::uint64_t misoriented = 0;
-    /// Vectors that leave the material, or are closer to its edges than the strategy allows.
+    /// Number of vectors that leave the material, or are closer to its edges than the strategy allows.
     std::uint64_t outside = 0;
-    std::uint64_t too_short = 0; ///< hatch lines
-    /// Hatch lines with a direction other than that of their layer and region, or not at a multiple of the
-    /// distance; all hatch lines of contours, and of skins that the strategy lacks. A file that begins with a
-    /// later layer of its plan does not specify which: the one is assumed for which most lines of the lowest
-    /// layers are right.
+    std::uint64_t too_short = 0; ///< number of hatch lines below `shortest`
+    /// Number of hatch lines with a direction other than that of their layer and region, or not at a multiple
+    /// of the hatch distance; also of all hatch lines in contour exposures, and in skins that the strategy
+    /// does not have. Directions depend on the index of a layer in the whole plan. If a file begins with a
+    /// later layer, the index is assumed for which most lines of the lowest layers are right.
     std::uint64_t misplaced = 0;
-    /// Planes of a part (of all parts with a mesh) whose lines cover more or less than the area that they
-    /// must fill. The tolerance is the sum of
-    /// - a strip along the edges of that area and of skins, as wide as half a distance plus the shortest
-    ///   line;
+    /// Number of planes of a part (with a mesh: of all parts together) whose lines cover more or less than
+    /// the area that they must fill. The tolerance is the sum of
+    /// - a strip along the edges of that area and of skins, as wide as half the hatch distance plus the
+    ///   shortest line;
     /// - the overlaps of stripes, islands and skins;
-    /// - moves by `simplify_mm` and rounding.
+    /// - deviations by `simplify_mm` and rounding.
     std::uint64_t miscovered = 0;
-    /// Ratio of the area covered by lines to that which they must fill, over all layers; set with a strategy.
+    /// Ratio of the area covered by lines to the area that they must fill, over all layers; set with a
+    /// strategy.
     std::optional<double> cover;
-    /// Planes of a part (of all parts with a mesh) with more material that no vector reaches than the
-    /// strategy accepts; and the area of all such material, in mm^2. Without a mesh, material is the area
-    /// within the outermost contour.
+    /// Number of planes of a part (with a mesh: of all parts together) with more material that no vector
+    /// reaches than the strategy accepts; and the area of all such material. Without a mesh, material is the
+    /// area within the outermost contour.
     std::uint64_t unreached_layers = 0;
     double unreached_mm2 = 0;
-    /// Contours that are missing on a plane of a part, or enclose another area than the material has at their
-    /// depth. The tolerance is the sum of both perimeters times four times the move by rounding and
-    /// `simplify_mm`. If a mesh has several parts, contours are compared with the outermost contours of each
-    /// part.
+    /// Number of contours that are missing on a plane of a part, or whose area differs from that of the
+    /// material at their depth. The tolerance is the sum of both perimeters times four times the deviation by
+    /// rounding and `simplify_mm`. If a mesh has several parts, contours are compared with the outermost
+    /// contours of each part.
     std::uint64_t wrong_contours = 0;
-    /// With a mesh: rings of its sections that bound no material (see `inverted_rings`), and thus have no
-    /// vectors; and the volume that they enclose.
+    /// With a mesh: number of rings of its sections that bound no material (see `inverted_rings`) and
+    /// therefore have no vectors; and the volume that they enclose.
     std::uint64_t inverted_rings = 0;
     double inverted_mm3 = 0;
     std::uint64_t height_overlaps = 0; ///< see Verification
-    /// Set with a mesh if there are layers; see Verification::heights.
+    /// See Verification::heights; set with a mesh if there are layers.
     std::optional<CoveredHeights> heights = {};
-    /// Vectors whose material is unknown: there is neither a mesh nor a closed outer contour.
+    /// Number of vectors whose material is unknown, because there is neither a mesh nor a closed outer
+    /// contour.
     std::uint64_t unbounded = 0;
-    bool none = false; ///< true if there is a strategy, but not a single vector
-    /// One line for each kind of finding, with the first layer and location of it.
+    bool none = false; ///< true if there is a strategy but no vector
+    /// One line for each kind of finding, with its first layer and location.
     std::vector<std::string> findings;
 
     [[nodiscard]] bool ok() const noexcept {
@@ -189,7 +195,7 @@ struct VectorVerification {
 /// Checks the parts of a file that have an exposure, and ignores the others. All must have the same planes.
 /// Parallel over layers, with the same result for any number of threads. Throws the errors of `slice` and
 /// `offset`, and those of `verify` for a coordinate that is not finite. O(n log n) for n points and vectors
-/// of a layer, besides slicing and offsets.
+/// of a layer, plus the cost of slicing and offsets.
 [[nodiscard]] VectorVerification verify_vectors(std::span<const LayerPart> parts,
                                                 const VerifyOptions& options = {},
                                                 const Execution& execution = {});

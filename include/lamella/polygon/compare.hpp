@@ -16,20 +16,22 @@ LAMELLA_API_BEGIN
 namespace lamella {
 
 struct LayerDifference {
-    /// True if the contours are equal, bit for bit. All following fields are then 0, except the measures.
+    /// True if the contours are equal, bit for bit. The distance and `displaced_mm2` are then 0.
     bool same = false;
     /// Hausdorff distance: the largest distance from a point of one layer's contours to the nearest contour
-    /// of the other, to a thousandth; `where` is that point. Infinite if only one layer has contours.
+    /// of the other, accurate to a thousandth of itself; `where` is that point. Infinite if only one layer
+    /// has contours.
     double distance_mm = 0;
     Point2 where = {};
     LayerMeasure first = {}; ///< measures of both layers
     LayerMeasure second = {};
-    /// Area that would have to move across the extent of both layers to explain their different centres.
+    /// Difference of the first moments divided by the extent of both layers: the area that would have to move
+    /// across the whole extent to cause it.
     double displaced_mm2 = 0;
 
     /// Returns whether no point is farther away than the tolerance, the numbers of open chains are equal, and
-    /// areas and their centres differ by no more than contours moved by the tolerance explain. Areas and
-    /// centres reveal reversed rings.
+    /// areas and centroids differ by no more than moving the contours by the tolerance can cause. Areas and
+    /// centroids reveal reversed rings.
     [[nodiscard]] bool within(double tolerance_mm) const noexcept;
 };
 
@@ -45,7 +47,8 @@ struct RoundedLayers {
 /// Two layers that belong together, or one without a partner in the other stack.
 struct ComparedPlane {
     double z = 0; ///< height of the cut, mm
-    /// Indices in the stacks; none if that stack has neither contours nor hatch lines at this height.
+    /// Index of the layer in each stack; none if that stack has neither contours nor hatch lines at this
+    /// height.
     std::optional<std::size_t> first;
     std::optional<std::size_t> second;
     /// If there is only one layer, only its measure is set.
@@ -56,18 +59,19 @@ struct ComparedPlane {
 struct StackComparison {
     double tolerance_mm = 0;
     std::vector<ComparedPlane> planes; ///< in ascending z
-    /// True if no layers belong together although the lowest ones of both stacks lie between the same
-    /// heights: they were cut elsewhere, or one comes from a format that does not keep the cut.
+    /// True if no layers belong together although the lowest layers of both stacks have the same bottom and
+    /// top. Then the stacks were cut at different heights, or one comes from a format that does not store the
+    /// cut.
     bool cut_apart = false;
 };
 
-/// Compares two stacks plane by plane. Layers belong together if neither is nearer to another layer and their
-/// cuts are no further apart than the rounding of both formats explains, plus the larger of 1e-6 mm and
+/// Compares two stacks plane by plane. Two layers belong together if each is the nearest to the other, and if
+/// their cuts are no further apart than the rounding errors of both formats plus the larger of 1e-6 mm and
 /// `tolerance_mm`. A layer without contours and hatch lines needs no partner. Hatch lines and heights of
-/// layers that belong together are not compared; see `compare_files`. `tolerance_mm` is for
-/// LayerDifference::within; by default it is the distance that the rounding of both formats explains.
-/// Distances below it are measured at corners only. Throws Error{usage} for a tolerance that is negative or
-/// NaN. Parallel over planes; costs as much as `compare` of all layers that belong together.
+/// layers that belong together are not compared; see `compare_files`. `tolerance_mm` is passed to
+/// LayerDifference::within; the default is the sum of the rounding errors of both formats. Distances below it
+/// are measured at corners only. Throws Error{usage} for a tolerance that is negative or NaN. Parallel over
+/// planes; costs as much as `compare` of all layers that belong together.
 [[nodiscard]] StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
                                       std::optional<double> tolerance_mm = {},
                                       const Execution& execution = {});

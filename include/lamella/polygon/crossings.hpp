@@ -23,21 +23,21 @@ struct Crossing {
 };
 
 struct Crossings {
-    std::uint64_t count = 0;     ///< all of them, or at least the `enough` that were requested
+    std::uint64_t count = 0;     ///< number of all crossings, or at least `enough` if the search ended early
     std::vector<Crossing> first; ///< the first few, ordered by (contour_a, segment_a, contour_b, segment_b)
 };
 
 /// Counts pairs of segments that cross properly: each has its ends strictly on both sides of the other.
-/// Contours that touch at a point or along a segment do not cross, nor do contours that change sides at a
-/// vertex. The decision is exact, on the points as they are. `keep` bounds Crossings::first.
+/// Contours that touch at a point or along a segment do not cross in this sense, nor do contours that change
+/// sides at a vertex. The decision is exact for the given coordinates. `keep` is the largest size of
+/// Crossings::first.
 ///
-/// Throws Error{limit} for a layer of more than 2^32 - 1 points. Expected O(n + crossings); O(n log n) for
-/// adverse layers without crossings, O((n + crossings) log n) for long lines that cross their neighbours,
-/// parallel or fanning out. In the worst case, long lines in no order that nearly cross, about O(n^1.5 +
-/// crossings).
+/// Throws Error{limit} for a layer of more than 2^32 - 1 points. For k crossings expected O(n + k). Without
+/// crossings at most O(n log n); for long lines, parallel or fanning out, that cross their neighbours O((n +
+/// k) log n). The worst case, about O(n^1.5 + k), is long lines in all directions that nearly cross.
 ///
-/// The search ends after `enough` crossings: then `count` is `enough` or a little more, and `first` are some
-/// of them, the same in every call.
+/// The search ends early once it has found `enough` crossings. Then `count` is `enough` or a little more, and
+/// `first` contains some of the crossings found, the same ones in every call.
 [[nodiscard]] Crossings find_crossings(const Layer& layer, std::size_t keep = 16,
                                        std::uint64_t enough = std::numeric_limits<std::uint64_t>::max());
 

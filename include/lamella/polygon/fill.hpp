@@ -39,25 +39,26 @@ struct Filled {
 /// Returns the boundary of the material: rings that do not cross, with material on their left and none on
 /// their right.
 ///
-/// Rings that already are such a boundary are unchanged, also where they touch. Rings within others that
-/// touch none are kept, dropped or reversed bit for bit. Only groups of rings that cross, or touch and
-/// overlap, are united on a grid of integers whose unit is at most 2^-36 of the layer's extent (1.5e-9 mm for
-/// a layer of 100 mm): their corners keep their coordinates, their crossings are accurate to about a unit.
-/// Overlaps of the size of rounding errors count as touching, and united rings thinner than a unit are left
-/// out. A second call changes nothing, unless rings of the given layer were thinner than a unit.
+/// Rings that already are such a boundary are unchanged, also where they touch. Nested rings without contacts
+/// are kept, dropped or reversed, and keep their points bit for bit. Only groups of rings that cross, or
+/// touch and overlap, are united. Their corners keep their coordinates. Their crossings are rounded to a grid
+/// whose unit is at most 2^-36 of the layer's extent (1.5e-9 mm for a layer of 100 mm), and are accurate to
+/// about a unit. Overlaps of the size of rounding errors count as touching, and united rings thinner than a
+/// unit are left out. A second call changes nothing, unless rings of the given layer were thinner than a
+/// unit.
 ///
 /// Open chains stay as they are. Flat rings, which bound nothing, are dropped.
 ///
 /// Throws Error{limit} for a layer of more than 2^32 - 2 points and for more crossings than `limits.memory`
-/// allows, and Error{cancelled}. Expected O(n) to find that a layer is clean and O(n log n) to find overlaps;
+/// allows, and Error{cancelled}. Expected O(n) if the layer needs no change, O(n log n) to find overlaps, and
 /// O((m + k) log m) to unite rings of m points with k crossings.
 [[nodiscard]] Filled fill(const Layer& layer, FillRule rule, const LayerLimits& limits = {});
 
 /// Returns whether the winding number of all parts together is known to be 0 or 1 everywhere: the boxes of
 /// the parts are disjoint, and within each part no rings touch, counter-clockwise rings lie in no ring, and
 /// clockwise rings lie in one body. Open chains are ignored. False also for parts that only touch, and for
-/// parts of too many points. Costs as much as that search in fill(), plus O(b^2) for b parts whose boxes
-/// overlap in x.
+/// parts of too many points. Costs as much as the search for overlaps in fill(), plus O(b^2) for b parts
+/// whose boxes overlap in x.
 [[nodiscard]] bool winds_once(std::span<const Layer> parts);
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// Finds clockwise rings outside of material: they cannot be holes, and the area that they enclose is lost.
+// Finds clockwise rings outside of material. They cannot be holes; the area that they enclose is not built.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
@@ -12,9 +12,10 @@ LAMELLA_API_BEGIN
 namespace lamella {
 
 /// Areas of a layer with a winding number below 0: inside of inverted bodies, and in the clockwise half of a
-/// ring that crosses itself. Material is where the winding number is above 0, so these areas have none.
+/// ring that crosses itself. These areas have no material, since material is where the winding number is
+/// above 0.
 struct InvertedRings {
-    std::uint64_t rings = 0; ///< around these areas and their holes
+    std::uint64_t rings = 0; ///< number of rings that bound these areas
     double area_mm2 = 0;     ///< area of these areas
     Point2 at;               ///< a point of the first of the rings
 
@@ -29,20 +30,20 @@ struct InvertedRings {
 };
 
 enum class InversionSearch : std::uint8_t {
-    /// May miss areas that only crossings reveal, and a clockwise ring in a hole of more than 64 points, if
-    /// it is close to the edge of the hole: the box of such a hole is estimated from 16 points.
+    /// May miss areas that only a search for crossings can find. May also miss a clockwise ring close to the
+    /// edge of a hole of more than 64 points, because the box of such a hole is estimated from 16 points.
     quick,
     full,
 };
 
 /// Returns the inverted rings of a layer in normal form. A ring does not count if it is so thin that
-/// `rounding` or single precision, in which most meshes are stored, may have inverted it: see
-/// `orientation_is_lost`. Exact apart from that, also for rings that touch and overlap.
+/// `rounding`, or the single precision in which most meshes are stored, may have inverted it: see
+/// `orientation_is_lost`. All other decisions of a full search are exact, also for rings that touch and
+/// overlap.
 ///
-/// Throws the errors of `fill`. A quick search costs O(rings) for a layer whose rings all run
-/// counter-clockwise, and O(n + c log c), at about memory speed, for a layer whose c clockwise rings lie in
-/// material and whose outer rings have n points. All other layers, and every full search, cost as much as
-/// `fill`.
+/// Throws the errors of `fill`. A quick search costs O(rings) if all rings run counter-clockwise, and O(n + c
+/// log c) if all c clockwise rings lie in material, for outer rings of n points. All other layers, and every
+/// full search, cost as much as `fill`.
 [[nodiscard]] InvertedRings inverted_rings(const Layer& layer, const Rounding& rounding = {},
                                            InversionSearch search = InversionSearch::quick,
                                            const LayerLimits& limits = {});

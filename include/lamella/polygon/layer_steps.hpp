@@ -1,6 +1,6 @@
 #pragma once
 
-// Applies steps to layers between slicing and writing.
+// Layer steps: changes to layers between slicing and writing.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
@@ -34,7 +34,7 @@ struct LayerSteps {
     friend bool operator==(const LayerSteps&, const LayerSteps&) = default;
 };
 
-/// Changes that the steps made to a layer, or to several layers together.
+/// Counts of the changes that the steps made to one layer, or to several layers together.
 struct LayerChanges {
     std::uint64_t changed_layers = 0;
     std::uint64_t groups_united = 0;   ///< by `fill`: groups of rings that overlapped
@@ -43,38 +43,38 @@ struct LayerChanges {
     std::uint64_t rings_dropped = 0;   ///< by `fill`, `largest_body` and `without_small_rings`
     std::uint64_t rings_vanished = 0;  ///< by `offset`: rings of which nothing remains
     std::uint64_t points_dropped = 0;  ///< by `simplify`
-    std::uint64_t hatches_dropped = 0; ///< lines that filled the contours of changed layers
+    std::uint64_t hatches_dropped = 0; ///< hatch lines of changed layers
     double area_before_mm2 = 0;        ///< of the changed layers
     double area_after_mm2 = 0;
 
     LayerChanges& operator+=(const LayerChanges& other) noexcept;
 };
 
-/// Throws Error{usage} for an invalid step, as the functions of the steps do, without a layer.
+/// Throws the Error{usage} that the functions of the steps throw for invalid parameters.
 void check_steps(const LayerSteps& steps);
 
-/// Applies the steps. A layer that no step changes is passed through, bit for bit. A changed layer has no
-/// hatches, because these filled other contours. The result is in normal form if the layer was. Throws the
-/// errors of the steps.
+/// Applies the steps, and adds the changes to `changes`. A layer that no step changes is returned bit for
+/// bit. A changed layer loses its hatch lines, because they filled the old contours. The result is in normal
+/// form if the layer was. Throws the errors of the steps.
 [[nodiscard]] Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes,
                                const LayerLimits& limits = {});
 
 /// Applies the steps to the layers of all parts on one plane. All changes on a plane count as one changed
-/// layer. `names`, if given, are the names of the parts for errors. Throws the errors of the steps.
+/// layer. `names`, if given, are the names of the parts for error messages. Throws the errors of the steps.
 [[nodiscard]] std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
                                                      LayerChanges& changes, const LayerLimits& limits = {},
                                                      std::span<const std::string> names = {});
 
 /// Applies the steps to parts on the same planes, in parallel. Each part must have as many layers as the
-/// first. `planes` are the changes of every plane. `max_memory`: see layer_limits. Throws the errors of the
-/// steps, and Error{cancelled}.
+/// first. `planes` receives the changes of every plane. `max_memory`: see layer_limits. Throws the errors of
+/// the steps, and Error{cancelled}.
 [[nodiscard]] std::vector<LayerStack> take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
                                                  std::vector<LayerChanges>& planes,
                                                  const Execution& execution = {},
                                                  std::uint64_t max_memory = 0,
                                                  std::span<const std::string> names = {});
 
-/// Applies the steps to one part; `changes` are those of all layers together.
+/// Applies the steps to one part; `changes` receives the changes of all layers together.
 [[nodiscard]] LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,
                                     const Execution& execution = {});
 

@@ -13,10 +13,10 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// The join of two sides that separate at a corner when they are moved.
+/// The join of two edges that separate at a corner when they are moved.
 enum class OffsetCorner : std::uint8_t {
-    mitre, ///< both sides, extended to their intersection
-    bevel, ///< a line between their ends
+    mitre, ///< both edges, extended to their intersection
+    bevel, ///< a straight line between their ends
     round, ///< an arc around the corner, in chords
 };
 
@@ -25,45 +25,48 @@ enum class OffsetCorner : std::uint8_t {
 
 struct OffsetCorners {
     OffsetCorner shape = OffsetCorner::mitre;
-    /// A mitre whose tip is farther from its corner than this many times the distance is cut off
-    /// perpendicular to its bisector, at the distance. At least 1. `mitre_tolerance` is added.
+    /// A mitre whose tip would be farther from the corner than mitre_limit (1 + mitre_tolerance) times the
+    /// offset distance is cut off, perpendicular to its bisector, at the offset distance from the corner. At
+    /// least 1.
     double mitre_limit = 2;
-    /// Largest distance of chords from their arc, mm; above 0. At least 2^-36 of the distance is used; finer
-    /// chords would be lost when coordinates are rounded.
+    /// Largest distance of chords from their arc, mm; above 0. A value below 2^-36 of the offset distance has
+    /// the effect of that bound, because rounding of coordinates would hide finer chords.
     double arc_tolerance_mm = 0.001;
 
-    /// Relative tolerance of the limit. Corners of the same shape differ by the rounding of their
-    /// coordinates, and either all or none of them must be mitred.
+    /// Relative tolerance of the limit. Without it, of several corners of the same shape some could be mitred
+    /// and others cut off, only because their coordinates are rounded.
     static constexpr double mitre_tolerance = 1e-4;
-    /// Returns the largest distance of the tip of a mitre from its corner, as a multiple of the distance.
+    /// Returns the largest distance of the tip of a mitre from its corner, as a multiple of the offset
+    /// distance.
     [[nodiscard]] double longest_mitre() const noexcept { return mitre_limit * (1 + mitre_tolerance); }
 
     friend bool operator==(const OffsetCorners&, const OffsetCorners&) = default;
 };
 
-/// Returns the layer with its material grown by `distance` mm on all sides, or shrunk by a negative one.
-/// Outer rings move outwards, holes get smaller, and overlapping material is united. Material is where the
-/// winding number is above 0.
+/// Returns the layer with its material grown by `distance` mm on all sides, or shrunk if `distance` is
+/// negative. If it grows, outer rings move outwards, holes get smaller, and overlapping material is united.
+/// Material is where the winding number is above 0.
 ///
-/// Each side is moved parallel to itself. Sides that separate are joined according to `corners`. By default
-/// they are extended to their intersection, so that parts keep their corners, but a corner that would move by
-/// more than twice the distance (sharper than 60 degrees) is cut off. Sides that run into one another end at
-/// their intersection. Growing adds a strip along each side and a wedge at each corner to the material;
-/// shrinking removes them. The result is exact except for the rounding of coordinates where sides meet, and
-/// for errors of at most some 2^-36 of the layer's extent: in rings that come to meet themselves or others,
-/// and by the removal of collinear points.
+/// Each edge is moved parallel to itself. Edges that separate are joined according to `corners`. By default
+/// they are extended to their intersection, so that parts keep their corners; a corner that would move by
+/// more than twice the distance (sharper than 60 degrees) is cut off. Edges that run into one another end at
+/// their intersection. Growing adds a strip along each edge and a wedge at each corner to the material;
+/// shrinking removes them. There are only two kinds of error: rounding of the coordinates where moved edges
+/// intersect; and errors of a few 2^-36 of the layer's extent in rings that touch or cross themselves or
+/// others after the move, and where collinear points are removed.
 ///
 /// Open chains stay as they are. A distance of 0 returns the layer itself, bit for bit; other results have no
-/// hatches. `vanished`, if given, becomes the number of rings of which nothing remains: those of bodies that
-/// are too thin to be shrunk by the distance, and holes that growing closes.
+/// hatches. `vanished`, if given, is set to the number of rings that vanish: rings of bodies that are too
+/// thin for a shrinking offset, and holes that a growing offset closes.
 ///
 /// Throws Error{usage} for a distance that is not finite and for invalid corners, Error{limit} as `fill` does
 /// and for more points than `limits.memory` allows, and Error{cancelled}. Expected O(n) for n points in rings
-/// that meet nothing before and after, O((n + k) log n) for others with k crossings of moved rings.
+/// that touch no ring before and after the move; otherwise O((n + k) log n) for k crossings of moved rings.
 [[nodiscard]] Layer offset(const Layer& layer, double distance, const OffsetCorners& corners = {},
                            std::uint64_t* vanished = nullptr, const LayerLimits& limits = {});
 
-/// Offsets by several distances, but examines the layer once. `vanished` is that of the first distance.
+/// Returns the offsets by several distances, but examines the layer only once. `vanished` refers to the first
+/// distance.
 [[nodiscard]] std::vector<Layer> offsets(const Layer& layer, std::span<const double> distances,
                                          const OffsetCorners& corners = {}, std::uint64_t* vanished = nullptr,
                                          const LayerLimits& limits = {});

@@ -7,22 +7,21 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Removes points such that no point of a contour, old or new, is farther than `tolerance` mm from the other
-/// one (Hausdorff distance). The remaining points keep their coordinates and their order; ends of chains
-/// remain.
+/// Removes points so that the Hausdorff distance of each contour, before and after, is at most `tolerance`
+/// mm. The remaining points keep their coordinates and their order; ends of chains remain.
 ///
-/// Contours that do not cross do not begin to: where the removal of points would make contours cross, or
-/// would invert a ring, let it vanish or move it past another ring, points are restored until it does not,
-/// all of them if necessary. A tolerance of 0 removes exactly collinear points.
+/// The topology is kept: contours that do not cross before do not cross afterwards, and no ring vanishes, is
+/// inverted or moves past another ring. Where the removal of points would violate this, points are restored,
+/// if necessary all of them. A tolerance of 0 removes exactly collinear points.
 ///
-/// Follows Douglas and Peucker: the farthest points are kept first. Where these repeatedly split off little,
-/// as along spikes and spirals, middle points are kept instead, so that it takes O(n log n). Points are
-/// restored in passes, usually few, each of which searches for crossings again. Throws Error{usage} for a
-/// tolerance that is negative or NaN.
+/// Follows Douglas and Peucker: the farthest points are kept first. Where the farthest points repeatedly
+/// split a contour very unevenly, as along spikes and spirals, middle points are kept instead, so that the
+/// time is O(n log n). Points are restored in passes, usually few, each of which searches for crossings
+/// again. Throws Error{usage} for a tolerance that is negative or NaN.
 [[nodiscard]] Layer simplify(const Layer& layer, double tolerance);
 
-/// Does the same for each contour independently, which is much faster, for display. No ring vanishes or is
-/// inverted, but contours closer to one another than twice the tolerance may come to cross. Contours keep
+/// Simplifies each contour independently, which is much faster and serves for display. No ring vanishes or is
+/// inverted, but contours closer to one another than twice the tolerance may cross afterwards. Contours keep
 /// their order and their first points, so it also suits scan vectors.
 [[nodiscard]] Layer simplify_each(const Layer& layer, double tolerance);
 

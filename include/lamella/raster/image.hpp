@@ -12,8 +12,9 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// The pixels of an image and the position of a layer among them. Pixel (c, r) is the square [c, c + 1] x [r,
-/// r + 1] of image coordinates (u, v): columns to the right, rows downwards. The point (x, y) lies at
+/// The size of an image and the map from layer coordinates to image coordinates. Pixel (c, r), in column c
+/// from the left and row r from the top, is the square [c, c + 1] x [r, r + 1] of image coordinates (u, v).
+/// The point (x, y) of a layer lies at
 ///     u = ux x + uy y + u0,    v = vx x + vy y + v0.
 struct PixelGrid {
     std::uint32_t width = 0;
@@ -27,19 +28,21 @@ inline constexpr std::uint32_t most_pixels = 65535;
 inline constexpr unsigned most_antialias = 64;
 
 struct RasterOptions {
-    /// A pixel's coverage is the fraction of its area in which the winding number is not zero. It is exact
-    /// with one exception: a contiguous part of a row that contains more corners and crossings of contours
-    /// than this number, or more than twice as many edges, and is not a single line with bends. There the row
-    /// is divided into this number of strips. Each strip is evaluated along its middle; its error is less
-    /// than its own area, and only occurs where contours begin, end, bend or cross within it.
+    /// Number of strips into which a row of pixels is divided where exact coverage would take too long. A
+    /// pixel's coverage is the fraction of its area in which the winding number is not zero. It is exact
+    /// except where a contiguous part of a row contains more corners and crossings of contours than this
+    /// number, or more than twice as many edges, and is not a single line with bends. There each strip is
+    /// evaluated along its middle line. The error of a strip is less than its area, and is 0 unless contours
+    /// begin, end, bend or cross within it.
     ///
-    /// 1 disables anti-aliasing: the centre of a pixel decides. A centre on a contour counts if the material
-    /// lies to its right or, on a horizontal line, below it, so that adjacent bodies share no pixel.
+    /// 1 disables anti-aliasing: a pixel is covered if its centre is. A centre exactly on a contour counts as
+    /// covered if the material lies to its right or, on a horizontal edge, below it, so that adjacent bodies
+    /// share no pixel.
     unsigned antialias = 8;
-    /// States that the winding number is 0 or 1 everywhere, as `winds_once` of polygon determines. Then
-    /// coverage is a sum over the edges in any order: exact, and several times as fast if contours are finer
-    /// than pixels. If the statement is false, overlaps within a pixel count several times, up to the whole
-    /// pixel. Makes no difference without anti-aliasing. Image writers determine it by themselves.
+    /// Set if the winding number is known to be 0 or 1 everywhere (see `winds_once`). Then coverage is
+    /// computed as a sum over the edges in any order: exact, and several times as fast if contours are finer
+    /// than pixels. If it is set wrongly, overlaps within a pixel count several times, up to the whole pixel.
+    /// It has no effect without anti-aliasing. Image writers set it themselves.
     bool winds_once = false;
     /// The value of a pixel is 255 (v / 255)^gamma, rounded, where v is 255 times its coverage, rounded.
     double gamma = 1;
@@ -53,7 +56,7 @@ struct PixelRun {
     friend bool operator==(const PixelRun&, const PixelRun&) = default;
 };
 
-/// Receives the next rows of an image, from the top down: `times` equal rows. Consecutive runs differ in
+/// Receives the rows of an image from the top down, `times` equal rows per call. Consecutive runs differ in
 /// value; the last one ends at the width of the image.
 using RowSink = std::function<void(std::span<const PixelRun> row, std::uint32_t times)>;
 
@@ -77,7 +80,7 @@ struct GreyImage {
     }
 };
 
-/// Does the same and returns the whole image.
+/// Rasterises parts like `rasterise`, and returns the whole image.
 [[nodiscard]] GreyImage paint(std::span<const Layer> parts, const PixelGrid& grid,
                               const RasterOptions& options = {});
 

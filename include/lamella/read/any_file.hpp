@@ -14,9 +14,10 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Reads a mesh file or a slice file, recognised by its content, with the results and errors of `read_mesh`
-/// or `read_layers`. If a package such as 3MF has both, its layers are read, because its meshes usually only
-/// represent them. "-" reads standard input. `max_memory` also applies to layers.
+/// Reads a mesh file or a slice file, whose format is recognised by its content, with the results and errors
+/// of `read_mesh` or `read_layers`. If a package such as 3MF contains layers and meshes, the layers are read,
+/// because the meshes usually are only a preview of them. "-" reads standard input. `max_memory` also applies
+/// to layers.
 [[nodiscard]] std::variant<MeshFile, LayerFile>
 read_any(const std::string& path, const MeshReadOptions& options = {}, const Execution& execution = {});
 

@@ -19,46 +19,48 @@ LAMELLA_API_BEGIN
 namespace lamella {
 
 struct LayerReadOptions {
-    /// Largest number of bytes of the decompressed file and of the layers; more are Error{limit}. 0: three
-    /// quarters of the available memory. They are counted before memory is allocated for them.
+    /// Largest number of bytes that the decompressed file and the layers may take; otherwise Error{limit} is
+    /// thrown before they are allocated. 0: three quarters of the available memory.
     std::uint64_t max_memory = 0;
 };
 
-/// A part in a file.
+/// A part of a slice file.
 struct LayerPart {
-    /// "" if the file has no label; some readers append a number to a label that occurs again.
+    /// "" if the file has no label. Some readers append a number to make labels unique.
     std::string label;
     LayerStack layers;
     /// Set if the layers are scan vectors. Their order is that of execution; they are not in normal form.
     /// Parameters that the file does not specify are 0.
     std::optional<Exposure> exposure = {};
-    bool support = false; ///< the file marks it as support, which 3MF can
+    bool support = false; ///< the file marks it as support; only 3MF can
 };
 
 struct LayerFile {
     std::string path;
-    std::string format;  ///< as in the table of formats that are written, such as "cli"
+    std::string format;  ///< name of the format as in `layer_formats`, such as "cli"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
     Rounding rounding = {}; ///< of coordinates and heights, by the format
-    /// The rule by which the layers were cut, if the format specifies it; otherwise the usual one.
+    /// The rule by which the layers were cut, if the format specifies it; otherwise section_above.
     PlaneRule rule = PlaneRule::section_above;
     std::vector<LayerPart> parts = {};      ///< at least one; all have the same planes
-    std::vector<std::string> warnings = {}; ///< one line each: the irregularity and its treatment
-    /// The warning that heights are taken for bottoms of layers, if this is a guess and the format specifies
-    /// tops.
+    std::vector<std::string> warnings = {}; ///< one line each: the irregularity, and how the reader treated
+                                            ///< it
+    /// The warning that the heights in the file are interpreted as bottoms of layers although the format
+    /// defines them as tops; empty unless the reader guessed so.
     std::string guess = {};
 
-    /// Returns all parts as one: the layers of the only part, or for each plane the contours of all parts.
-    /// O(points). Throws Error{usage} if the caller changed the parts so that their numbers of layers differ.
+    /// Returns all parts as one stack: the layers of the only part, or one layer per plane with the contours
+    /// of all parts. O(points). Throws Error{usage} if the caller changed the parts so that their numbers of
+    /// layers differ.
     [[nodiscard]] LayerStack merged() const;
 };
 
 /// Reads a slice file, whose format is recognised by its content: Common Layer Interface (binary or ASCII),
-/// layered SVG, SLC, 3MF with slice stacks, JSON of layers, NumPy arrays, ILT, Open Vector Format or 3MF with
-/// toolpaths, each also compressed with gzip. "-" reads standard input. Layers are in ascending z, and in
-/// normal form except those with an exposure. Values that the format lacks are derived from others (a Common
-/// Layer Interface layer has a top; its cut is assumed to be half-way up). Throws Error{input} with file,
-/// byte or line, the text found and the text expected.
+/// layered SVG, SLC, 3MF with slice stacks, layers as JSON, NumPy arrays, ILT, Open Vector Format or 3MF with
+/// toolpaths. Each may be compressed with gzip. "-" reads standard input. Layers are in ascending z, and in
+/// normal form except those with an exposure. Values that the format lacks are derived from others. For
+/// example, the Common Layer Interface stores only the tops of layers; the cut is assumed to be half-way up.
+/// Throws Error{input} that reports the file, the byte or line, the text found and the text expected.
 [[nodiscard]] LayerFile read_layers(const std::string& path, const LayerReadOptions& options = {},
                                     const Execution& execution = {});
 

@@ -21,23 +21,25 @@ namespace lamella {
 /// Returns the extensions of mesh files, in lower case: "stl", "3mf"...
 [[nodiscard]] std::vector<std::string_view> mesh_extensions();
 
-/// Returns whether a file with this name or path is read as a mesh: its extension is one of
-/// `mesh_extensions`, in any case, perhaps followed by ".gz".
+/// Returns whether a name or path has one of the `mesh_extensions`, in upper or lower case, with or without a
+/// further ".gz".
 [[nodiscard]] bool is_mesh_name(const std::string& name);
 
 struct MeshReadOptions {
-    /// Makes warnings Error{defect}: wrong counts, truncation, corners that are not finite.
+    /// Throws Error{defect} instead of a warning about wrong counts, truncation, or corners that are not
+    /// finite.
     bool strict = false;
-    /// Reads bodies with these roles in 3MF and AMF files as solids. By default negative volumes are
-    /// subtracted when their object is sliced, and other bodies are skipped; one warning counts them.
+    /// Roles of bodies in 3MF and AMF files that are read as solids. By default negative volumes are
+    /// subtracted when their object is sliced, and the other bodies that are not parts are skipped; one
+    /// warning counts them.
     MeshRoles include = {};
-    /// Largest number of triangles, in the file or over all instances; more are Error{limit}. 0: as many as
-    /// memory allows. They are counted while the file is read, before memory is allocated for them.
+    /// Largest number of triangles, in the file and over all instances; otherwise Error{limit} is thrown
+    /// before they are allocated. 0: as many as memory allows.
     std::uint64_t max_triangles = 0;
-    /// Largest number of bytes in memory, of the file (decompressed) and of the meshes; more are
-    /// Error{limit}. 0: three quarters of the available memory. Not counted are binary STL files of at least
-    /// 64 KiB that are not compressed, files copied to a temporary file (see `read_mesh`), and data that is
-    /// computed from a mesh afterwards.
+    /// Largest number of bytes in memory that the decompressed file and the meshes may take; otherwise
+    /// Error{limit} is thrown. 0: three quarters of the available memory. The following do not count:
+    /// uncompressed binary STL files of at least 64 KiB, files copied to a temporary file (see `read_mesh`),
+    /// and data computed from a mesh afterwards.
     std::uint64_t max_memory = 0;
 };
 
@@ -47,7 +49,7 @@ struct MeshObject {
     Mesh mesh;
 };
 
-/// A placed object. The placement gives millimetres; it includes the file's unit.
+/// A placed object. The placement converts the file's units to millimetres.
 struct MeshInstance {
     std::size_t object = 0; ///< index into MeshFile::objects
     Transform placement = {};
@@ -57,7 +59,7 @@ struct MeshInstance {
     std::uint64_t body = 0; ///< the instances of one placed object have the same number
 };
 
-/// An object of a file or one of its volumes, even if it was not read.
+/// An object of a file, or a volume of an object, even if it was not read.
 struct MeshBody {
     std::string name = {};
     MeshRole role = MeshRole::part;
@@ -68,10 +70,10 @@ struct MeshBody {
 struct MeshFile {
     std::string path;
     std::string format; ///< "stl-binary", "stl-ascii", or the extension of another format, such as "3mf"
-    /// The first solid's name or the header's text, if there is one: one line of valid UTF-8 with at most
-    /// about 1000 bytes; other bytes are written as \xNN.
+    /// The name of the first solid or the text of the header, if there is one, as a line of valid UTF-8 with
+    /// at most about 1000 bytes (see `printable`).
     std::string name;
-    /// Meshes, which have finite corners only, and their placements. STL, OBJ, PLY and OFF files have one of
+    /// Meshes, whose corners are all finite, and their placements. STL, OBJ, PLY and OFF files have one of
     /// each; 3MF and AMF files may have many instances, also several of one object.
     std::vector<MeshObject> objects;
     std::vector<MeshInstance> instances;
@@ -79,34 +81,33 @@ struct MeshFile {
     std::vector<MeshBody> bodies;
     /// Millimetres per unit of the file, if it states the unit.
     std::optional<double> unit_mm;
-    std::uint64_t stored_triangles = 0;    ///< including dropped ones
+    std::uint64_t stored_triangles = 0;    ///< number in the file, with the dropped ones
     std::uint64_t nonfinite_triangles = 0; ///< dropped, because a corner is NaN or infinite
-    std::uint64_t first_nonfinite = 0; ///< of binary STL: the index of the first of those, if there are any
-    std::vector<std::string> warnings; ///< one line each: the irregularity and its treatment
+    std::uint64_t first_nonfinite = 0;     ///< index of the first dropped triangle, if any; binary STL only
+    std::vector<std::string> warnings;     ///< one line each: the irregularity, and how the reader treated it
 
-    /// Returns instance i, placed.
+    /// Returns the mesh of instance i with its placement applied.
     [[nodiscard]] Mesh placed(std::size_t i) const;
-    /// Returns all instances, placed, as one mesh (see `joined`). O(1) for a file with one instance of a
-    /// soup.
+    /// Returns all placed instances as one mesh (see `joined`). O(1) for a file with one instance of a soup.
     [[nodiscard]] Mesh mesh(const Execution& execution = {}) const;
 };
 
 /// Reads a mesh file; its format is recognised by its content. "-" reads standard input. docs/formats.md
 /// describes the accepted subset of each format.
 ///
-/// The bytes are copied: the file may change during the call and is not needed afterwards. If it becomes
-/// shorter while it is copied, that is Error{input}. If it would take more than a quarter of `max_memory`,
-/// the copy is in an anonymous temporary file (in $TMPDIR, else /var/tmp), and a mesh of binary STL is a view
-/// of it; Error{output} if the disk is full.
+/// The bytes are copied: the file may change during the call and is not needed afterwards. Throws
+/// Error{input} if it becomes shorter while it is copied. A copy of more than a quarter of `max_memory` is
+/// kept in an anonymous temporary file (in $TMPDIR, else /var/tmp), of which the mesh of a binary STL file is
+/// a view; throws Error{output} if the disk is full.
 ///
-/// Corners of STL files have single precision in both forms: a number in an ASCII file is rounded once, to
-/// the nearest, so the ASCII and the binary form of a part give the same slices, bit for bit. Stored normals
-/// are ignored. All solids of an ASCII file are joined.
+/// Corners of STL files have single precision, in ASCII files too: each number there is rounded once, to the
+/// nearest. So the ASCII and the binary file of a part give the same slices, bit for bit. Stored normals are
+/// ignored. All solids of an ASCII file are joined.
 ///
-/// Accepted with a warning: a wrong or missing count, trailing bytes or text, a missing "endsolid", a
-/// truncated last triangle, corners that are not finite (their triangles are dropped). For other defects, and
-/// for a file without any usable triangle, throws Error{input} with file, byte or line, the text found and
-/// the text expected.
+/// These defects are accepted with a warning: a wrong or missing count, trailing bytes or text, a missing
+/// "endsolid", a truncated last triangle, and corners that are not finite (their triangles are dropped). For
+/// other defects, and for a file without any usable triangle, throws Error{input} that reports the file, the
+/// byte or line, the text found and the text expected.
 ///
 /// O(bytes), parallel; the result does not depend on the number of threads.
 [[nodiscard]] MeshFile read_mesh(const std::string& path, const MeshReadOptions& options = {},

@@ -19,9 +19,9 @@ namespace lamella {
 struct ByteSource;
 
 /// Receives the triangles of a file in chunks of some ten thousand, from several threads at once and in any
-/// order. `number` is the index of the chunk in the file; a chunk without usable triangles is omitted. The
-/// chunk is a view that is valid during the call. May throw: reading stops and the exception reaches the
-/// caller.
+/// order. `number` is the index of the chunk in the file; chunks without usable triangles are omitted.
+/// `batch` is a view that is valid only during the call. May throw: reading stops and the exception reaches
+/// the caller.
 using TriangleSink = std::function<void(const TriangleSoup& batch, std::uint64_t number)>;
 
 /// Triangles [begin, end) of a binary STL file, as stored.
@@ -33,11 +33,11 @@ struct RecordRange {
 /// An open mesh file. Copies are cheap and refer to the same file.
 class MeshInput {
   public:
-    /// Opens a file; "-" is standard input. A binary STL file stays open and is read in windows. Any other
-    /// input is copied: at most `most_in_memory` bytes to memory (by default a quarter of the default of
-    /// MeshReadOptions::max_memory), a longer one to an anonymous temporary file (in $TMPDIR, else /var/tmp).
-    /// Throws Error{input} if the file does not exist or cannot be read, Error{output} if the temporary file
-    /// does not fit on the disk, Error{cancelled}.
+    /// Opens a file; "-" is standard input. A binary STL file stays open and is read in chunks. Any other
+    /// input is copied: to memory if it has at most `most_in_memory` bytes (by default a quarter of the
+    /// default of MeshReadOptions::max_memory), else to an anonymous temporary file (in $TMPDIR, else
+    /// /var/tmp). Throws Error{input} if the file does not exist or cannot be read, Error{output} if the
+    /// temporary file does not fit on the disk, Error{cancelled}.
     explicit MeshInput(const std::string& path, std::optional<std::uint64_t> most_in_memory = {},
                        const Execution& execution = {});
 
@@ -46,25 +46,25 @@ class MeshInput {
     /// Returns the number of bytes that are in memory.
     [[nodiscard]] std::uint64_t bytes_in_memory() const noexcept;
 
-    /// Returns whether `stream` can read the file: uncompressed STL, even with a wrong count or truncated.
-    /// Throws the errors of `read` for files of unknown formats.
+    /// Returns whether `stream` can read the file, which is true for uncompressed STL, even with a wrong
+    /// count or truncated. Throws the errors of `read` for files of unknown formats.
     [[nodiscard]] bool can_stream() const;
     /// Returns the number of triangles of a binary STL file, usable or not, according to its header and its
-    /// length; none for other files.
+    /// length; nullopt for other files.
     [[nodiscard]] std::optional<std::uint64_t> records() const;
 
     /// Reads the whole file: see read_mesh.
     [[nodiscard]] MeshFile read(const MeshReadOptions& options = {}, const Execution& execution = {}) const;
 
-    /// Passes all triangles to the sink. Needs memory for a few chunks per thread, for any size of file.
-    /// Checks, errors and warnings are those of `read`; so is the result, except that the mesh of its only
-    /// object is empty. May be called any number of times. Progress counts bytes.
+    /// Passes all triangles to the sink. Takes memory for a few chunks per thread only, for any size of file.
+    /// Checks, errors, warnings and the result are those of `read`, except that the mesh of the only object
+    /// is empty. May be called any number of times. Progress counts bytes.
     ///
     /// `share` selects a range of the triangles of a binary file; `nonfinite_triangles` and `first_nonfinite`
-    /// then refer to this range. The caller, who knows all ranges, must warn of them, and must check that a
-    /// triangle of the file is usable. `stored_triangles` and `max_triangles` refer to the number in the
-    /// header, which is that of the whole file. Throws Error{usage} if the file has fewer triangles than the
-    /// range, for a range of an ASCII file, and for a file that cannot be streamed.
+    /// then refer to this range. The caller knows all ranges; it must warn of these triangles, and must check
+    /// that at least one triangle of the file is usable. `stored_triangles` and `max_triangles` refer to the
+    /// number in the header, which is that of the whole file. Throws Error{usage} if the file has fewer
+    /// triangles than the range, for a range of an ASCII file, and for a file that cannot be streamed.
     MeshFile stream(const TriangleSink& sink, const MeshReadOptions& options = {},
                     const Execution& execution = {}, const std::optional<RecordRange>& share = {}) const;
 

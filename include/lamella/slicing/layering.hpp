@@ -1,6 +1,6 @@
 #pragma once
 
-// Layerings: the settings by which a job cuts its parts.
+// Layerings: the settings that define the layers of a job.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -30,7 +30,7 @@ struct HeightRanges {
 /// The methods of cutting; a job uses one of them.
 using Cut = std::variant<UniformLayers, ListedPlanes, HeightRanges, AdaptiveLayers>;
 
-/// The method of cutting, the position of each cut within its layer, and the selected layers.
+/// The cuts of a job: the method, the position of each cut within its layer, and the selected layers.
 struct Layering {
     Cut cut = {};
     SliceAt at = SliceAt::middle;

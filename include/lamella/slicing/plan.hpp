@@ -36,9 +36,9 @@ struct Plan {
     double snap_mm = 0;
 };
 
-/// Throws Error{usage} that names the first layer whose heights are not finite or whose z is not above the
-/// one before; also for a snap distance that is negative or not finite, and for more than 2^31 - 2 layers.
-/// O(layers).
+/// Throws Error{usage} that names the first layer whose heights are not finite or whose z is not above that
+/// of the layer before; also for a snap distance that is negative or not finite, and for more than 2^31 - 2
+/// layers. O(layers).
 void check(const Plan& plan);
 
 /// The planes [begin, end) of a plan, by position.
@@ -56,22 +56,23 @@ struct UniformLayers {
     std::optional<double> first_layer_height = {}; ///< default: layer_height
 };
 
-/// Selects layers of a plan: those in both ranges.
+/// Selects the layers of a plan that are in both ranges.
 struct PlaneSelection {
-    /// Keeps the layers whose cut lies in [first, second]; absolute z.
+    /// Keeps the layers whose cut lies at an absolute z in [first, second].
     std::optional<std::pair<double, double>> z_range = {};
     /// Keeps the layers with index in [first, second).
     std::optional<std::pair<std::uint64_t, std::uint64_t>> index_range = {};
 };
 
-/// Returns layers stacked from z_min: layer i fills [z_min + i h, z_min + (i + 1) h] and exists if its cut
-/// meets the part. Hence a partly full last layer is kept if it is cut at the bottom, or in the middle and
-/// more than half full, and dropped if it is cut at the top. A remainder below a thousandth of the layer
-/// height is ignored. Heights are z_first + i * h, never a running sum. With cuts at the top, a last cut that
-/// lies above z_max, or below it by no more than rounding, is moved to z_max.
+/// Returns layers stacked from z_min: with equal heights h, layer i fills [z_min + i h, z_min + (i + 1) h]. A
+/// layer exists if its cut meets the part. Hence, with cuts at the bottom, a partly filled last layer is
+/// kept; with cuts in the middle, it is kept if it is more than half full; with cuts at the top, it is
+/// dropped. A remainder below a thousandth of the layer height is ignored. Heights are computed by
+/// multiplication, never as a running sum. With cuts at the top, a last cut that lies above z_max, or below
+/// it by no more than rounding, is moved to z_max.
 ///
 /// Throws Error{usage} if a height is not a positive finite number, a range is empty, no layer remains, the
-/// layers are too low for double precision, or there were more than 2^31 - 2 layers.
+/// layers are too thin for double precision, or there would be more than 2^31 - 2 layers.
 [[nodiscard]] Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers,
                                 SliceAt slice_at = SliceAt::middle, const PlaneSelection& only = {});
 
@@ -80,14 +81,14 @@ struct PlaneSelection {
 /// its own. The outermost layers have the thickness of their neighbours; the layer of a single cut is
 /// `single_height` thick.
 ///
-/// Throws Error{usage} if the list is empty, too long, too wide for double, not strictly ascending or not
-/// finite, naming the first offender; if the bottom and top of a layer coincide; and if `single_height` is
-/// not a positive finite number.
+/// Throws Error{usage} if the list is empty or too long, or spans more than double precision can represent;
+/// if heights are not finite or not strictly ascending, naming the first such height; if the bottom and top
+/// of a layer coincide; and if `single_height` is not a positive finite number.
 [[nodiscard]] Plan plan_listed(const std::vector<double>& z, SliceAt slice_at = SliceAt::middle,
                                double single_height = UniformLayers{}.layer_height);
 
-/// Throws Error{usage} if plan_listed would refuse the list itself. Serves to check a list before the part is
-/// read.
+/// Throws the Error{usage} of plan_listed if the list itself is invalid. A caller can thus check a list
+/// before it reads the part.
 void check_list(const std::vector<double>& z);
 
 } // namespace lamella

@@ -17,8 +17,8 @@ LAMELLA_API_BEGIN
 namespace lamella {
 
 /// Counts of the engines of the EECC paper (King, Rennie, Bennett 2021) while they sort intersections into
-/// contours, from which its Tables 2, 3 and 4 and its section 4.1 follow. An intersection is one triangle on
-/// one plane; for `conventional` it is one segment of non-zero length.
+/// contours. They reproduce Tables 2, 3 and 4 and section 4.1 of the paper. An intersection is one triangle
+/// on one plane; for `conventional` it is one segment of non-zero length.
 struct MatchingCounts {
     /// Number of intersections by the case of their insertion.
     struct Cases {
@@ -41,7 +41,7 @@ struct MatchingCounts {
     /// Intersections placed by an edge link, without a search (the other columns of Table 3). Except for
     /// `conventional`, inserted.total() == by_edge_link.total() + searches.
     Cases by_edge_link;
-    /// Size of the node of one intersection, which section 4.1 counts.
+    /// Size of the node that stores one intersection (section 4.1).
     std::uint64_t node_bytes = 0;
     /// Peak memory of nodes, lists and edges together, as allocated.
     std::uint64_t bytes = 0;
@@ -50,7 +50,7 @@ struct MatchingCounts {
     MatchingCounts& operator+=(const MatchingCounts& other) noexcept;
 };
 
-/// Sizes and times of one slicing; the statistics of the program are made from it.
+/// Sizes and times of one slicing.
 struct SliceReport {
     double weld_seconds = 0; ///< joining vertices; for engines that need an indexed mesh, also welding a soup
     double link_seconds = 0; ///< sweep: ranks, cut graph; others: ranks, intersections, lists
@@ -65,14 +65,16 @@ struct SliceReport {
     SliceReport& operator+=(const SliceReport& other) noexcept;
 };
 
-/// Receives layers while slicing goes on. It is called once for every layer, from several threads at once and
-/// in any order, and does the work that can run in parallel, such as formatting. The function it returns,
-/// which may be empty, is called later, one at a time and in ascending z, and does the work that must be in
-/// order, such as writing. If either throws, slicing stops and the exception reaches the caller.
+/// Receives each layer as soon as it is sliced. It is called once for every layer, from several threads at
+/// once and in any order, and does the work that can run in parallel, such as formatting. It returns a
+/// function, which may be empty, for the work that must be done in order, such as writing. These functions
+/// are called later, one at a time and in ascending z. If either throws, slicing stops and the exception
+/// reaches the caller.
 using LayerSink = std::function<std::function<void()>(Layer&&)>;
 
-/// Sees each triangle of a mesh once while slicing reads them: the triangles [begin, end), from several
-/// threads at once. A visit while the triangles are in the cache costs less than a separate pass.
+/// Called with ranges of triangles, [begin, end), while slicing reads them; each triangle of the mesh is
+/// visited once. It is called from several threads at once. Since the triangles are then in the cache, it
+/// costs less than a separate pass.
 using TriangleVisitor = std::function<void(const Mesh& mesh, std::uint64_t begin, std::uint64_t end)>;
 
 /// Input and output of an engine.
@@ -91,7 +93,7 @@ struct SliceJob {
 
 /// One algorithm from mesh and plan to layers.
 struct Engine {
-    std::string_view name;    ///< as in `--engine`
+    std::string_view name;    ///< the argument of `--engine`
     std::string_view summary; ///< one line for help texts
     std::string_view source;  ///< the publication it follows, or ""
     /// True if the engine needs an indexed mesh. It welds a soup first; pass the welded mesh if there is one.
@@ -106,28 +108,29 @@ struct Engine {
 [[nodiscard]] const Engine& engine(std::string_view name);
 
 /// Returns one layer per plane of the plan, in order, each in normal form, empty where the plane misses the
-/// mesh. On a closed, consistently oriented mesh every contour is a ring, for any coordinates. Elsewhere
-/// contours that do not close are kept as open chains. `visitor`, if given, sees the mesh with joined
-/// vertices.
+/// mesh. On a closed, consistently oriented mesh every contour is a ring, for any coordinates. On other
+/// meshes contours may not close; these are kept as open chains. `visitor`, if given, receives the mesh with
+/// joined vertices.
 ///
-/// Default engine: O(triangles + points + c log c) for c contours in a layer, on all threads; the same bytes
-/// for any number of threads and any order of the triangles. Throws Error{limit} for about 2^32 / 3 triangles
-/// or more, Error{cancelled}, and the exceptions of the progress function.
+/// Throws Error{limit} for about 2^32 / 3 triangles or more, Error{cancelled}, and the exceptions of the
+/// progress function. The default engine takes O(triangles + points + c log c) for c contours in a layer, and
+/// uses all threads; its result is, byte for byte, the same for any number of threads and any order of the
+/// triangles.
 [[nodiscard]] LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution = {},
                                SliceReport* report = nullptr, const Engine& engine = engines().front(),
                                const TriangleVisitor& visitor = {});
 
-/// Slices into a sink: hands over the same layers as `slice`, each as soon as it is complete. The number of
-/// points in flight is bounded: to about 56 MB per thread and at least 112 MB, or to one layer if that is
-/// larger; `points_in_flight` overrides this bound and 0 keeps it. Layers that the sink has released take no
-/// memory.
+/// Slices into a sink, which receives the layers that `slice` would return, each as soon as it is complete.
+/// Points in flight are those handed to the sink and not yet released by its ordered function.
+/// `points_in_flight` is the largest number of them; 0 means 56 MB of points per thread, and at least 112 MB.
+/// A single larger layer is always permitted. Layers that the sink has released take no memory.
 void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution = {},
               SliceReport* report = nullptr, const Engine& engine = engines().front(),
               std::uint64_t points_in_flight = 0, const TriangleVisitor& visitor = {});
 
-/// Returns the area of the section at each plane of the plan, mm^2, computed from the triangles without
-/// linking them to contours. For closed meshes it equals the area of the layers of every engine; `lamella
-/// verify --mesh` and the tests rely on this. O(triangles + points).
+/// Returns the area of the section at each plane of the plan, mm^2, computed directly from the triangles,
+/// without contours. For closed meshes it equals the area of the layers of every engine, except for rounding;
+/// `lamella verify --mesh` and the tests use it as an independent check. O(triangles + points).
 [[nodiscard]] std::vector<double> section_areas(const Mesh& mesh, const Plan& plan,
                                                 const Execution& execution = {});
 

@@ -11,7 +11,7 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Height of the layers between `from` and `to`, mm above the bottom of the part.
+/// Height of the layers between `from` and `to`, which are in mm above the bottom of the part.
 struct HeightRange {
     double from = 0;
     double to = 0;
@@ -21,12 +21,12 @@ struct HeightRange {
 };
 
 /// Returns layers stacked from z_min. Each has the height of the range that contains its bottom, or
-/// `layer_height` if no range does. A layer is not cut short at the end of a range. A bottom less than a
-/// thousandth of a layer below the end of a range counts as at the end. The last layer is chosen as in
-/// `plan_uniform`.
+/// `layer_height` if no range does. A layer may reach beyond the end of its range. If its bottom is less than
+/// a thousandth of a layer below the beginning or the end of a range, it counts as being at that height. The
+/// last layer is chosen as in `plan_uniform`.
 ///
-/// Throws Error{usage} if ranges are empty, begin below 0, overlap or do not ascend, naming the first
-/// offender; and in the cases of `plan_uniform`.
+/// Throws Error{usage} if a range is empty, begins below 0, overlaps another one or does not ascend, naming
+/// the first such range; and in the cases of `plan_uniform`.
 [[nodiscard]] Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& ranges,
                                   double layer_height, SliceAt slice_at = SliceAt::middle);
 
@@ -34,20 +34,20 @@ struct HeightRange {
 struct AdaptiveLayers {
     double min_height = 0.05;
     double max_height = 0.3;
-    /// Largest distance between the steps of the layers and the surface, measured across the surface. A layer
-    /// of height h makes cusps of h |n.z| on a triangle with unit normal n: 0 on a vertical wall, h on a
-    /// horizontal face.
+    /// Largest distance between the steps of the layers and the surface, measured perpendicular to the
+    /// surface (cusp height). On a triangle with unit normal n, a layer of height h has cusps of h |n.z|: 0
+    /// on a vertical wall, h on a horizontal face.
     double cusp_mm = 0.05;
 };
 
 /// Returns layers stacked from the bottom of the mesh. Each is as high as `max_height` and `cusp_mm` allow
 /// for every triangle that reaches into it, but never below `min_height`, even if its cusps are then larger.
-/// The last layer ends at the top of the mesh unless that made it lower than `min_height`.
+/// The last layer ends at the top of the mesh, unless it would then be lower than `min_height`.
 ///
 /// One pass over the triangles gathers their slopes by height, in steps of min_height / 4, or of a 2^20th of
 /// the part's height if that is more. Next to a change of slope a layer may therefore be slightly lower than
-/// necessary. The result is the same for any number of threads. Throws Error{usage} like `plan_uniform`, and
-/// unless 0 < min_height <= max_height and 0 < cusp_mm. O(triangles + s log s) for s steps.
+/// necessary. The result is the same for any number of threads. Throws the Error{usage} of `plan_uniform`,
+/// and Error{usage} unless 0 < min_height <= max_height and 0 < cusp_mm. O(triangles + s log s) for s steps.
 [[nodiscard]] Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers,
                                  SliceAt slice_at = SliceAt::middle, const Execution& execution = {});
 

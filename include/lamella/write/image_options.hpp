@@ -17,18 +17,20 @@ struct AlongXY {
     T y;
 };
 
-/// png, png-zip, sl1, sl1s: the image and its relation to the part. The middle of the part's box is in the
-/// middle of the display.
+/// Options of the formats png, png-zip, sl1 and sl1s: the pixels of the image, and how they map to the part.
+/// The centre of the part's box is at the centre of the display.
 struct ImageOptions {
-    /// Any two of these three determine the third. Values not given are the printer's (sl1, sl1s); without a
-    /// printer, pixels are 0.05 mm wide, and their number is that which the part needs.
+    /// Size of a pixel, number of pixels, and size of the display; any two of them determine the third.
+    /// Values not given are those of the printer (sl1, sl1s). Without a printer, pixels are 0.05 mm wide, and
+    /// there are as many as the part needs.
     std::optional<AlongXY<double>> pixel_mm = {};
     std::optional<AlongXY<std::uint32_t>> pixels = {};
     std::optional<AlongXY<double>> display_mm = {};
 
-    /// Orientation as PrusaSlicer defines it: `portrait` is a display that stands upright in the printer, so
-    /// that x runs along the rows of an image, from below; mirrored displays are seen from the other side.
-    /// Values not given are the printer's; without one an image shows the layer as seen from above.
+    /// Orientation, as PrusaSlicer defines it: with `portrait` the display is mounted upright in the printer,
+    /// and x runs along the rows of the image, from below. Mirrored displays are seen from the other side.
+    /// Values not given are those of the printer; without a printer an image shows the layer as seen from
+    /// above.
     std::optional<bool> portrait = {};
     std::optional<bool> mirror_x = {};
     std::optional<bool> mirror_y = {};
@@ -36,19 +38,19 @@ struct ImageOptions {
     RasterOptions raster = {};
 };
 
-/// sl1, sl1s: exposure times for the printer, in seconds. The defaults are for a common resin in layers of
-/// 0.05 mm.
+/// Options of the formats sl1 and sl1s: exposure times for the printer, in seconds. The defaults suit a
+/// common resin in layers of 0.05 mm.
 struct ExposureOptions {
     std::optional<double> normal_s = {};
     std::optional<double> first_s = {}; ///< of the first three layers
-    std::uint32_t fade_layers = 10; ///< number of layers in which the first exposure becomes the normal one
+    std::uint32_t fade_layers = 10; ///< number of layers over which the time changes from first_s to normal_s
     /// Time of creation recorded in the file, in seconds since 1970. It is constant by default so that equal
     /// layers give equal bytes.
     std::int64_t created_s = 0;
 };
 
-/// Returns the time that reproducible builds agree upon (reproducible-builds.org): the environment variable
-/// SOURCE_DATE_EPOCH, in seconds since 1970; 0 if it is not set. Throws Error{usage} if its value is not a
+/// Returns the environment variable SOURCE_DATE_EPOCH, in seconds since 1970, by which reproducible builds
+/// set the time (reproducible-builds.org); 0 if it is not set. Throws Error{usage} if its value is not a
 /// time.
 [[nodiscard]] std::int64_t source_date();
 

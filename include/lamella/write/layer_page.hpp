@@ -22,7 +22,7 @@ namespace lamella {
 /// Tone of a fact; the page shows it by an icon and a colour.
 enum class Tone { plain, good, warning, bad };
 
-/// A line of a page: "volume", "3,128.4 mm3".
+/// A name and a value that a page shows on one line, such as "volume" and "3,128.4 mm3".
 struct PageFact {
     std::string name;
     std::string value;
@@ -34,18 +34,18 @@ struct PageSection {
     std::vector<PageFact> facts;
 };
 
-/// A location on or in the part that a page marks and lists, such as the rim of a hole.
+/// A location on or in the part that a page highlights and lists, such as the rim of a hole.
 struct PageLocation {
-    std::string kind;           ///< locations with equal texts are of one kind, such as "boundary loop"
+    std::string kind;           ///< name of the kind, such as "boundary loop"; the page groups by it
     std::string text;           ///< describes this location
     std::vector<Point3> points; ///< one point, or a line through several; at least one
-    bool closed = false;        ///< the line leads back to its first point
-    std::uint64_t found = 0;    ///< number of its kind, listed or not; 0 if not reported
+    bool closed = false;        ///< true if the line leads back to its first point
+    std::uint64_t found = 0;    ///< number of locations of this kind, listed or not; 0: unknown
 };
 
 /// Changes that layer steps made to a plane before it was added to the page.
 struct PageChange {
-    std::uint64_t index = 0; ///< of the plane's layers
+    std::uint64_t index = 0; ///< Layer::index of the plane
     LayerChanges changes;
 };
 
@@ -53,12 +53,12 @@ struct PageChange {
 struct PageNotes {
     std::vector<PageSection> sections;
     std::vector<PageLocation> locations;
-    /// One or more for each plane that was changed, in any order. If empty, the page does not mention layer
-    /// steps.
+    /// One or more entries for each plane that was changed, in any order. If empty, the page does not mention
+    /// layer steps.
     std::vector<PageChange> changes = {};
 };
 
-/// Returns the locations that a diagnosis lists, with their meaning for slicing. O(points).
+/// Returns the locations that a diagnosis lists, with texts that explain their effect on slices. O(points).
 [[nodiscard]] std::vector<PageLocation> places_of(const Diagnosis& diagnosis);
 
 /// Writes the page of a stack of layers. docs/viewer.md describes its content, the rounding of coordinates,
@@ -78,10 +78,10 @@ open_layer_page(const std::string& path, const LayerFileInfo& info, const PageOp
 inline constexpr std::size_t page_triangles = 300'000;
 
 /// Writes the page of a mesh: its surface, its shells, the locations listed in the diagnosis, and the notes.
-/// Vertices are moved to the centres of the cells of a cubic grid. The cell edge is the smallest of 1/65536,
-/// 1/32768, ... of the longest edge of the mesh's box for which at most `page_triangles` triangles keep three
-/// different corners. The other triangles are left out, and the page reports their number. "-" is standard
-/// output.
+/// Vertices are moved to the centres of the cells of a cubic grid, and triangles without three different
+/// corners are left out. The cell edge is the smallest of 1/65536, 1/32768, ... of the longest edge of the
+/// mesh's box that leaves at most `page_triangles` triangles. The page reports the number of triangles left
+/// out. "-" is standard output.
 ///
 /// Throws Error{output}, Error{cancelled}, and Error{usage} if the options have no viewer. O(n) for each cell
 /// edge that is tried.

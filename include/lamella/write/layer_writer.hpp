@@ -23,22 +23,22 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// One of the parts of a slice file, or one exposure of a part.
+/// Header data of a part of a slice file, or of one exposure of a part.
 struct PartInfo {
     std::string label = "part";
     Box3 box = {}; ///< mm; empty if unknown
     /// If set, the part's layers are scan vectors; see `scan`.
     std::optional<Exposure> exposure = {};
-    bool support = false; ///< exposed as a support in scan vectors; 3MF marks it
+    bool support = false; ///< scanned with the parameters for supports; 3MF files mark it
 };
 
 /// Returns the box of the contours and hatch lines of a part, from the bottom of its first layer to the top
 /// of its last. It is empty if there are none. O(points).
 [[nodiscard]] Box3 part_box(std::span<const Layer> layers) noexcept;
 
-/// A range of the layers of a slice file, for formats whose files are layers one after the other
-/// (LayerFormat::chunks). Several processes write one file in this manner: the concatenated ranges are the
-/// file.
+/// A range of the layers of a slice file, for formats whose files consist of the layers one after the other
+/// (LayerFormat::chunks). Several processes can thus write one file: the file is the concatenation of the
+/// ranges.
 struct LayerFileChunk {
     std::uint64_t before = 0; ///< number of layers of the file below this range
     std::uint64_t layers = 0; ///< number of layers of this range
@@ -52,25 +52,28 @@ struct LayerFileInfo {
     std::uint64_t layers = 0;        ///< number of planes that will follow
     double bottom = 0;               ///< of the first layer
     std::vector<PartInfo> parts{{}}; ///< at least one
-    /// Rule by which all layers were cut. Formats that keep cuts keep it, too.
+    /// Rule by which all layers were cut. Formats that store the heights of cuts also store this rule.
     PlaneRule rule = PlaneRule::section_above;
-    /// If set, only this range is written, and not to a file. It must outlive the writer.
+    /// If set, only this range is written, to LayerFileChunk::put instead of a file. It must outlive the
+    /// writer.
     const LayerFileChunk* chunk = nullptr;
-    /// True if all layers pass `check`, as those of `slice` do: the writer then need not check every point.
+    /// True if all layers are known to pass `check`, as those of `slice` do. The writer then does not check
+    /// every point.
     bool known_finite = false;
 };
 
-/// Options of html: see lamella/write/layer_page.hpp.
+/// Options of the format html: see lamella/write/layer_page.hpp.
 struct PageOptions {
     /// The built viewer, an HTML page with a placeholder for the data: the text of share/lamella/viewer.html
     /// of an installation. It must outlive the writer.
     std::string_view viewer = {};
-    /// Reason why `viewer` is empty, for the error when a page is requested. It must outlive the options.
+    /// Reason why `viewer` is empty, for the error message if a page is requested. It must outlive the
+    /// options.
     std::string_view no_viewer = "PageOptions::viewer is empty";
     /// Title of the page.
     std::string title = "Lamella";
-    /// Upper bounds on the bytes of the page that all layers take, and on the points of one layer. Layers are
-    /// thinned out to stay within both.
+    /// Upper bounds on the bytes that all layers take in the page, and on the points of one layer. Hatch
+    /// lines, points and small rings of layers are left out to stay within both.
     std::uint64_t budget_bytes = std::uint64_t{24} << 20;
     std::uint64_t layer_points = 250'000;
 };
@@ -78,17 +81,17 @@ struct PageOptions {
 struct LayerWriteOptions {
     static constexpr double usual_units_mm = 0.001;
 
-    /// Error{limit} is thrown if the layers take more bytes than this; 0 is no limit. The end of a file, such
-    /// as the directory of an archive, does not count.
+    /// Throws Error{limit} if the layers take more bytes of the file than this; 0: no limit. The end of a
+    /// file, such as the directory of an archive, does not count.
     std::uint64_t most_bytes = 0;
-    /// Throws Error{defect} instead of ending a file with warnings (LayerWriter::warnings).
+    /// Throws Error{defect} at the end of the file if there are warnings (LayerWriter::warnings).
     bool strict = false;
-    /// Common Layer Interface: millimetres per coordinate unit. Coordinates are rounded to multiples of it in
-    /// the ASCII and the short binary form; the long binary form keeps single precision.
+    /// Common Layer Interface: millimetres per coordinate unit. The ASCII and the short binary form round
+    /// coordinates to multiples of it; the long binary form rounds to single precision.
     double units_mm = usual_units_mm;
-    /// Common Layer Interface, binary: 16-bit coordinates; Error{usage} if they do not fit.
+    /// Common Layer Interface, binary: writes 16-bit coordinates. Error{usage} if the coordinates do not fit.
     bool short_form = false;
-    /// png, png-zip, sl1, sl1s.
+    /// Options of png, png-zip, sl1 and sl1s.
     ImageOptions image = {};
     /// sl1, sl1s.
     ExposureOptions exposure = {};
@@ -100,24 +103,24 @@ class LayerWriter;
 
 /// Properties of a format. Its row is in src/write/layer_writer.cpp.
 struct LayerFormat {
-    std::string_view name;      ///< as in `--format`
-    std::string_view extension; ///< with the dot; "" when the format is only chosen by name
-    std::string_view summary;   ///< one line for help texts, quantisation included
+    std::string_view name;      ///< the argument of `--format`
+    std::string_view extension; ///< with the dot; "" if the format can only be chosen by name
+    std::string_view summary;   ///< one line for help texts, with the rounding
     /// Called by open_layer_writer.
     std::unique_ptr<LayerWriter> (*open)(const std::string& path, const LayerFileInfo& info,
                                          const LayerWriteOptions& options) = nullptr;
-    /// Extension of files that get their names from a program, if it is not `extension`.
+    /// Extension of file names that a program generates; differs from `extension` for some formats.
     std::string_view file_extension = extension;
     bool directory = false;    ///< writes one file per layer into a directory
     bool chunks = false;       ///< ranges of layers can be written separately
     bool joins = false;        ///< files of consecutive layers can be merged without reading the layers
     bool one_way = false;      ///< layers cannot be read back
-    bool filled_parts = false; ///< files contain only those parts that are not empty
-    bool cuts = false;         ///< keeps the heights of cuts; readers of other formats take the middle
-    /// Rounding of coordinates with the default options; none if contours are not kept as such.
+    bool filled_parts = false; ///< files list only parts that are not empty
+    bool cuts = false;         ///< stores the heights of cuts; otherwise readers assume the middle
+    /// Rounding of coordinates with the default options; nullopt if the format does not store contours.
     std::optional<Rounding> rounding = {};
 
-    // Fields of LayerWriteOptions that the format takes.
+    // Fields of LayerWriteOptions that apply to the format.
     bool units = false;
     bool short_form = false;
     bool image = false;
@@ -131,9 +134,10 @@ struct LayerFormat {
 /// Error{usage}, which lists the formats.
 [[nodiscard]] const LayerFormat& layer_format(std::string_view name, const std::string& path);
 
-/// Writes one slice file. Layers must arrive in ascending z. Nothing appears at the path before `finish`:
-/// data wait in the same folder, in an unnamed file or, if the file system has none, in a hidden one. A
-/// writer destroyed before `finish` leaves nothing behind. "-" writes standard output.
+/// Writes one slice file. Layers must arrive in ascending z. No file appears at the path before `finish`:
+/// until then data are in an unnamed file in the same folder or, if the file system does not support such
+/// files, in a hidden one. A writer destroyed before `finish` leaves no file behind. "-" writes standard
+/// output.
 class LayerWriter {
   public:
     LayerWriter() = default;
@@ -148,51 +152,51 @@ class LayerWriter {
     /// ascending z (see LayerSink).
     [[nodiscard]] virtual std::function<void()> prepare(std::span<const Layer> parts) = 0;
 
-    /// Does the same for the only part.
+    /// Formats one plane of a file with a single part.
     [[nodiscard]] std::function<void()> prepare(const Layer& layer) { return prepare(std::span(&layer, 1)); }
 
     /// Ends the file and gives it its name. Must be called once, after the last layer. Throws Error{output}
-    /// if anything could not be written, and then leaves nothing behind.
+    /// if anything could not be written; then no file is left behind.
     virtual void finish() = 0;
 
-    /// Returns the bytes of the file so far, including layers that are not yet in it.
+    /// Returns the number of bytes of the file so far, including layers that are still waiting to be written.
     [[nodiscard]] virtual std::uint64_t bytes() const noexcept = 0;
 
-    /// Returns one line for each kind of content that the format cannot hold, for contours and lines lost by
-    /// its rounding, and for the largest move of points if that exceeds 0.01 mm. Must be called after all
-    /// layers are written.
+    /// Returns warnings, one line each: for each kind of content that the format cannot represent, for
+    /// contours and lines lost by its rounding, and for the largest displacement of points by rounding if it
+    /// exceeds 0.01 mm. Must be called after all layers are written.
     [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 };
 
-/// Opens a writer. Throws Error{output} if the file cannot be created there, Error{usage} for impossible
-/// options.
+/// Opens a writer. Throws Error{output} if the file cannot be created at the path, Error{usage} for
+/// impossible options.
 [[nodiscard]] std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path,
                                                              const LayerFormat& format,
                                                              const LayerFileInfo& info,
                                                              const LayerWriteOptions& options = {});
 
-/// Formats `planes` planes on all threads and writes them in order; the first one is the writer's next.
-/// `parts_of(i)` returns the layers of plane i, one for each part (see LayerWriter::prepare); it may be
-/// called for several planes at once. Each thread holds one plane. Throws the errors of both, and
-/// Error{cancelled}.
+/// Formats the next `planes` planes of the file on all threads and writes them in order. `parts_of(i)`
+/// returns the layers of plane i, one for each part (see LayerWriter::prepare); it may be called for several
+/// planes at once. Each thread holds one plane in memory. Throws the errors of the writer and of `parts_of`,
+/// and Error{cancelled}.
 void write_planes(LayerWriter& writer, std::size_t planes,
                   const std::function<std::vector<Layer>(std::size_t)>& parts_of,
                   const Execution& execution = {});
 
 /// Writes the stack of a single part, in the format given by the extension of the path, and returns
-/// LayerWriter::warnings. The header is made from the layers: the box is that of their contours, and the rule
-/// is the default of slice(). Throws Error{usage} if there are no layers.
+/// LayerWriter::warnings. The header is derived from the layers: the box is that of their contours, and the
+/// rule is section_above. Throws Error{usage} if there are no layers.
 std::vector<std::string> write_layers(const std::string& path, std::span<const Layer> layers,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});
 
-/// Does the same in any format, with a header supplied by the caller. Formats on all threads. To write layers
-/// without holding all of them in memory, pass LayerWriter::prepare to `slice_to` as its sink.
+/// Writes the stack of a single part in any format, with a header supplied by the caller. Uses all threads.
+/// To write layers without holding all of them in memory, use LayerWriter::prepare as the sink of `slice_to`.
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const Layer> layers, const LayerFileInfo& info,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});
 
-/// Does the same for several parts, whose stacks must have the same planes. Error{usage} names the first
-/// layer whose index or heights differ from those of the first part.
+/// Writes the stacks of several parts, which must have the same planes. Throws Error{usage} that names the
+/// first layer whose index or heights differ from those of the first part.
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const LayerStack> parts, const LayerFileInfo& info,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});
