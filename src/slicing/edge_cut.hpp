@@ -9,18 +9,18 @@
 
 namespace lamella {
 
-/// An edge prepared for cutting, from its base to its far end. A plane through the base cuts the edge, a
-/// plane through the far end does not: the base is the lower end under PlaneRule::section_above, the upper
-/// end under section_below.
+/// An edge prepared for cutting, from its base to its far end. The base is the end where a plane through it
+/// cuts the edge: the lower end under PlaneRule::section_above, the upper end under section_below. A plane
+/// through the far end does not cut the edge.
 ///
 ///     t = min((z - z0) * inverse_dz, 1)      x = x0 + t * dx      y = y0 + t * dy
 ///
 /// At the base t is 0 and the point equals the base bit for bit (except that -0 becomes +0, as in all
 /// layers). dx is shortened by one unit in the last place if x0 + dx rounds beyond the far end; dy likewise.
 /// Rounding is monotone, so no t in [0, 1] gives a point outside the edge's box. If both ends are so near to
-/// the plane that inverse_dz overflows, the far end results (min(NaN, 1) is 1 in the code below). Error: at
-/// most 6 units in the last place of the edge's extent (four for t, half a unit each for the extent and the
-/// product, one for shortening it), plus half a unit of the result.
+/// the plane that inverse_dz overflows, the far end results (min(NaN, 1) is 1 in the code below). The error
+/// is at most 6 units in the last place of the edge's extent (four for t, half a unit each for the extent and
+/// the product, one for shortening it), plus half a unit of the result.
 ///
 /// If the plane is no further than the snap distance from the base, or the base lies beyond the plane, t is
 /// 0: the plane goes through the base.

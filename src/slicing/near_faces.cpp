@@ -43,7 +43,8 @@ class NearFaceFinder::Batch {
     [[nodiscard]] bool may_be(double low, double high) {
         if (!(high - low <= 2 * reach_))
             return false;
-        // The candidate is the plane on whose opposite side one of the corners is.
+        // The candidate is the uppermost plane below the highest corner or, under section_below, the lowest
+        // plane above the lowest corner.
         const bool above = ranks_.rule() == PlaneRule::section_above;
         const double wrong = above ? high : low;
         if (wrong != last_) {

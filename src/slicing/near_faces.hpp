@@ -21,18 +21,18 @@ namespace lamella {
 /// Triangles near one plane that are horizontal except for rounding.
 struct NearFaces {
     std::uint32_t plane = 0;
-    std::uint32_t unused = 0; ///< fills the gap: processes send no uninitialised bytes
-    std::uint64_t area = 0;   ///< in units of a NearFaceFinder
+    std::uint32_t unused = 0; ///< padding, so that processes send no uninitialised bytes
+    std::uint64_t area = 0;   ///< in the unit of the NearFaceFinder
     double farthest_mm = 0;   ///< largest distance of a corner from the plane
 
     void add(const NearFaces& other) noexcept;
 };
 
-/// Finds the triangles whose corners all lie within rounding of a plane, with at least one corner on the
-/// opposite side to a corner exactly on the plane (see Ranks).
+/// Finds the triangles whose corners all lie within rounding of a plane, but at least one of them on the side
+/// of the plane to which corners exactly on it do not belong (see PlaneRule).
 ///
-/// The rounding is that of coordinates (coordinate_rounding), but at most a thousandth of the lowest layer,
-/// which is also ignored at the top of a part.
+/// "Within rounding" means coordinate_rounding, but at most a thousandth of the smallest layer height; plans
+/// ignore as much at the top of a part.
 ///
 /// Areas are summed as integers, so the sums do not depend on the order of triangles and threads.
 class NearFaceFinder {
@@ -40,7 +40,7 @@ class NearFaceFinder {
     /// `box` is the bounding box of the placed meshes.
     NearFaceFinder(const Plan& plan, const Box3& box);
 
-    /// Returns false if no triangle can be found because vertices this near to a plane snap to it.
+    /// Returns false if no triangle can be found because all vertices within rounding of a plane snap to it.
     [[nodiscard]] bool any() const noexcept { return reach_mm_ > ranks_.snap_mm(); }
 
     /// Adds the triangles [begin, end). May be called from any thread. O(end - begin).
@@ -53,7 +53,8 @@ class NearFaceFinder {
     [[nodiscard]] double area_mm2(const NearFaces& faces) const noexcept {
         return static_cast<double>(faces.area) * unit_mm2_;
     }
-    /// Returns whether the area exceeds the area that rounding of walls all around the box may add or remove.
+    /// Returns whether the area is larger than the change of area that rounding of walls along the whole
+    /// perimeter of the box can cause.
     [[nodiscard]] bool matters(const NearFaces& faces) const noexcept {
         return area_mm2(faces) > reach_mm_ * perimeter_mm_;
     }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Accepts planes in any order and runs the sink's actions in ascending order, with a bound on how far ahead
-// workers may run.
+// Accepts planes in any order and runs the sink's actions in ascending order. Workers can wait, so that they
+// do not get too far ahead.
 
 #include "core/executor.hpp"
 
@@ -15,8 +15,8 @@
 
 namespace lamella {
 
-/// Runs what a sink returns for each plane, its ordered part: one at a time in plane order, on the thread
-/// that brings the next plane in order. Runs none any more once the executor is stopping.
+/// Runs the functions that a sink returns for planes, one at a time and in the order of planes. The thread
+/// that delivers the next plane in order runs them. None is run once the executor is stopping.
 class OrderedDelivery {
   public:
     OrderedDelivery(const Executor& executor, ProgressMeter& progress)

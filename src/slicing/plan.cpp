@@ -23,7 +23,7 @@ std::string text_of(const std::pair<std::uint64_t, std::uint64_t>& indices) {
     return fmt::format("{}:{}", indices.first, indices.second);
 }
 
-// An end at the largest double is an open end.
+// The largest double stands for an open end.
 std::string text_of(const std::pair<double, double>& z_range) {
     constexpr double far = std::numeric_limits<double>::max();
     if (z_range.first <= -far)

@@ -164,8 +164,8 @@ std::uint64_t RangeSurvey::work(PlaneRange range) const noexcept {
 
 namespace {
 
-/// Fills ranges one after the other, each as long as fits(its needs) and its work is at most `most_work`.
-/// Returns at least `wanted` ranges if there are that many planes.
+/// Fills ranges one after the other. Planes are added to a range while fits(its needs) is true and its work
+/// is at most `most_work`. Returns at least `wanted` ranges if there are that many planes.
 template <class Fits>
 std::vector<PlaneRange> fill(const RangeSurvey& survey, std::uint64_t most_work, std::uint32_t wanted,
                              const Fits& fits) {
@@ -189,7 +189,8 @@ std::vector<PlaneRange> fill(const RangeSurvey& survey, std::uint64_t most_work,
     return ranges;
 }
 
-/// Divides into at least `least` and at most `most` ranges, with the smallest largest work that allows it.
+/// Divides into at least `least` and at most `most` ranges so that the largest work of a range is as small as
+/// possible.
 template <class Fits>
 std::vector<PlaneRange> level(const RangeSurvey& survey, std::uint32_t least, std::size_t most,
                               const Fits& fits) {

@@ -1,13 +1,14 @@
 #pragma once
 
-// Ranges of planes that are sliced separately, because one memory or one machine is too small for all planes.
+// Ranges of planes that are sliced separately, because the memory of one machine is too small for all planes,
+// or because several processes share the work.
 //
-//     count      the triangles that begin and end on each plane, in one pass over them, in any chunks
-//     divide     the planes into ranges of equal work, or into ranges that fit a memory
-//     find       the ranges that a triangle touches: the layers of a range need these triangles and no others
-//     slice      each range alone: `slice_to` with its triangles, in any order, and its part of the plan
+//     count the triangles that begin and end on each plane, in one pass over the triangles, in chunks of any
+//     size divide the planes into ranges of equal work, or into ranges that fit into memory find the ranges
+//     that a triangle touches: the layers of a range depend on these triangles only slice each range alone:
+//     `slice_to` with its triangles, in any order, and its part of the plan
 //
-// Together, the layers are those of the whole mesh on the whole plan, bit for bit.
+// The layers of all ranges are, bit for bit, those of the whole mesh on the whole plan.
 
 #include "lamella/mesh/triangle_soup.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -26,8 +27,8 @@ namespace lamella {
 
 [[nodiscard]] Plan part_of(const Plan& plan, PlaneRange range);
 
-/// Number of triangles that begin, end, or have their middle corner at each plane. Counts of chunks of a mesh
-/// are added. The counts of the whole mesh do not depend on the order of its triangles nor on the chunks.
+/// Numbers of triangles that begin, end, or have their middle corner at each plane. The counts of a mesh are
+/// the sums of the counts of its chunks, and do not depend on the order of triangles nor on the chunks.
 class PlaneCounts {
   public:
     explicit PlaneCounts(std::size_t planes) : planes_(planes), counts_(3 * (planes + 1)) {}
@@ -64,7 +65,7 @@ class PlaneCounts {
     std::vector<std::uint64_t> counts_;
 };
 
-/// Returns the counts on the planes of a range: those for `part_of` the plan.
+/// Returns the counts on the planes of a range, which are the counts for that part of the plan.
 [[nodiscard]] PlaneCounts part_of(const PlaneCounts& counts, PlaneRange range);
 
 /// Counts triangles from any number of threads at once.
@@ -82,21 +83,22 @@ class PlaneCounter {
   private:
     Ranks ranks_;
     std::mutex mutex_;
-    std::vector<PlaneCounts> idle_; ///< not in use by a thread; as many as ever counted at once
+    std::vector<PlaneCounts> idle_; ///< counts that no thread uses at the moment
 };
 
 /// Counts the triangles of a mesh on all threads.
 [[nodiscard]] PlaneCounts count_planes(const Mesh& mesh, const Plan& plan, const Execution& execution = {});
 
-/// Size of the job of slicing a range, from the counts of all planes.
+/// Size of the work of slicing a range, computed from the counts of all planes.
 struct RangeNeeds {
     std::uint64_t triangles = 0;   ///< triangles that its planes cut
-    std::uint64_t edges = 0;       ///< their edges that its planes cut; an edge shared by two counts twice
+    std::uint64_t edges = 0;       ///< edges of these triangles that its planes cut; an edge shared by two
+                                   ///< triangles counts twice
     std::uint64_t points = 0;      ///< points on all its planes together, if the mesh is closed
-    std::uint64_t most_points = 0; ///< most points on one of its planes
+    std::uint64_t most_points = 0; ///< largest number of points on one of its planes
 };
 
-/// Computes the size of the job for any range.
+/// Computes the size of the work for any range.
 class RangeSurvey {
   public:
     explicit RangeSurvey(const PlaneCounts& counts);
@@ -113,7 +115,7 @@ class RangeSurvey {
     }
     /// O(planes of the range).
     [[nodiscard]] RangeNeeds needs(PlaneRange range) const noexcept;
-    /// Requires the largest number of points on one of its planes. O(1).
+    /// Returns the same, given the largest number of points on one of its planes. O(1).
     [[nodiscard]] RangeNeeds needs(PlaneRange range, std::uint64_t most_points) const noexcept;
     /// Returns the estimated time of slicing the range, in units of the time of a point: its points, plus the
     /// costs of each of its triangles and planes. O(1).
@@ -123,7 +125,7 @@ class RangeSurvey {
     /// Sums over the planes before one plane.
     struct SumsBefore {
         std::uint64_t begun = 0;
-        std::uint64_t ended = 0; ///< including those that ended on the plane itself
+        std::uint64_t ended = 0; ///< including those that end on the plane itself
         std::uint64_t rotated = 0;
         std::uint64_t points = 0;
     };
@@ -145,23 +147,24 @@ struct RangeMemory {
     std::uint64_t points_in_flight = 0; ///< as passed to `slice_to`
 
     /// Returns an upper bound on the bytes that slicing a range takes: its triangles (36 bytes each), the cut
-    /// graph with its indices, and the points in flight through a sink that formats them as text. This holds
-    /// for meshes whose triangles are in no order; others take about half.
+    /// graph with its indices, and the points in flight through a sink that formats them as text. Meshes
+    /// whose triangles are in random order come close to it; others take about half.
     [[nodiscard]] std::uint64_t bytes(const RangeNeeds& range) const noexcept;
 };
 
-/// Divides the planes into exactly `ranges` ranges with the smallest possible largest work. The result is the
-/// same on every machine. Throws Error{usage} if there are fewer planes than ranges, or if `ranges` is 0.
+/// Divides the planes into exactly `ranges` ranges so that the largest work of a range is as small as
+/// possible. The result is the same on every machine. Throws Error{usage} if there are fewer planes than
+/// ranges, or if `ranges` is 0.
 [[nodiscard]] std::vector<PlaneRange> divide_evenly(const RangeSurvey& survey, std::uint32_t ranges);
 
-/// Divides the planes into the fewest ranges that take at most `most_bytes` each; among these divisions,
-/// returns the one with the smallest largest work. Throws Error{limit} if a single plane takes more, with its
-/// height and its size.
+/// Divides the planes into the fewest ranges that take at most `most_bytes` each, so that the largest work of
+/// a range is as small as possible. Throws Error{limit} that reports height and size of a plane if this plane
+/// alone takes more.
 [[nodiscard]] std::vector<PlaneRange> divide_to_fit(const RangeSurvey& survey, const Plan& plan,
                                                     const RangeMemory& memory, std::uint64_t most_bytes);
 
-/// Fills ranges one after the other with planes of at most `most_points` together, or with a single plane of
-/// more.
+/// Divides the planes into ranges of at most `most_points` points each; a plane with more points is a range
+/// of its own.
 [[nodiscard]] std::vector<PlaneRange> divide_by_points(const RangeSurvey& survey, std::uint64_t most_points);
 
 /// Finds the ranges that triangles touch. Immutable; may be used from any number of threads at once.
@@ -170,7 +173,7 @@ class RangeFinder {
     /// Requires ranges in ascending order of both begin and end; they may overlap or have gaps between them.
     RangeFinder(const Plan& plan, std::span<const PlaneRange> ranges);
 
-    /// The ranges [begin, end), by their positions in the division; none if begin == end.
+    /// The touched ranges [begin, end), as indices of ranges; none if begin == end.
     struct Touched {
         std::uint32_t begin = 0;
         std::uint32_t end = 0;

@@ -52,7 +52,8 @@ std::vector<AreaMoments> section_moments(const Mesh& mesh, const Plan& plan, con
     const Ranks ranks(plan);
     Executor executor(execution);
     std::vector<AreaMoments> sections(ranks.count());
-    // Number and order of the chunks do not depend on the threads, and so neither do the bits of the sums.
+    // Number and order of the chunks do not depend on the threads. Therefore the bits of the sums do not
+    // either.
     constexpr std::uint64_t most = (std::uint64_t{32} << 20) / sizeof(AreaMoments); // 32 MB in all
     const std::uint64_t pieces = std::clamp<std::uint64_t>(most / (sections.size() + 1), 1, 64);
     const std::uint64_t n = mesh.size();
@@ -74,7 +75,7 @@ std::vector<double> section_areas(const Mesh& mesh, const Plan& plan, const Exec
     const Box3 box = bounding_box(mesh, execution);
     if (box.empty())
         return std::vector<double>(plan.layers.size());
-    // Moments around the middle of the part lose no digits if the part is far from the origin.
+    // Moments around the middle of the part are accurate even if the part is far from the origin.
     const Point2 origin{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2};
     std::vector<double> areas;
     for (const AreaMoments& section : section_moments(mesh, plan, origin, execution))

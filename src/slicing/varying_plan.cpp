@@ -19,8 +19,8 @@ namespace lamella {
 
 namespace {
 
-/// Throws Error{usage} if the part has no height, or if there were more layers, about `count`, than can be
-/// numbered.
+/// Throws Error{usage} if the part has no height, or if there would be more layers (about `count`) than can
+/// be numbered.
 void require_stack(double z_min, double z_max, double count, double lowest_height) {
     require_part(z_min, z_max);
     if (count > static_cast<double>(max_layers))
@@ -31,8 +31,8 @@ void require_stack(double z_min, double z_max, double count, double lowest_heigh
                         lowest_height, count, z_max - z_min, max_layers));
 }
 
-/// Returns layers stacked from z_min with heights height_at(bottom), as long as their cuts meet the part. An
-/// error reports a height that rounding made 0 as `lowest_height`.
+/// Returns layers stacked from z_min with heights height_at(bottom), as long as their cuts meet the part. If
+/// rounding makes a height 0, the error reports `lowest_height` instead.
 template <class HeightAt>
 Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at, const HeightAt& height_at) {
     Plan plan;
@@ -119,7 +119,7 @@ class Slopes {
     std::vector<std::vector<std::atomic<float>>> levels_; ///< [k][i]: largest of the 2^k steps from i on
 };
 
-/// Returns |n.z|, rounded up; 0 for a triangle without area, which limits no layer.
+/// Returns |n.z|, rounded up; 0 for a triangle without area, which does not limit the height of layers.
 float steepness(const Triangle3& t) noexcept {
     const Point3 n = normal(t);
     const double length = hypotenuse(hypotenuse(n.x, n.y), n.z);

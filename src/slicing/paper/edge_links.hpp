@@ -1,8 +1,9 @@
 #pragma once
 
 // Edge matching (King, Rennie and Bennett 2021, section 3.2): two triangles that share an edge on one plane
-// share it on every plane that cuts it. Of the planes that cut a triangle in the same two edges, only the
-// first therefore needs a search. On the others, an IN is inserted at the position of the IN before it.
+// share it on every plane that cuts it. Of the planes that cut a triangle in the same two edges, therefore
+// only the first one needs a search. On each of the others, the IN is inserted at the position that
+// corresponds to that of the IN on the plane above.
 
 #include "slicing/paper/intersection_lists.hpp"
 
@@ -24,8 +25,8 @@ struct LinkedIntersectionNode {
 /// The lists of an engine with edge links, and its four cases. Each case inserts `node` like `before`, the IN
 /// on the plane above that has the same triangle and the same edges.
 ///
-/// A link is used only if it still holds: the list that it refers to must end (or begin) with the required
-/// edge. It always does if no edge has more than two triangles. Otherwise the IN is inserted by search.
+/// A link is used only if it is still valid: the list that it refers to must end (or begin) with the required
+/// edge. It is always valid if no edge has more than two triangles. Otherwise the IN is inserted by search.
 class EdgeLinkedLists : public IntersectionLists<LinkedIntersectionNode> {
   public:
     using Node = LinkedIntersectionNode;

@@ -155,8 +155,8 @@ class IntersectionLists {
         return list;
     }
 
-    /// Adds the contours of a CLL to a layer. Lists that never closed are chains. The last point of a chain
-    /// is the point where the contour leaves its last triangle, because no neighbour has it.
+    /// Adds the contours of a CLL to a layer. Lists that never closed are chains. A chain also gets the point
+    /// where the contour leaves its last triangle, because no neighbour stores it.
     void write(const ContourList<Node>& contours, std::uint32_t plane, LayerBuilder& layer) {
         for (const List* list = contours.first; list != nullptr; list = list->next) {
             points_.clear();

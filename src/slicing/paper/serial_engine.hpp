@@ -25,7 +25,7 @@
 
 namespace lamella {
 
-/// An edge, as the addresses of its two vertices, the lower one first. Edges are equal if these are;
+/// An edge, as the addresses of its two vertices, the lower one first. Edges are equal if the addresses are;
 /// coordinates are never compared.
 struct Edge {
     const Point3* low;
@@ -44,7 +44,7 @@ struct TriangleSection {
     Edge to;
 };
 
-/// The upper section first; one or both may have no planes.
+/// The two sections of a triangle, the upper one first; one or both may have no planes.
 using TriangleSections = std::array<TriangleSection, 2>;
 
 class SerialEngine {
@@ -77,8 +77,8 @@ class SerialEngine {
     /// Throws Error{cancelled} when a stop was requested. Must be called in every list search; costs little.
     void check_cancelled() const { executor_.check_cancelled(); }
 
-    /// Returns the sections of a triangle. They have no planes if the triangle repeats a vertex: it has no
-    /// area, and its two cut edges are one.
+    /// Returns the sections of a triangle. They have no planes if the triangle repeats a vertex, because then
+    /// its two cut edges coincide.
     [[nodiscard]] TriangleSections sections(std::size_t triangle) const noexcept {
         const std::array<std::uint32_t, 3>& corners = mesh().triangles[triangle];
         if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])

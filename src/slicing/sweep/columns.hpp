@@ -30,7 +30,7 @@ struct Scratch {
     }
 };
 
-/// Keeps the columns of the first runs, as long as its capacity allows.
+/// Keeps the columns of runs until its capacity is exhausted.
 class ColumnStore {
   public:
     static constexpr std::uint64_t not_kept = ~std::uint64_t{0};
@@ -55,8 +55,8 @@ class ColumnStore {
         return columns_.data() + EdgeColumns::columns * position;
     }
 
-    /// Releases all reservations. Columns that are still needed must then be moved by move_down before
-    /// anything else is reserved, in ascending order of their old offsets.
+    /// Releases all reservations. Before anything else is reserved, columns that are still needed must be
+    /// moved by move_down, in ascending order of their old offsets.
     void release() noexcept { used_ = 0; }
     std::uint64_t move_down(std::uint64_t position, std::size_t edges) {
         assert(position >= used_ && position + EdgeColumns::padded(edges) <= room_);
@@ -72,7 +72,7 @@ class ColumnStore {
     PageArray<double> columns_;
 };
 
-/// Prepares the edges of a run for cutting, at `to`, which must have space for their columns.
+/// Prepares the edges of a run for cutting. Writes their columns to `to`, which must have space for them.
 template <class Ends>
 EdgeColumns lay_out_edges(const CutGraph<Ends>& graph, const Ranks& ranks,
                           std::span<const std::uint32_t> nodes, const PointKernels& kernels, double* to) {

@@ -36,8 +36,9 @@ class Crew {
             n, 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) { body(i, scratch_[worker]); });
     }
 
-    /// Calls body(run, part, scratch) for each run that serves any of the planes, with the planes that it
-    /// serves as `part`. Divides runs by their planes if there are few of them, so that all workers are busy.
+    /// Calls body(run, part, scratch) for each run that serves any of the planes; `part` is the range of
+    /// planes that it serves. If there are few runs, each is divided into several such ranges, so that all
+    /// workers are busy.
     template <class Body>
     void for_runs(std::span<Run> runs, PlaneRange planes, const Body& body) {
         const auto part_of = [&](const Run& run, std::uint64_t piece, std::uint64_t pieces) -> PlaneRange {

@@ -20,8 +20,8 @@
 // Collect. Workers take chunks of consecutive triangles. Each worker looks edges up in a small private table
 // that stays in its second-level cache, because most files have the two triangles of an edge close together.
 // If the edge is found, its node is complete. If not, a new node, known from one side only, takes the slot;
-// the node that it replaces is left to the next step. No thread waits for another, and only appending leaves
-// the cache.
+// the node that it replaces is left to the next step. No thread waits for another, and only appended nodes
+// are written to memory outside the cache.
 //
 // Join. Hashes bring nodes with equal ends together (core/key_groups.hpp). Two halves become one node.
 //
@@ -32,8 +32,8 @@ namespace lamella {
 
 namespace {
 
-/// Nodes with the lower half of the hashes of their edges; the upper bits choose the partition. Edges that
-/// agree in both without being equal are rare.
+/// Nodes, keyed by the lower half of the hashes of their edges; the upper bits choose the partition.
+/// Different edges rarely agree in both.
 using NodePartitions = KeyPartitions<std::uint32_t>;
 
 // Sources of triangles. A Corner holds the bits that identify a vertex; they are the same in all triangles of
@@ -214,8 +214,9 @@ class alignas(128) Collector {
         const std::uint32_t node12 = node_of(1, 2);
         const std::uint32_t node20 = node_of(2, 0);
 
-        // Contours leave an edge through the triangle in which it runs downwards: below the third corner over
-        // the edge at its lower end, above that corner over the edge at its upper end.
+        // Contours leave an edge through the triangle in which it runs downwards. On planes below the third
+        // corner they continue to the edge at its lower end, on planes above that corner to the edge at its
+        // upper end.
         const auto link = [&](std::uint32_t from, std::uint32_t upper_rank, std::uint32_t lower_rank,
                               std::uint32_t third_rank, std::uint32_t at_lower, std::uint32_t at_upper) {
             if (upper_rank <= lower_rank)
@@ -296,8 +297,9 @@ class alignas(128) Collector {
     PageArray<Slot> table_;
 };
 
-/// Returns whether every node in use links to nodes that its planes cut, on all of its planes or, where the
-/// mesh ends, on none; and whether as many contours arrive as leave, which makes links one to one.
+/// Returns whether the links are complete. Each node in use must link, on all of its planes or (where the
+/// mesh ends) on none, to nodes that these planes cut. As many contours must arrive as leave, so that links
+/// are one to one.
 template <class Ends>
 [[maybe_unused]] bool is_complete(const CutGraph<Ends>& graph) {
     std::uint64_t leaving = 0;
@@ -370,7 +372,7 @@ class Builder {
     struct Worker {
         std::unique_ptr<Collector<Corners>> collector;
         std::array<TriangleIntersection, 16>
-            intersections; ///< pending, the oldest at `met` modulo their number
+            intersections; ///< pending ones, as a ring buffer: the oldest is at `met` modulo its size
         std::size_t met = 0;
         std::vector<std::uint32_t>
             non_manifold; ///< nodes that share their hash with others, with repetitions
@@ -437,7 +439,7 @@ class Builder {
         Node& a = graph_.nodes[intersection.first];
         Node& b = graph_.nodes[intersection.other];
         if (!a.in_use()) {
-            // It already became part of another node, so the edge has at least three halves.
+            // It is already part of another node, so the edge has at least three halves.
             non_manifold.insert(non_manifold.end(), {a.split, intersection.other});
             return;
         }
@@ -451,9 +453,8 @@ class Builder {
         }
     }
 
-    /// Nodes are referred to by the edges that link to them, so the entered half stays and takes the links of
-    /// the other half. The other half is no longer in use; its split becomes the number of the node that it
-    /// is part of.
+    /// Other nodes link to the entered half, so this half stays and takes the links of the other half. The
+    /// other half is then not in use; its `split` becomes the number of the node that it is now part of.
     void unite(std::uint32_t entered_half, std::uint32_t left_half) {
         Node& entered = graph_.nodes[entered_half];
         Node& left = graph_.nodes[left_half];

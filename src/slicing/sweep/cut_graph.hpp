@@ -6,9 +6,9 @@
 //
 // With consistent orientation, a contour leaves an edge through the same triangle on every plane that cuts
 // the edge: the triangle in which the edge runs downwards, so that material is on the left. In that triangle
-// the contour continues through one of the other two edges below the middle vertex and through the other one
-// above it. King, Rennie and Bennett (2021, section 3.2) use the fact that a neighbour once found remains the
-// neighbour along the edge; here each neighbour is found only once.
+// the contour continues through one of the other two edges on planes below the middle vertex, and through the
+// other one on planes above it. King, Rennie and Bennett (2021, section 3.2) already use the fact that two
+// triangles remain neighbours along their whole edge; here each neighbour is searched for only once.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
@@ -22,7 +22,7 @@
 
 namespace lamella {
 
-/// The contour ends here: at a boundary of the mesh or at inconsistent orientation.
+/// Stands for no successor: the contour ends, at a boundary of the mesh or at inconsistent orientation.
 constexpr std::uint32_t no_node = 0xFFFFFFFF;
 
 /// One cut edge. `Ends` identifies and locates its two end vertices, the lower one first.
@@ -73,7 +73,7 @@ static_assert(sizeof(CutNode<FloatEnds>) == 44 && sizeof(CutNode<IndexEnds>) == 
 
 template <class Ends>
 struct CutGraph {
-    /// Some of the nodes in [0, count) are not in use.
+    /// Nodes, some of which are not in use.
     PageArray<CutNode<Ends>> nodes;
     /// Per node, for passes over all nodes; empty ([0, 0)) if the node is not in use.
     PageArray<PlaneSpan> spans;
@@ -107,7 +107,7 @@ struct CutGraph {
 /// thread.
 ///
 /// Throws Error{limit} if the nodes cannot be numbered in 32 bits (about 2^32 / 3 triangles or more),
-/// Error{cancelled}. Expected O(triangles), parallel; O(n log n) for a hostile file.
+/// Error{cancelled}. Expected O(n) for n triangles, worst case O(n log n); parallel.
 using RangeVisitor = std::function<void(std::uint64_t begin, std::uint64_t end)>;
 [[nodiscard]] CutGraph<FloatEnds> build_cut_graph(const TriangleSoup& unplaced, const Ranks& ranks,
                                                   Executor& executor, ProgressMeter& progress,

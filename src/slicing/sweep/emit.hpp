@@ -69,8 +69,8 @@ class EntryLists {
     std::vector<std::vector<LayerEntry>> lists_;
 };
 
-/// Computes the points of a ring into `to`, which must have space for ring.count points. `past_cache` is for
-/// points that are not read soon.
+/// Computes the points of a ring into `to`, which must have space for ring.count points. `past_cache` should
+/// be true if the points are not read soon.
 inline void write_ring(const Outline& outline, double z, const Ring& ring, Point2* to, bool past_cache,
                        Scratch& scratch) {
     const EdgeColumns& edges = outline.edges;
@@ -169,8 +169,8 @@ void emit(PlaneRange planes, const Plan& plan, const Ranks& ranks, Runs& runs, E
     }
 
     const PointArena::Piece piece = arena.take(total);
-    // The rings of a run are written layer after layer. If layers are large, each cache line was evicted
-    // since its page was last cleared or used, and is best not fetched again.
+    // The rings of a run are written layer after layer. If layers are large, the cache has already evicted
+    // the lines that are written next, and fetching them again would cost time.
     const bool past_cache = outgoing.size() > 1 && total / outgoing.size() >= large_layer;
     crew.for_runs(runs.all(), planes, [&](const Run& run, PlaneRange part, Scratch& scratch) {
         Outline outline{{}, run.closed};

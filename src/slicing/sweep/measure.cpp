@@ -11,12 +11,12 @@
 #include <cstdint>
 #include <limits>
 
-// From plane to plane of a run its points move along straight lines. Hence a point that is the leftmost by a
-// clear margin on two planes is also the leftmost between them. Two neighbours lie on two edges of a
-// triangle, which meet in a corner outside the range of planes. Their distance grows with the distance from
-// the corner, so between two planes it is larger than on one of the two. If the first and last plane of a run
-// agree on the start, and all margins there exceed rounding errors, the planes between them are not measured.
-// Otherwise the range is halved.
+// From plane to plane of a run, each point moves along a straight line. Hence a point that is the leftmost by
+// a clear margin on two planes is also the leftmost on the planes between them. Two neighbours lie on two
+// edges of a triangle, which meet in a corner outside the range of planes. Their distance grows with the
+// distance from the corner, so between two planes it is larger than on one of the two. If the first and last
+// plane of a run agree on the start, and all margins there exceed rounding errors, the planes between them
+// are not measured. Otherwise the range is halved.
 
 namespace lamella {
 
@@ -102,7 +102,7 @@ class Measurement {
     }
 
   private:
-    /// Computes a ring that keeps all its points and whose only leftmost point is known.
+    /// Computes a ring that keeps all its points and whose unique leftmost point is known.
     void reuse_start(std::uint32_t plane, std::uint32_t start) {
         const EdgeColumns& edges = outline_.edges;
         assert(outline_.closed && start < edges.size);

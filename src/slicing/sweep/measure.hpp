@@ -20,7 +20,7 @@ struct Outline {
     bool closed;
 };
 
-/// Throws Error{cancelled} if the region that the executor runs should end. Must be called for each ring and
+/// Throws Error{cancelled} if the executor's parallel region should end. Must be called for each ring and
 /// each layer, because a task whose layers are all kept is written in one go, which may take seconds. If
 /// another worker has failed, its error reaches the caller.
 void end_if_stopping(const Executor& executor);

@@ -7,8 +7,8 @@ namespace lamella {
 
 std::uint64_t RangeMemory::bytes(const RangeNeeds& range) const noexcept {
     // While nodes are joined, 20 bytes are allowed for the record of each. Later each node has an entry in
-    // the order of starts and, at most, in the list of one task that it reaches into; and each worker has an
-    // array with one entry per node for the nodes that it visited.
+    // the order of starts and at most one in the lists of tasks that it reaches into. Each worker has an
+    // array with one entry per node.
     constexpr std::uint64_t joining = sizeof(std::uint64_t) + 12;
     const std::uint64_t walking = 8 + 4 * std::uint64_t{threads};
     const std::uint64_t node = (placed ? sizeof(CutNode<DoubleEnds>) : sizeof(CutNode<FloatEnds>)) +

@@ -67,8 +67,8 @@ inline float ray_angle(const Point3& low, const Point3& high, const Point3& thir
     if (!(size > 0))
         return 4; // all three corners are collinear: there is no direction
     const double slope = x / size;
-    // The range [4, 8) is so far from 0 that floats do not distinguish rounding errors. An angle that such an
-    // error puts just below the full turn becomes the first angle.
+    // Floats in [4, 8) are too coarse to show rounding errors of the angle. An angle that is below the full
+    // turn only by such an error becomes the first angle.
     const auto angle = static_cast<float>(y >= 0 ? 5 - slope : 7 + slope);
     return angle < 8 ? angle : 4;
 }
@@ -101,7 +101,7 @@ inline std::vector<std::pair<std::size_t, std::size_t>> match(const std::vector<
             unmatched.push_back(i);
         }
     }
-    // A second turn pairs wedges that contain the angle zero.
+    // A second pass pairs wedges that contain the angle zero.
     for (const std::size_t i : unmatched) {
         if (open.empty())
             break;

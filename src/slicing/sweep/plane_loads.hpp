@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers of nodes of the cut graph that are alive on each plane, and that begin there.
+// Numbers of nodes of the cut graph that are alive on each plane, and numbers of nodes that begin there.
 
 #include "core/executor.hpp"
 #include "slicing/sweep/cut_graph.hpp"

@@ -14,9 +14,9 @@
 
 namespace lamella {
 
-/// Memory for the points of layers. Memory is allocated in large areas, so that they lie in large pages; only
-/// touched parts take memory. An area lives as long as a layer uses it. An area that its layers released
-/// during slicing is reused: memory that was written before costs a fraction of fresh memory.
+/// Memory for the points of layers. It is allocated in large areas, which can use large pages; pages that are
+/// never written take no memory. An area lives as long as a layer uses it. If its layers are released during
+/// slicing, it is reused, because writing to used memory costs a fraction of writing to fresh memory.
 class PointArena {
   public:
     /// Expects this many points in the whole result; small results get small areas.

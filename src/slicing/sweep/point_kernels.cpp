@@ -235,7 +235,7 @@ template <int width>
                                                          double value) {
     using V = typename Vector<width>::Doubles;
     constexpr std::size_t step =
-        16 * width; // reading the lanes of a vector costs as much as many comparisons
+        16 * width; // reading single lanes of a vector is as slow as many comparisons
     assert(from <= n);
     std::size_t i = from;
     for (; i + step <= n; i += step) {

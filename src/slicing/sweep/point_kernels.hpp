@@ -46,8 +46,9 @@ struct PointKernels {
     CutSurvey (*survey)(EdgeColumns edges, double z, double* x, double* y);
     /// Sets to[i - begin] to the cut of edge i with the plane z, for begin <= i < end.
     void (*cut)(EdgeColumns edges, std::size_t begin, std::size_t end, double z, Point2* to);
-    /// Does the same for memory that is not in the cache and not read soon: if the processor can, it writes
-    /// whole lines without fetching them first. Slower than `cut` if the lines are in the cache.
+    /// Does the same as `cut`, but writes whole cache lines without fetching them first if the processor
+    /// supports it. Faster for memory that is neither in the cache nor read soon, slower for memory in the
+    /// cache.
     void (*cut_past_cache)(EdgeColumns edges, std::size_t begin, std::size_t end, double z, Point2* to);
     /// Returns the largest |values[i]|, i < n.
     double (*largest)(const double* values, std::size_t n);

@@ -97,7 +97,7 @@ class Runs {
     }
 
     /// Must be called when all runs that begin on a plane are known. Returns true if it is time to write and
-    /// forget runs: those that have ended hold many nodes, and at least as many as were alive when runs were
+    /// forget runs: when the ended runs hold many nodes, and at least as many as were alive when runs were
     /// last forgotten.
     [[nodiscard]] bool end_plane(std::uint32_t plane) noexcept {
         constexpr std::uint64_t enough = 1U << 15; // nodes

@@ -41,7 +41,8 @@ std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers, std::
         workers = 1;
 
     const bool bounded = points_in_flight != 0;
-    const std::uint64_t per_task = points_in_flight / (workers + 1ULL); // one task may wait for its turn
+    const std::uint64_t per_task = points_in_flight / (workers + 1ULL); // besides those being swept, one task
+                                                                        // may wait to be delivered
     const std::uint64_t largest_layer = std::max<std::uint64_t>(1, loads.most_points);
     const std::uint64_t planes_of_task = bounded ? per_task / largest_layer : planes;
     const std::uint64_t group =
@@ -71,7 +72,7 @@ std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers, std::
         tasks.back().planes.end = p + 1;
     }
     assert(covers_every_plane_once(tasks, planes));
-    // If layers are delivered during slicing, long tasks let some workers slice while others deliver.
+    // If layers are delivered during slicing, with long tasks some workers slice while others deliver.
     if (tasks.size() <= 1 || (bounded && many_planes))
         return tasks;
     const std::uint64_t walking = std::min<std::uint64_t>(workers, tasks.size());

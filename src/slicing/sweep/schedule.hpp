@@ -24,14 +24,15 @@ struct SweepTask {
 /// `points_in_flight` bounds the points of `workers` + 1 tasks, or of the planes of a shared task that are in
 /// flight together; 0: no bound.
 ///
-/// Usually tasks are of about equal work. At its first plane, a task must walk over everything that is alive
-/// there. So there are few tasks if planes are few and large, and more if that cost is small, to compensate
-/// for errors in the estimated work.
+/// Usually tasks are of about equal work. A task has an additional cost: at its first plane it must walk over
+/// all nodes that are alive there. So there are few tasks if planes are few and large. If that cost is small,
+/// there are more tasks, which compensates for errors in the estimated work.
 ///
-/// There is a single shared task in two cases: if the bound on points in flight leaves no space for a task of
-/// each worker; and if tasks together would walk over as much as one worker that walks for all, as on upright
-/// parts. In the second case the work after the walk is then shared evenly. If the bound still permits tasks
-/// of many planes, these are preferred, because some workers slice while others deliver.
+/// There is a single shared task in two cases. In the first, the bound on points in flight leaves no space
+/// for a task of each worker. In the second, separate tasks would take as long for their walks as one worker
+/// that walks alone, as on upright parts; with a shared task the work after the walk is divided evenly. If
+/// the bound still permits tasks of many planes, these are preferred, because some workers slice while others
+/// deliver.
 [[nodiscard]] std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers,
                                               std::uint64_t points_in_flight);
 

@@ -85,8 +85,8 @@ class alignas(128) Sweep {
     }
 
   private:
-    /// Stored columns must stay in the cache of one core. They would not if all workers share the work; then
-    /// none are stored.
+    /// Stored columns must fit into the cache of one core. If all workers share the work, they would have to
+    /// leave it; then none are stored.
     static std::uint64_t room_for_columns(const PlaneLoads& loads, bool shared) {
         constexpr std::uint64_t most = 1U << 16; // edges: 3 MB
         return shared ? 0 : std::min(most, EdgeColumns::padded(8 * loads.all_points));
@@ -128,7 +128,7 @@ class alignas(128) Sweep {
                                                                   : columns_.at(run.columns));
     }
 
-    /// Returns a function that gives the edges of runs that were laid out before.
+    /// Returns a function from a run to its prepared edges.
     [[nodiscard]] auto edges_of() const {
         return [this](const Run& run, Scratch& scratch) -> EdgeColumns {
             if (run.columns == ColumnStore::not_kept)

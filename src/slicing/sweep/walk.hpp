@@ -2,7 +2,7 @@
 
 // Reads contours from the cut graph: from a node that begins on a plane, follows `next` until it reaches the
 // start. If no node of a contour begins on a plane, the contour continues one from the plane below and is not
-// walked again, except from one of its nodes after `longest_run` planes.
+// walked again, except once every `longest_run` planes, from any one of its nodes.
 
 #include "lamella/slicing/plan.hpp"
 
@@ -27,7 +27,7 @@ struct NodeSequence {
     bool closed;
 };
 
-/// Walks for one worker over the planes of one task after the other.
+/// The walks of one worker, over the planes of one task after the other.
 template <class Ends>
 class Walk {
   public:
@@ -69,7 +69,8 @@ class Walk {
     /// The nodes from the start of one walk to the start of another walk, or to the end of the mesh.
     struct Segment {
         std::uint32_t start; ///< its first node
-        std::uint32_t next;  ///< the segment that follows, at first by its first node; no_node: none
+        std::uint32_t next;  ///< first node of the following segment, later its index; no_node if there is
+                             ///< none
         std::uint64_t begin;
         std::uint64_t end;
         std::uint32_t valid_until;
