@@ -8,14 +8,14 @@
 
 namespace lamella {
 
-/// Moments about an origin, which should be close, so that no digits are lost.
+/// Moments about an origin, which should be close to the area, so that precision is not lost.
 struct AreaMoments {
     double area_mm2 = 0;
     /// The integrals of x and y over the area, in mm^3.
     double x_mm3 = 0;
     double y_mm3 = 0;
 
-    /// Adds one of the directed edges around the area, which lies to their left.
+    /// Adds a directed edge of the boundary, which has the area on its left.
     void add_edge(const Point2& from, const Point2& to, const Point2& origin) noexcept {
         const double ax = from.x - origin.x;
         const double ay = from.y - origin.y;

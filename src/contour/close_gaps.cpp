@@ -41,7 +41,8 @@ std::vector<Candidate> find_candidates(const Layer& layer, double within) {
     for (std::size_t c = layer.rings; c < layer.contours(); ++c)
         first_points.push_back(layer.contour(c).front());
     const NearestPoints starts(std::move(first_points));
-    // Rounding may move a box of the tree beyond its points, so the search goes slightly farther.
+    // Rounding may place a point slightly outside of its box in the tree, so the search reaches slightly
+    // farther.
     const auto reach = [](double length) {
         return std::nextafter(length * (1 + 1e-15), Box3::infinity);
     };
@@ -167,15 +168,15 @@ struct JoinedContour {
     bool closed = false;
 };
 
-/// Overlapping chains cross where they are joined: if a vertex lies on the edge of a neighbour, the two ends
-/// are the same point except for rounding, and the join may lead back. If the segments before and after a
-/// join cross, one of its ends is dropped.
+/// If a vertex lies on the edge of a neighbour, the two ends are the same point except for rounding, and the
+/// join may lead back. Then the chains overlap: the segments before and after the join cross, and one of the
+/// two ends is dropped.
 ///
 ///        p ------------- a                  p ------------ a
 ///                   b ---+---- q    ->                      `----- q
 ///
-/// Returns the remaining points in their order. Neither end is dropped if the new segment would cross
-/// another.
+/// Returns the remaining points in their order. No end is dropped if the new segment would cross another
+/// segment.
 std::vector<Point2> without_overlaps(const JoinedContour& contour, Rows& rows) {
     const std::vector<Point2>& points = contour.points;
     const std::size_t n = points.size();
@@ -234,7 +235,7 @@ class Joined {
         return next_[join.chain] == none && !continued_[join.next];
     }
     [[nodiscard]] bool makes_ring(const Candidate& join) const { return first_[join.chain] == join.next; }
-    /// Length of the sequence of chains that ends with this one.
+    /// Returns the length of the sequence of chains that ends with this one.
     [[nodiscard]] double length(std::size_t chain) const { return length_[first_[chain]]; }
 
     void join(const Candidate& join) {
@@ -282,7 +283,7 @@ class Joined {
                static_cast<std::ptrdiff_t>(layer_.open_chains()));
     }
 
-    /// Number of points of the ring that this join would make; stops counting at 3.
+    /// Returns the number of points of the ring that this join would make; at most 3.
     [[nodiscard]] std::size_t ring_points(const Candidate& join) const {
         std::size_t points = 0;
         Point2 before = join.from;

@@ -8,7 +8,8 @@
 namespace lamella {
 
 /// Returns the hypotenuse of a right triangle, with the same bits on every processor, so that the same gap is
-/// the shortest everywhere: std::hypot in the C library of Debian rounds differently on ARM64 and x86-64.
+/// the shortest on all of them. (std::hypot in the C library of Debian rounds differently on ARM64 and
+/// x86-64.)
 [[nodiscard]] inline double hypotenuse(double dx, double dy) noexcept {
     const double longer = std::max(std::abs(dx), std::abs(dy));
     const double shorter = std::min(std::abs(dx), std::abs(dy));
@@ -22,7 +23,8 @@ namespace lamella {
     return hypotenuse(a.x - b.x, a.y - b.y);
 }
 
-/// Many times as fast, with different rounding. Squares must be far from overflow, as for millimetres.
+/// Returns the distance many times as fast, with different rounding. Requires coordinates whose squares are
+/// far from overflow, such as millimetres.
 [[nodiscard]] inline double quick_distance(const Point2& a, const Point2& b) noexcept {
     const double dx = b.x - a.x;
     const double dy = b.y - a.y;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The area of a ring, for loops that visit its points anyway.
+// Computes the area of a ring in a loop that visits its points for another purpose.
 
 #include "lamella/core/point.hpp"
 
@@ -57,7 +57,7 @@ class FanArea {
     using Four = Vector<4>::Doubles;
 
     Four origin_;
-    Four sums_{}; ///< sums for the first, third, second and fourth of four points
+    Four sums_{}; ///< sums for the first, third, second and fourth of every four points
 };
 
 } // namespace lamella

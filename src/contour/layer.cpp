@@ -23,8 +23,8 @@ PointArray::PointArray(std::vector<Point2> points) {
 }
 
 void check(const Layer& layer) {
-    // Compared as integers, which ascend with the absolute values of numbers, with NaN beyond all: no
-    // branches, and several numbers at a time.
+    // Numbers are compared as integers, which have the same order as their absolute values, with NaN above
+    // all. This needs no branches and handles several numbers at a time.
     const auto any_too_far = [](std::span<const Point2> points) {
         constexpr std::uint64_t farthest = std::bit_cast<std::uint64_t>(farthest_mm);
         constexpr std::uint64_t absolute = ~(std::uint64_t{1} << 63);

@@ -15,9 +15,9 @@
 
 namespace lamella {
 
-/// Points for nearest-neighbour queries, which can be removed one by one. A tree of medians along the longer
-/// side of the box: the middle of a range is its median, and the points before it are no greater. Ranges
-/// store their boxes, so that thousands of coincident points are examined as one.
+/// Points for nearest-neighbour queries, which can be removed one by one. They form a k-d tree: the middle of
+/// a range is its median along the longer side of its box, and the points before it are no greater. Ranges
+/// store their boxes, so that thousands of coincident points are examined together.
 class NearestPoints {
   public:
     static constexpr std::size_t none = ~std::size_t{0};
@@ -31,8 +31,8 @@ class NearestPoints {
             position_[order_[position]] = position;
     }
 
-    /// Calls visit(number, distance, below) for remaining points that are closer than `below`, which the
-    /// visitor may lower. The order is unspecified, but points that are likely to be near come first.
+    /// Calls visit(number, distance, below) for remaining points that are closer than `below`; the visitor
+    /// may lower this bound. The order is unspecified, but points that are likely to be near come first.
     template <class Visit>
     void for_each_closer(const Point2& to, double below, const Visit& visit) const {
         search({0, order_.size()}, to, below, visit);

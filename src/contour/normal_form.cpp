@@ -32,9 +32,9 @@ bool same(const Point2& a, const Point2& b) {
 }
 
 // Returns the smallest rotation of a ring whose smallest point occurs more than once. Two candidate starts i
-// and j > i race. After k equal points the loser and the k starts after it are eliminated, because each of
-// them loses to the start at the same distance after the winner. So candidates advance by at most 2 n in
-// total.
+// and j > i are compared point by point. If they differ after k equal points, the loser and the k starts
+// after it are eliminated, because each of them loses to the start at the same distance after the winner. So
+// candidates advance by at most 2 n in total.
 std::size_t smallest_rotation_with_repeats(std::span<const Point2> ring, std::size_t first,
                                            std::size_t second) {
     const std::size_t n = ring.size();
@@ -94,7 +94,7 @@ bool before(const Contour& a, const Contour& b) {
     return a.size() < b.size();
 }
 
-// Contours of layers that must stay in memory until all of them are copied.
+// References to contours of layers; the layers must stay in memory until all contours are copied.
 class ContourSet {
   public:
     void add(const Layer& layer) {
@@ -197,7 +197,7 @@ Layer merged(std::span<const Layer> layers) {
 bool same_contours(const Layer& a, const Layer& b) noexcept {
     if (a.rings != b.rings || a.offsets != b.offsets)
         return false;
-    // Empty arrays may be null pointers, which memcmp must not see.
+    // Empty arrays may be null pointers, which must not be passed to memcmp.
     return a.points.empty() || a.points.data() == b.points.data() ||
            std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Point2)) == 0;
 }

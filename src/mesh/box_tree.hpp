@@ -3,7 +3,8 @@
 // A tree of boxes (BVH) over triangles in the order of a space-filling curve, for finding close triangles.
 //
 // Boxes are stored in single precision, relative to the box of the whole mesh. The conversion (subtract,
-// multiply, round) preserves the order of numbers, so boxes that overlap still do; no overlap is missed.
+// multiply, round) preserves the order of numbers. So boxes that overlap still overlap afterwards; no overlap
+// is missed.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
@@ -33,7 +34,8 @@ class BoxTree {
     [[nodiscard]] std::pair<std::size_t, std::size_t> positions(std::size_t leaf) const noexcept {
         return {leaf * leaf_size, std::min((leaf + 1) * leaf_size, order_.size())};
     }
-    /// Calls visit(point_a, point_b) for overlapping boxes with point_a < point_b and point_a in the leaf.
+    /// Calls visit(point_a, point_b) for the positions of overlapping boxes with point_a < point_b and
+    /// point_a in the leaf.
     template <class Visit>
     void close_to_leaf(std::size_t leaf, const Visit& visit) const;
 
@@ -49,7 +51,7 @@ class BoxTree {
             }
         }
         [[nodiscard]] bool overlaps(const Bounds& other) const noexcept {
-            // Without branches: which of the six comparisons decides is unpredictable.
+            // No branches, because it is unpredictable which of the six comparisons decides.
             int apart = 0;
             for (std::size_t k = 0; k < 3; ++k)
                 apart |= static_cast<int>(min[k] > other.max[k]) | static_cast<int>(other.min[k] > max[k]);

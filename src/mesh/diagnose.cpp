@@ -26,7 +26,7 @@ namespace lamella {
 namespace {
 
 /// Joins directed edges, given in ascending order, end to end into loops that pass no vertex twice, and into
-/// chains where they do not return. Calls visit(vertices, closed).
+/// chains where they do not close. Calls visit(vertices, closed).
 template <class Visit>
 void for_each_loop(const std::vector<VertexPair>& edges, const Visit& visit) {
     // Edges that start at the same vertex are consecutive; data of a vertex is stored at the first of them.
@@ -134,8 +134,8 @@ void find_loops(const IndexedMesh& mesh, const std::vector<VertexPair>& edges, D
                      });
 }
 
-/// Joins the corners of triangles at the same vertex over their common edges. At vertices with more than one
-/// group of corners, parts of the surface touch.
+/// Groups the corners of triangles at each vertex by their common edges. At vertices with more than one group
+/// of corners, parts of the surface touch.
 void find_nonmanifold_vertices(Executor& executor, const IndexedMesh& mesh, std::size_t keep,
                                Diagnosis& found) {
     const std::size_t n = mesh.triangles.size();

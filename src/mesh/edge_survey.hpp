@@ -22,7 +22,7 @@ using VertexPair = std::pair<std::uint32_t, std::uint32_t>;
 
 /// In ascending order.
 struct EdgeLocations {
-    std::vector<VertexPair> boundary;    ///< directed against the triangle
+    std::vector<VertexPair> boundary;    ///< in the direction opposite to that of the triangle
     std::vector<VertexPair> nonmanifold; ///< low, high
     std::vector<VertexPair> conflicts;   ///< low, high
     std::vector<std::uint32_t> duplicates;
@@ -41,16 +41,17 @@ void add(Inspection& sum, const Inspection& other) noexcept;
 
 [[nodiscard]] EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_locations);
 
-/// A triangle, named by its highest vertex among triangles whose two lowest vertices are the same.
+/// A triangle, identified by its highest vertex among the triangles with the same two lowest vertices.
 struct TriangleOverEdge {
     std::uint32_t highest;
     std::uint32_t triangle;
-    bool upwards; ///< orientation, compared with the others
+    bool upwards; ///< true if it runs through the common edge from the lower to the higher vertex
 
     friend auto operator<=>(const TriangleOverEdge&, const TriangleOverEdge&) noexcept = default;
 };
 
-/// Returns all groups of two or more triangles with the same vertices, in any order; each group ascends.
+/// Returns all groups of two or more triangles with the same vertices. The groups are in any order, the
+/// triangles of a group in ascending order.
 [[nodiscard]] std::vector<std::vector<TriangleOverEdge>> find_same_vertices(Executor& executor,
                                                                             const IndexedMesh& mesh);
 

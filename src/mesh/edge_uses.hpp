@@ -32,7 +32,8 @@ struct EdgeUse {
 
     /// Returns true if the triangle runs from `low` to `high`.
     [[nodiscard]] bool upwards() const noexcept { return (position & upwards_bit) != 0; }
-    /// Returns true if these are the two lowest vertices of the triangle, as for exactly one of its sides.
+    /// Returns true if these are the two lowest vertices of the triangle, which holds for exactly one of its
+    /// sides.
     [[nodiscard]] bool lowest_side() const noexcept { return (position & lowest_bit) != 0; }
     [[nodiscard]] std::uint32_t low_in_partition() const noexcept { return position & (lowest_bit - 1); }
 };
@@ -53,8 +54,8 @@ struct EdgeUse {
 ///     sort      within a partition by lower vertex (counting), then by upper vertex (few each)
 template <class Visit>
 void for_each_edge(Executor& executor, const IndexedMesh& mesh, const Visit& visit) {
-    // The sides of 2^14 vertices, some 10^5, take about a megabyte, half a second-level cache. There are at
-    // most 2^12 partitions, so an index fits its 30 bits.
+    // 2^14 vertices have about 10^5 sides, which take about a megabyte, half of a second-level cache. There
+    // are at most 2^12 partitions, so that an index fits into its 30 bits.
     const unsigned shift = std::max(14U, static_cast<unsigned>(std::bit_width(mesh.vertices.size() / 4096)));
     const std::size_t partitions = (mesh.vertices.size() >> shift) + 1;
     const std::size_t ranges = std::min<std::size_t>(executor.workers(), mesh.triangles.size() / 32768 + 1);

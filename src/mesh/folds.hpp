@@ -1,7 +1,7 @@
 #pragma once
 
-// Sums and boxes over many elements, in parallel. The bits are the same for any number of threads because
-// chunks have a fixed size and are merged in order.
+// Sums and bounding boxes of many elements, computed in parallel. The bits are the same for any number of
+// threads because chunks have a fixed size and are merged in order.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
@@ -17,7 +17,8 @@ namespace lamella {
 /// Elements per chunk.
 inline constexpr std::size_t fold_chunk = std::size_t{1} << 15;
 
-/// Computes piece(begin, end) -> Value for chunks of [0, n), then merge(total, value) in ascending order.
+/// Calls piece(begin, end), which returns a Value, for chunks of [0, n), then merge(total, value) for each in
+/// ascending order.
 template <class Value, class Piece, class Merge>
 [[nodiscard]] Value fold(Executor& executor, std::size_t n, Value total, const Piece& piece,
                          const Merge& merge) {
@@ -48,8 +49,8 @@ template <class Value, class Piece, class Merge>
     return a.x * (b.y * c.z - b.z * c.y) + a.y * (b.z * c.x - b.x * c.z) + a.z * (b.x * c.y - b.y * c.x);
 }
 
-/// Returns the signed volume of n triangles, corners(i) -> Triangle3. Measured from the first corner, so that
-/// the volume of a part far from the origin is not lost to rounding.
+/// Returns the signed volume of the n triangles corners(i). Coordinates are taken relative to the first
+/// corner, so that the volume of a part far from the origin is not lost to rounding.
 template <class Corners>
 [[nodiscard]] double fold_volume(Executor& executor, std::size_t n, const Corners& corners) {
     if (n == 0)

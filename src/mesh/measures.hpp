@@ -29,8 +29,8 @@ namespace lamella {
     return {box.min.x / 2 + box.max.x / 2, box.min.y / 2 + box.max.y / 2, box.min.z / 2 + box.max.z / 2};
 }
 
-/// Returns the same corners sorted lexicographically. Results computed from these depend neither on the first
-/// corner nor on the orientation.
+/// Returns the same corners sorted lexicographically. Results computed from them depend neither on which
+/// corner comes first nor on the orientation.
 [[nodiscard]] inline Triangle3 in_order(Triangle3 t) noexcept {
     std::sort(t.begin(), t.end());
     return t;
@@ -41,8 +41,8 @@ namespace lamella {
     return (t[1] < t[0]) == ((t[2] < t[0]) != (t[2] < t[1]));
 }
 
-/// Returns the distance with the same bits on every processor, as `hypotenuse` of contour/distance: the
-/// orientation of shells depends on it. No square of a coordinate overflows (core/farthest).
+/// Returns the distance with the same bits on every processor, like `hypotenuse` of contour/distance, because
+/// the orientation of shells depends on it. No square of a coordinate overflows (core/farthest).
 [[nodiscard]] inline double distance(const Point3& a, const Point3& b) noexcept {
     const double x = a.x - b.x;
     const double y = a.y - b.y;

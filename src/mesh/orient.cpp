@@ -1,10 +1,10 @@
 // Consistent orientation, in four steps:
 //
-//     flood   starts at the first triangle of each patch, crosses edges of two triangles, and notes which
-//             triangles run against the first; the smaller of both sets is flipped
-//     fit     looks at patches at edges of more triangles: patches that balance there keep their relative
-//             orientation, and two that would balance if one of them were flipped are tied with opposite ones
-//     close   finds the groups of tied patches that are closed now, and the box around the open edges of
+//     flood   starts at the first triangle of each patch, crosses edges of two triangles, and finds the
+//             triangles of opposite orientation; the smaller of the two sets is flipped
+//     fit     ties the patches at each edge of more triangles: patches that balance there keep their relative
+//             orientation; two that would balance if one of them were flipped get opposite orientations
+//     close   finds the groups of tied patches that are now closed, and the box around the open edges of
 //             the others
 //     turn    flips groups as a whole, by their volumes and by the shells that enclose them
 
@@ -37,8 +37,8 @@ namespace lamella {
 
 namespace {
 
-/// The neighbour over each side of a triangle, if the edge has two triangles, times 2; the lowest bit is set
-/// if both run through the edge in the same direction.
+/// The neighbour over each side of a triangle is stored, if the edge has two triangles, as twice its number,
+/// plus 1 if both run through the edge in the same direction.
 constexpr std::uint32_t no_neighbour = 0xffffffff;
 
 PageArray<std::uint32_t> find_neighbours(Executor& executor, const IndexedMesh& mesh) {
@@ -63,7 +63,7 @@ PageArray<std::uint32_t> find_neighbours(Executor& executor, const IndexedMesh& 
 
 struct Patches {
     Shells shells;             ///< the patches, as if they were shells
-    std::vector<bool> flipped; ///< triangles flipped
+    std::vector<bool> flipped; ///< true for flipped triangles
     std::vector<bool> non_orientable;
 };
 
@@ -107,16 +107,16 @@ Patches flood(const IndexedMesh& mesh, const PageArray<std::uint32_t>& neighbour
     return patches;
 }
 
-/// A triangle of a shell of which exactly half is flipped.
+/// A triangle of a shell in which exactly half of the triangles are flipped.
 struct TiedTriangle {
     std::uint32_t shell;
     Triangle3 corners; ///< the lexicographically smallest first
     int way;           ///< 1 if the triangle runs through them in this order, otherwise -1
 };
 
-/// Swaps flipped and unflipped triangles in each shell of which more than half is flipped. If exactly half
-/// is, the lexicographically smallest triangle that does not occur in both orientations decides. So neither
-/// the order of triangles nor their first corner matters.
+/// Swaps flipped and unflipped triangles in each shell in which more than half of them are flipped. If
+/// exactly half are, the lexicographically smallest triangle that does not occur in both orientations
+/// decides. So neither the order of triangles nor their first corners matter.
 void flip_the_minority(const IndexedMesh& mesh, const Shells& shells, std::vector<bool>& flipped) {
     const std::size_t n = mesh.triangles.size();
     std::vector<std::int64_t> lead(shells.size(), 0);
@@ -150,7 +150,8 @@ void flip_the_minority(const IndexedMesh& mesh, const Shells& shells, std::vecto
 
 using Balance = std::pair<std::uint32_t, int>;
 
-/// Sorts by the first member, adds up the second of equal ones, and drops sums of 0.
+/// Sorts by the first member, replaces entries with equal first members by one with the sum of their second
+/// members, and drops sums of 0.
 void add_up(std::vector<Balance>& balances) {
     std::sort(balances.begin(), balances.end());
     std::size_t kept = 0;
@@ -167,11 +168,11 @@ void add_up(std::vector<Balance>& balances) {
 /// A patch that uses an edge more often in one direction than in the other.
 struct UnevenUse {
     VertexPair edge;
-    std::uint32_t patch; ///< or the first patch of a group
+    std::uint32_t patch; ///< patch, or the first patch of a group
     int balance;         ///< uses upwards minus uses downwards, not 0
 };
 
-/// Returns the uneven uses in ascending order; without non-orientable patches.
+/// Returns the uneven uses in ascending order; those of non-orientable patches are left out.
 std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& mesh, const Patches& patches) {
     std::vector<std::vector<UnevenUse>> found(executor.workers());
     for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned worker) {
@@ -193,7 +194,7 @@ std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& m
         all.insert(all.end(), part.begin(), part.end());
         let_go(part);
     }
-    // The order must not depend on workers: areas are added up.
+    // Areas are added up in this order, so it must not depend on the workers.
     std::sort(all.begin(), all.end(), [](const UnevenUse& a, const UnevenUse& b) {
         return std::tie(a.edge, a.patch) < std::tie(b.edge, b.patch);
     });
@@ -212,12 +213,12 @@ void for_each_uneven_edge(const std::vector<UnevenUse>& uneven, const Visit& vis
     }
 }
 
-/// Groups of tied patches: each patch is oriented as the first one of its group, or opposite to it.
+/// Groups of tied patches. Each patch is oriented like the first one of its group, or opposite to it.
 class Ties {
   public:
     struct Position {
         std::uint32_t first; ///< identifies the group
-        bool against;        ///< opposite to the first
+        bool against;        ///< true if oriented opposite to the first
     };
 
     explicit Ties(std::size_t patches) : ways_(2 * patches) {}
@@ -227,7 +228,7 @@ class Ties {
         return {lowest / 2, lowest % 2 != 0};
     }
 
-    /// Returns false if they are already tied with the other relative orientation.
+    /// Ties two patches. Returns false if they are already tied with the other relative orientation.
     bool tie(std::uint32_t a, std::uint32_t b, bool against) const noexcept {
         const std::uint32_t turn = against ? 1 : 0;
         if (ways_.find(2 * a) == ways_.find(2 * b + 1 - turn))
@@ -252,9 +253,9 @@ std::vector<Balance> tied_balances(std::span<const UnevenUse> uses, const Ties& 
     return all;
 }
 
-/// Ties the patches at each balanced edge as they are. Where exactly two patches or groups would balance if
-/// one of them were flipped, ties them with opposite orientations. Where such flips contradict one another,
-/// none of the connected flips is made.
+/// Ties the patches at each balanced edge with their present orientations. Where exactly two patches or
+/// groups would balance if one of them were flipped, ties them with opposite orientations. If such flips
+/// contradict one another, none of these flips is made.
 Ties fit(std::size_t patches, const std::vector<UnevenUse>& uneven) {
     Ties ties(patches);
     for_each_uneven_edge(uneven, [&](std::span<const UnevenUse> uses) {
@@ -307,14 +308,15 @@ Shells tied_shells(const Shells& patches, const Ties& ties) {
     return shells;
 }
 
-/// Content of a shell. Fans from the centre of the box around its open edges close an open one.
+/// Volume of a shell. An open shell is closed by fans from the centre of the box around its open edges.
 struct Content {
     ShellContent shell;
     double area = 0; ///< of an open shell
     double fans = 0; ///< total area of its fans
 
-    /// Returns true if the sign of the volume is certain and mostly due to existing triangles. (The limit is
-    /// below one half: a box four times as wide as high, without a lid, has exactly half.)
+    /// Returns true if the sign of the volume is certain and mostly due to existing triangles, not to fans.
+    /// (The limit is below one half, because in a box without a lid that is four times as wide as high the
+    /// ratio is exactly half.)
     [[nodiscard]] bool certain() const noexcept {
         return shell.certain() && (fans == 0 || fans < 0.45 * area);
     }
@@ -428,7 +430,8 @@ std::vector<Sense> find_senses(Executor& executor, const IndexedMesh& mesh, cons
             ++depth[shell];
             involved[shell] = involved[encloser] = any = true;
         });
-    // So far one point of each shell was examined. Where surfaces meet, others may lie elsewhere.
+    // So far only one point of each shell was examined. If surfaces meet, other points may be on the other
+    // side.
     std::vector<bool> touching(count, false);
     if (any) {
         const std::map<ShellPair, bool> contacts = find_contacts(executor, mesh, shells, boxes, involved);
@@ -507,7 +510,7 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
         const Ties ties = fit(count, uneven);
         Shells shells = tied_shells(patches.shells, ties);
         if (shells.size() == settled)
-            break; // the last flips made no further patches fit
+            break; // the last flips allow no further ties
         std::vector<bool> before;
         bool fitted = false;
         for (std::size_t p = 0; p < count; ++p) {

@@ -14,7 +14,8 @@ namespace {
 using Triangle2 = std::array<Point2, 3>;
 
 /// Returns twice the areas of the projections of the polygon along x, y and z (Newell's sum), up to scale.
-/// Measured from the first corner, so that a polygon far from the origin loses no digits.
+/// Coordinates are taken relative to the first corner, so that a polygon far from the origin loses no
+/// precision.
 Point3 facing(std::span<const Point3> corners) {
     const Point3 origin = corners[0];
     double largest = 0;
@@ -159,8 +160,8 @@ void PolygonTriangulator::cut_ears() {
     build_grid();
 
     // Cutting off an ear changes the state of its two neighbours only. Candidates are processed in the order
-    // in which they were added, which goes around the polygon repeatedly, so that triangles do not all meet
-    // in one corner.
+    // in which they were added. This order goes around the polygon repeatedly, so that not all triangles
+    // share one corner.
     std::uint32_t some = 0;
     for (const Ear wanted : {Ear::needle, Ear::clean, Ear::touched}) {
         candidates_.clear();
@@ -242,8 +243,8 @@ bool PolygonTriangulator::is_ear(std::uint32_t corner, Ear wanted) {
     if (bend < 0)
         return false;
     if (bend == 0) {
-        // Nothing can enter a triangle without area. A needle or a repeated corner is best cut at once; a
-        // collinear corner may still become the corner of a triangle.
+        // Nothing can enter a triangle without area. A needle or a repeated corner is cut at once; a
+        // collinear corner is not, because it may still become the corner of a triangle with an area.
         const bool along_a_side =
             (ear[0] < ear[1]) == (ear[1] < ear[2]) && ear[0] != ear[1] && ear[1] != ear[2];
         return !along_a_side || wanted == Ear::touched;

@@ -15,23 +15,23 @@ namespace lamella {
 /// Cuts polygons into triangles without adding corners. Reuses its working memory for the next polygon.
 class PolygonTriangulator {
   public:
-    /// Indices into the list of corners.
+    /// Indices of three corners in the list of corners.
     using Triangle = std::array<std::uint32_t, 3>;
 
     /// Returns the n - 2 triangles of a polygon of n finite corners (none for fewer than three), each with
     /// its corners in the order of the polygon. They are valid until the next call. Each edge of the polygon
     /// is an edge of one triangle, and all other edges have two: a closed surface of polygons stays closed.
     ///
-    /// A convex polygon becomes a fan from its first corner. For any other polygon whose projection does not
-    /// cross itself, each triangle faces as the polygon does, or has no area where corners are collinear. The
-    /// polygon may touch itself: holes may be attached to the outline by bridges that are walked in both
-    /// directions. Decisions are exact for the given corners, projected along the axis that the polygon faces
-    /// most; a polygon that is not quite flat is treated as its projection. One that crosses itself becomes
+    /// A convex polygon becomes a fan from its first corner. In any other polygon whose projection does not
+    /// cross itself, each triangle has the orientation of the polygon, or no area if its corners are
+    /// collinear. The polygon may touch itself: holes may be attached to the outline by bridges that are
+    /// walked in both directions. Decisions are exact for the corners projected along the axis for which the
+    /// projection is largest, also if the polygon is not quite flat. A polygon that crosses itself becomes
     /// overlapping triangles.
     ///
-    /// O(n) for convex polygons; otherwise by ears (Meisters 1975), with a grid of the corners that can be in
-    /// the way: O(n) as a rule. At most 1000 n + 10^6 corners are examined, which is enough for any polygon
-    /// of up to 500 corners; then the rest becomes a fan, so that hostile files cannot slow down a reader.
+    /// O(n) for convex polygons. Other polygons are cut into ears (Meisters 1975), with a grid of the corners
+    /// that can be in the way, usually in O(n). After 1000 n + 10^6 examined corners, which is enough for any
+    /// polygon of up to 500 corners, the rest becomes a fan, so that hostile files cannot slow down a reader.
     std::span<const Triangle> triangulate(std::span<const Point3> corners);
 
   private:
@@ -39,15 +39,16 @@ class PolygonTriangulator {
         Point2 at;
         std::uint32_t previous;
         std::uint32_t next;
-        bool in_the_way; ///< it does not turn left here: it can lie in the ear of another corner
-        bool cut;        ///< no longer part of the polygon
+        bool in_the_way; ///< the polygon does not turn left here, so the corner can lie in the ear of another
+                         ///< one
+        bool cut;        ///< the corner is no longer part of the polygon
     };
 
     /// The conditions that an ear has to meet.
     enum class Ear {
         needle, ///< folds back on itself, without area
-        clean,  ///< with an area, and nothing on the edge that cuts it off
-        touched ///< nothing enters it
+        clean,  ///< with an area, and with nothing on the edge that cuts it off
+        touched ///< nothing enters it, but something may touch it
     };
 
     void flatten(std::span<const Point3> corners);

@@ -32,7 +32,7 @@ struct Pair {
     }
 };
 
-/// Keeps the lowest `keep` of all pairs added, as a heap with the greatest on top.
+/// Adds a pair to a heap, with the greatest on top, of the `keep` lowest pairs so far.
 void add_to(std::vector<Pair>& first, const Pair& pair, std::size_t keep) {
     if (first.size() >= keep) {
         if (keep == 0 || !(pair < first.front()))

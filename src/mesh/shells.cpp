@@ -21,7 +21,8 @@ Shells find_shells(Executor& executor, const IndexedMesh& mesh, const EdgeSurvey
             shells.of_triangle[i] =
                 degenerate(mesh.triangles[i]) ? no_shell : survey.parts.find(static_cast<std::uint32_t>(i));
     });
-    // A set is named by its lowest member, which comes first and can pass its number to the others.
+    // A set is identified by its lowest member, which comes first, so that its number is known when the
+    // others follow.
     for (std::size_t i = 0; i < n; ++i) {
         std::uint32_t& shell = shells.of_triangle[i];
         if (shell == no_shell)
@@ -58,7 +59,8 @@ std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& 
         return {runs_in_order(corners(mesh, i)) ? six : -six,
                 distance(t[0], origin) * distance(t[0], t[1]) * distance(t[0], t[2]), 1};
     };
-    // Takes half the time. The sizes are upper bounds, which is sufficient for nearly all shells.
+    // Takes half the time of an exact computation. Its `sizes` are upper bounds, which suffice for nearly all
+    // shells.
     const auto roughly = [&](std::size_t i) -> ShellContent {
         const auto way = [](const Point3& a, const Point3& b) {
             return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z);
@@ -87,7 +89,8 @@ std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& 
         for (const auto& [shell, some] : runs)
             contents[shell].add(some);
     });
-    // Another order changes a sum by up to twice its rounding: sums close to 0 are added up in order.
+    // Another order of the terms changes a sum by up to twice its rounding error. Sums close to 0 are
+    // therefore computed again in a fixed order.
     std::vector<bool> close(shells.size());
     for (std::size_t s = 0; s < shells.size(); ++s)
         close[s] = std::abs(contents[s].six_volumes) <= 3 * contents[s].rounding();
@@ -140,7 +143,8 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
         return box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y &&
                box.min.z <= p.z && p.z <= box.max.z;
     };
-    // Nested shells have as many hits as pairs. This many are kept at a time; one point never has more.
+    // Nested shells have as many hits as there are pairs of shells. This many hits are kept at a time; a
+    // single point never has more.
     const std::uint64_t most_hits = std::max<std::uint64_t>(std::uint64_t{1} << 20, mesh.triangles.size());
     std::vector<std::vector<Enclosure>> hits(executor.workers());
     std::vector<std::atomic<std::uint32_t>> hits_of_point(points.size());
@@ -179,7 +183,7 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
         report_progress();
         return;
     }
-    // There are too many for one pass, but now the number of hits of each point is known.
+    // There are too many hits for one pass, but now the number of hits of each point is known.
     const std::vector<std::uint32_t> counts(hits_of_point.begin(), hits_of_point.end());
     std::size_t end = 0;
     for (std::size_t begin = 0; begin < points.size(); begin = end) {

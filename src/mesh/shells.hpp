@@ -1,6 +1,6 @@
 #pragma once
 
-// The connected components of a mesh: their volumes, and which lies in which.
+// The connected components of a mesh, their volumes and their nesting.
 
 #include "lamella/mesh/indexed_mesh.hpp"
 
@@ -21,10 +21,10 @@ namespace lamella {
 
 constexpr std::uint32_t no_shell = 0xffffffff;
 
-/// The n-th shell is the one whose first triangle comes n-th in the mesh.
+/// Shells are numbered in the order of their first triangles in the mesh.
 struct Shells {
     PageArray<std::uint32_t> of_triangle; ///< no_shell for a degenerate triangle
-    std::vector<std::uint32_t> first;     ///< triangle of each shell
+    std::vector<std::uint32_t> first;     ///< first triangle of each shell
     std::vector<bool> closed;             ///< every edge is used equally often in both directions
 
     [[nodiscard]] std::size_t size() const noexcept { return first.size(); }
@@ -32,16 +32,17 @@ struct Shells {
 
 [[nodiscard]] Shells find_shells(Executor& executor, const IndexedMesh& mesh, const EdgeSurvey& survey);
 
-/// The signed content between the triangles of a shell and an origin.
+/// The signed volume between the triangles of a shell and an origin.
 struct ShellContent {
     double six_volumes = 0; ///< signed
-    double sizes = 0;       ///< sum of the sizes of the summands, for the bound on rounding
+    double sizes = 0;       ///< sum of the absolute values of all terms, for the bound on rounding errors
     double triangles = 0;
 
     [[nodiscard]] double volume() const noexcept { return six_volumes / 6; }
     /// Returns true if rounding cannot have changed the sign of the volume.
     [[nodiscard]] bool certain() const noexcept { return std::abs(six_volumes) > rounding(); }
-    /// A sum of k terms has an error of at most k epsilons of their sizes; rounding one term adds up to 32.
+    /// A sum of k terms has an error of at most k epsilon times `sizes`; the rounding of each term adds up to
+    /// 32 epsilon times `sizes`.
     [[nodiscard]] double rounding() const noexcept {
         return std::numeric_limits<double>::epsilon() * (triangles + 32) * sizes;
     }
@@ -50,15 +51,14 @@ struct ShellContent {
     friend auto operator<=>(const ShellContent&, const ShellContent&) = default;
 };
 
-/// Measures every shell from its own origin, which lies near the shell, so that a small one far away keeps
-/// its sign. Whether it is certain, and its sign if so, depend neither on the order of triangles nor on their
-/// first corners.
+/// Measures every shell from its own origin near the shell, so that the sign of a small shell far away is
+/// correct. Neither certain() nor a certain sign depends on the order of triangles or on their first corners.
 [[nodiscard]] std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& mesh,
                                                        const Shells& shells, std::span<const Point3> origins);
 
 [[nodiscard]] std::vector<Box3> shell_boxes(const IndexedMesh& mesh, const Shells& shells);
 
-/// States that the encloser winds around a point on the surface of a shell.
+/// A pair of shells: the encloser winds around a point on the surface of the other shell.
 struct Enclosure {
     std::uint32_t shell;
     std::uint32_t encloser;
@@ -67,7 +67,7 @@ struct Enclosure {
     friend auto operator<=>(const Enclosure&, const Enclosure&) = default;
 };
 
-/// Visits which shells lie around which, in ascending order, for the shells in `asked`. The centroid of the
+/// Visits, for each shell in `asked`, the shells that enclose it, in ascending order. The centroid of the
 /// largest triangle represents a shell: it is well away from edges where shells touch. For many nested
 /// shells, time grows with the square of their number, but memory does not.
 void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shells& shells,

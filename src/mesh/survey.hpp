@@ -23,8 +23,8 @@ struct Survey {
     std::vector<Box3> boxes = {};
     std::vector<bool> inward = {}; ///< closed, and certainly of negative volume
     std::vector<bool> cavity = {}; ///< inward, and in the material of others
-    /// Number of other shells that contain each shell, and the smallest of them or no_shell. With places for
-    /// all shells, otherwise for those that may be cavities.
+    /// Number of other shells that contain each shell, and the smallest of these or no_shell. With locations
+    /// they are set for all shells, otherwise only for those that may be cavities.
     std::vector<std::uint32_t> depth = {};
     std::vector<std::uint32_t> inside = {};
 };

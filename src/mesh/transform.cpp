@@ -104,7 +104,7 @@ Transform upright(const Point3& direction) {
                     fmt::format("cannot slice along the direction ({}, {}, {}): expected three finite "
                                 "numbers, not all 0",
                                 direction.x, direction.y, direction.z));
-    // Dividing by the largest component first avoids overflow and keeps a coordinate axis exact.
+    // Division by the largest component avoids overflow and keeps a coordinate axis exact.
     double x = direction.x / largest;
     double y = direction.y / largest;
     double z = direction.z / largest;
@@ -120,7 +120,7 @@ Transform upright(const Point3& direction) {
         return out;
     }
     // The shortest rotation, about the horizontal axis perpendicular to `direction`. In Rodrigues' formula,
-    // x^2 / (1 + z) is written c^2 (1 - z), which loses nothing if `direction` points almost straight down.
+    // x^2 / (1 + z) is written c^2 (1 - z), which stays accurate if `direction` points almost straight down.
     const double c = x / radius;
     const double s = y / radius;
     const double lean = z > 0 ? radius * radius / (1 + z) : 1 - z;

@@ -33,9 +33,9 @@ bool both_sides(const Signs& s) noexcept {
     return least < 0 && most > 0;
 }
 
-/// Reorders both triangles so that corner 0 of `t` is the only one in the other's plane, or on the side of it
-/// from which the other's corners are counter-clockwise: rotates t, and flips the other if needed. The signs
-/// of each one's corners relative to the other's plane are reordered, too.
+/// Rotates `t` so that its corner 0 is alone on one side of the other triangle's plane, or alone in that
+/// plane. Flips the other triangle if necessary, so that no corner of `t` except corner 0 is on the side from
+/// which it is counter-clockwise. Reorders `other_signs` likewise.
 void put_lone_corner_first(Triangle3& t, const Signs& signs, Triangle3& other, Signs& other_signs) noexcept {
     const auto lone = [&]() -> std::pair<std::size_t, bool> {
         for (std::size_t k = 0; k < 3; ++k) {
@@ -59,13 +59,14 @@ void put_lone_corner_first(Triangle3& t, const Signs& signs, Triangle3& other, S
     }
 }
 
-/// True if one corner is in the other's plane and the others are on one side: only that point can be shared.
+/// Returns whether one corner is in the other's plane and the two others are on one side of it, so that only
+/// that corner can be shared.
 bool in_a_point(const Signs& s) noexcept {
     return std::count(s.begin(), s.end(), 0) == 1 && !both_sides(s);
 }
 
-/// For triangles in different planes that share no edge. `p_signs` are the signs of p's corners relative to
-/// the plane of q.
+/// Compares triangles in different planes that share no edge. `p_signs` are the signs of p's corners relative
+/// to the plane of q.
 std::optional<IntersectionKind> contact_in_a_line(Triangle3 p, Triangle3 q, Signs p_signs, Signs q_signs,
                                                   bool share_a_corner) noexcept {
     put_lone_corner_first(p, p_signs, q, q_signs);
@@ -125,7 +126,8 @@ Shared shared_corners(const NamedTriangle& p, const NamedTriangle& q) noexcept {
 
 std::optional<IntersectionKind> contact_in_a_plane(const Triangle3& p, const Triangle3& q,
                                                    const Shared& shared) noexcept {
-    // Any projection in which p keeps an area will do; the largest component of its normal is the safest one.
+    // Any projection in which p has an area is suitable; the axis of the largest component of its normal is
+    // safest.
     const Point3 n = normal(p);
     const std::array<double, 3> sizes{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
     int axis = static_cast<int>(std::max_element(sizes.begin(), sizes.end()) - sizes.begin());
@@ -149,8 +151,8 @@ std::optional<IntersectionKind> contact_in_a_plane(const Triangle3& p, const Tri
         turn(fq, at_q);
     if (!all_outside(fp, fq, false) && !all_outside(fq, fp, false))
         return IntersectionKind::overlapping;
-    // The triangles are separate, except for the line between them. If they share a corner there, they have
-    // more in common if edges run along each other from there.
+    // The triangles lie on different sides of a line and can meet only on it. If they share a corner there,
+    // they have more in common only if two edges lead from it in the same direction.
     const bool touch = shared.count == 0 ? !all_outside(fp, fq, true) && !all_outside(fq, fp, true)
                                          : shared.count == 1 && edges_together(fp, at_p, fq, at_q);
     return touch ? std::optional(IntersectionKind::touching) : std::nullopt;
@@ -167,9 +169,9 @@ bool flat(const Triangle3& t) noexcept {
     return true;
 }
 
-// Triangles in different planes follow Guigue and Devillers (2003). With the lone corner of each triangle
-// first (the one alone on its side of the other's plane), each triangle intersects the common line of both
-// planes in an interval; the ends of the intervals are compared by orientations of four corners.
+// Triangles in different planes follow Guigue and Devillers (2003). The corner of each triangle that is alone
+// on its side of the other's plane comes first. Each triangle then intersects the common line of both planes
+// in an interval. The ends of the intervals are compared by orientations of four corners.
 std::optional<IntersectionKind> ContactSeeker::with_close_one(const NamedTriangle& other) const noexcept {
     const Shared shared = shared_corners(triangle_, other);
     if (shared.count >= 3)

@@ -1,6 +1,7 @@
 #pragma once
 
-// Decides exactly what two triangles of a mesh have in common beyond the vertices that they share.
+// Decides exactly whether two triangles of a mesh have points in common other than those of shared vertices
+// and edges.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/self_intersections.hpp"
@@ -14,7 +15,7 @@
 
 namespace lamella {
 
-/// A triangle with the names of its corners: corners of equal name are the same vertex.
+/// A triangle with names for its corners; corners with equal names are the same vertex.
 struct NamedTriangle {
     Triangle3 corners;
     std::array<std::uint32_t, 3> names;
@@ -30,7 +31,8 @@ class ContactSeeker {
         : triangle_(t), plane_(t.corners[0], t.corners[1], t.corners[2]) {}
 
     /// Returns nullopt if the triangles have nothing in common except vertices or an edge. Neither triangle
-    /// may be flat. Symmetric, and independent of orientation. Exact for all finite coordinates.
+    /// may be flat. The result depends neither on the order of the two triangles nor on their orientations,
+    /// and is exact for all finite coordinates.
     [[nodiscard]] std::optional<IntersectionKind> with(const NamedTriangle& other) const noexcept {
         const int side = plane_.likely_side(other.corners[0]);
         if (side != 0 && side == plane_.likely_side(other.corners[1]) &&
@@ -52,8 +54,8 @@ class ContactSeeker {
     return ContactSeeker(p).with(q);
 }
 
-/// Returns an approximate location: the middle of the common segment of triangles that cross, otherwise of
-/// the intersection of their boxes.
+/// Returns an approximate location: for triangles that cross, the middle of their common segment; otherwise
+/// the middle of the intersection of their boxes.
 [[nodiscard]] Point3 contact_point(const Triangle3& p, const Triangle3& q, IntersectionKind kind) noexcept;
 
 } // namespace lamella

@@ -14,7 +14,8 @@ namespace lamella {
 
 namespace {
 
-/// Returns the box in single precision at the speed of memory: six chains of minima and maxima, no stores.
+/// Returns the box in single precision. Six independent minima and maxima, without stores, make it as fast as
+/// memory.
 Box3 stored_box(const TriangleSoup& soup, std::size_t begin, std::size_t end) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     Point3f low{infinity, infinity, infinity};
@@ -44,7 +45,8 @@ Box3 placed_box(const TriangleSoup& soup, std::size_t begin, std::size_t end) {
     return box;
 }
 
-/// Makes one pass without a branch; only if that fails, searches for the triangle.
+/// Throws unless all corners are finite. Makes one pass without branches, and searches for the triangle only
+/// if that fails.
 void require_finite(const TriangleSoup& soup) {
     const auto is_finite = [&](std::size_t i) {
         std::array<float, 9> numbers;
@@ -59,7 +61,7 @@ void require_finite(const TriangleSoup& soup) {
         all &= is_finite(i);
     if (all)
         return;
-    for (std::size_t i = 0; i < soup.size(); ++i) // finds the triangle to name
+    for (std::size_t i = 0; i < soup.size(); ++i) // finds the triangle for the error
         if (!is_finite(i))
             throw Error(ErrorKind::input,
                         fmt::format("triangle {} (numbered from 0) has a corner that is not finite", i));

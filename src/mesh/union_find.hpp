@@ -1,7 +1,7 @@
 #pragma once
 
-// Disjoint sets that all workers may join at once, without locks (Anderson and Woll 1991). A set is named by
-// its lowest member, so the result does not depend on the order in which sets were joined.
+// Disjoint sets that all workers may join at once, without locks (Anderson and Woll 1991). The lowest member
+// of a set identifies it, so the result does not depend on the order in which sets were joined.
 
 #include "core/pages.hpp"
 
@@ -14,7 +14,7 @@ namespace lamella {
 
 class UnionFind {
   public:
-    /// Numbers below `size`, each a set of its own.
+    /// Begins with the numbers below `size`, each a set of its own.
     explicit UnionFind(std::size_t size) : up_(size, Fill::zero) {}
 
     /// Returns the lowest member of i's set once all joins are done; before that, some member of it.
@@ -24,7 +24,8 @@ class UnionFind {
             if (parent == i)
                 return i;
             const std::uint32_t grandparent = above(parent);
-            // Halve the path for later searches. A lost race only leaves a longer path.
+            // Halve the path for later searches. If another thread changes it at the same time, the path only
+            // stays longer.
             if (grandparent != parent)
                 up_[i].store(i - grandparent, std::memory_order_relaxed);
             i = grandparent;

@@ -1,11 +1,11 @@
 // The exact weld, in four steps:
 //
 //     gather     each worker reads one range of the file and replaces corners by local vertices. A small
-//                table of recent corners already joins most of them: triangles that share a corner are
-//                mostly near each other in a file.
-//     join       local vertices with equal coordinates are found by partitions (core/key_groups)
-//     number     the first of each kind becomes a vertex, in the order of the file
-//     rewrite    triangles refer to vertices instead of local vertices, and vertices get their coordinates
+//                table of recent corners already joins most equal corners, because triangles that share a
+//                corner are mostly near each other in a file.
+//     join local vertices with equal coordinates are found by partitions (core/key_groups) number the first
+//     of equal local vertices becomes a vertex, in the order of the file rewrite triangles refer to vertices
+//     instead of local vertices, and vertices get their coordinates
 //
 // The order in the file determines all numbers, so the number of ranges or workers does not change the
 // result.
@@ -31,7 +31,7 @@ namespace lamella {
 
 namespace {
 
-/// Bits of coordinates without -0: points are equal if their bits are.
+/// The bits of a point's coordinates, with -0 replaced by +0, so that equal points have equal bits.
 template <class Bits>
 struct CornerKey {
     Bits x;
@@ -79,7 +79,7 @@ struct Range {
     std::size_t end = 0;
     PageArray<Key> keys; ///< sized for all corners; only the pages in use are allocated
     std::size_t locals = 0;
-    std::size_t first_local = 0; ///< of this range among those of all ranges
+    std::size_t first_local = 0; ///< number of local vertices in earlier ranges
 };
 
 /// Triangles between two checks for cancellation.
@@ -114,7 +114,8 @@ void gather(const TriangleSoup& soup, Range<Key>& range, std::vector<std::array<
     range.locals = locals;
 }
 
-/// Numbers the items, in order, that are the first of their kind (`first[i] == 0`). Returns their number.
+/// Numbers, in order, the items without an equal item before them (`first[i] == 0`). Returns how many there
+/// are.
 std::uint32_t number_firsts(Executor& executor, std::span<const std::uint32_t> first,
                             std::span<std::uint32_t> number) {
     // Count, prefix sum, fill.
@@ -180,7 +181,8 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
     const std::uint32_t kinds = number_firsts(executor, first.span(), number.span());
     mesh.vertices.reserve(kinds);
     make_pages_ready(executor, mesh.vertices.data(), kinds * sizeof(Point3));
-    // Resizing a vector takes one thread: it is the first chunk, in parallel with those of the triangles.
+    // Resizing a vector keeps one thread busy. It is the first chunk, in parallel with the chunks of
+    // triangles.
     executor.for_chunks(block + soup.size(), block, [&](std::size_t begin, std::size_t end, unsigned) {
         if (begin == 0) {
             mesh.vertices.resize(kinds);

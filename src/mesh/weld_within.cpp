@@ -2,9 +2,9 @@
 //
 //     points   equal vertices become one point; points are numbered in lexicographic order, so that the
 //              following steps do not depend on the order of the mesh
-//     pairs    a grid of cells as wide as the tolerance finds the points no farther apart than that
-//     join     groups are joined, the closest pair first, if the box of both has at most that diagonal
-//     rewrite  triangles refer to the first point of each group instead of vertices
+//     pairs a grid of cells as wide as the tolerance finds the points no farther apart than that join groups
+//     are joined, the closest pair first, if the diagonal of their common box is at most the tolerance
+//     rewrite triangles refer to the first point of each group instead of vertices
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/repair.hpp"
@@ -47,8 +47,8 @@ struct PointPair {
     }
 };
 
-/// Points sorted by cells about as wide as the tolerance. Each axis is divided from point to point, not
-/// evenly: with even cells, one vertex far away would make the cell numbers unbounded.
+/// Points sorted by cells about as wide as the tolerance. The intervals of each axis begin at points, not at
+/// multiples of a width: with equal cells, a single vertex far away could make the cell numbers overflow.
 class CellGrid {
   public:
     CellGrid(std::span<const Point3> points, double tolerance) : positions_(points.size()) {
@@ -123,7 +123,7 @@ Error too_coarse(double tolerance) {
 std::vector<PointPair> close_pairs(Executor& executor, std::span<const Point3> points, double tolerance) {
     const CellGrid grid(points, tolerance);
     const std::size_t most = 64 * points.size() + (std::size_t{1} << 16);
-    if (grid.least_pairs() > most) // otherwise few pairs are examined, too
+    if (grid.least_pairs() > most) // otherwise the number of examined pairs is bounded, too
         throw too_coarse(tolerance);
     std::vector<std::vector<PointPair>> found(executor.workers());
     std::atomic<std::size_t> count{0};

@@ -14,8 +14,8 @@ namespace lamella {
 namespace {
 
 /// Returns how many times the projection of a triangle onto the x-y plane winds around p: -1, 0 or 1. A side
-/// counts if a ray from p to the right crosses it. It is evaluated from its lower end, so that two triangles
-/// always agree on the side that they share.
+/// counts if a ray from p to the right crosses it. The crossing is computed from the lower end of the side,
+/// so that two triangles always agree on the side that they share.
 int projected_winding(const std::array<Point3, 3>& t, const Point3& p) {
     int winding = 0;
     for (int k = 0; k < 3; ++k) {

@@ -73,8 +73,9 @@ struct OrientedMesh {
 /// A patch is a part of the mesh connected by edges of exactly two triangles. Within a patch all triangles
 /// get the orientation of the majority. Patches that meet at a non-manifold edge are tied to one another. If
 /// the edge is balanced (used equally often in both directions), they keep their relative orientation. If
-/// flipping one of two patches would balance it, that flip is made; of the two groups of patches already
-/// tied, the one with fewer triangles is flipped. So if no edge is in conflict before, none is afterwards.
+/// flipping one of two patches would balance it, they are tied with opposite orientations. In each group of
+/// tied patches the minority of the triangles is then flipped. So if no edge is in conflict before, none is
+/// afterwards.
 ///
 /// Then each group of tied patches is flipped as a whole if necessary: outward, or inward if it is a void,
 /// that is, if it lies in an odd number of other closed groups. Group A lies in group B if B winds around the
