@@ -17,7 +17,7 @@ class DistinctNames {
     [[nodiscard]] const std::string& first_changed() const noexcept { return first_changed_; }
 
   private:
-    std::map<std::string, std::uint64_t> taken_; ///< with the number that was appended last
+    std::map<std::string, std::uint64_t> taken_; ///< each name, with the number that was appended to it last
     std::uint64_t changed_ = 0;
     std::string first_changed_;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
-// The exact sign of a sum of products of doubles: in fixed point, wide enough for all finite numbers.
+// The exact sign of a sum of products of doubles, computed in fixed point that is wide enough for all finite
+// numbers.
 
 #include <algorithm>
 #include <array>
@@ -52,7 +53,7 @@ template <std::size_t factors>
 
 } // namespace exact_sum
 
-/// Returns -1, 0 or 1. Requires at most 2^20 products of finite numbers.
+/// Returns the sign of the sum: -1, 0 or 1. Requires at most 2^20 products of finite numbers.
 template <std::size_t factors, std::size_t n>
 [[nodiscard]] int sign_of_sum(const std::array<SignedProduct<factors>, n>& products) noexcept {
     using exact_sum::Magnitude;

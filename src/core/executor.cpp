@@ -60,7 +60,8 @@ void Executor::start_threads() {
     for (auto worker = static_cast<unsigned>(threads_.size()) + 1; worker < workers_; ++worker)
         try {
             threads_.emplace_back([this, worker] { work(worker); });
-        } catch (const std::system_error&) { // no more are allowed, or there is no memory for their stacks
+        } catch (const std::system_error&) { // no more threads are allowed, or there is no memory for their
+                                             // stacks
             workers_ = worker;
         }
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Threads for the duration of one computation. Results do not depend on them: an algorithm may use the number
-// of workers to split its work, never to decide its answer.
+// Threads for the duration of one computation. An algorithm may use the number of workers to divide its work,
+// but its result must not depend on it.
 
 #include "lamella/core/execution.hpp"
 
@@ -20,8 +20,8 @@ namespace lamella {
 [[nodiscard]] unsigned thread_count(const Execution& execution) noexcept;
 
 /// A team of workers. Worker 0 is the calling thread; the others are started at the first parallel region and
-/// sleep between regions. If the system starts fewer threads than requested, the team is smaller. A team
-/// belongs to the thread that made it; regions do not nest.
+/// sleep between regions. If the system starts fewer threads than requested, the team is smaller. Only the
+/// thread that created a team may use it, and parallel regions must not be nested.
 ///
 /// If the body throws, the others are asked to stop at their next chunk, and the first exception is rethrown
 /// after all of them have returned.
@@ -32,14 +32,15 @@ class Executor {
     Executor(const Executor&) = delete;
     Executor& operator=(const Executor&) = delete;
 
-    /// Number of workers. A parallel region may find that there are fewer, never more.
+    /// Returns the largest number of workers. A parallel region may have fewer.
     [[nodiscard]] unsigned workers() const noexcept { return workers_; }
 
     /// Calls body(worker) once for each worker, at the same time.
     void run(const std::function<void(unsigned worker)>& body);
 
-    /// Calls body(begin, end, worker) over [0, n) in chunks of at most `chunk`, which free workers take in
-    /// ascending order. Fewer than two chunks run on the calling thread. Each chunk checks for cancellation.
+    /// Calls body(begin, end, worker) for consecutive chunks of [0, n) of at most `chunk`, which idle workers
+    /// take in ascending order. A single chunk runs on the calling thread. Cancellation is checked before
+    /// each chunk.
     void for_chunks(std::uint64_t n, std::uint64_t chunk,
                     const std::function<void(std::uint64_t begin, std::uint64_t end, unsigned worker)>& body);
 
@@ -76,7 +77,7 @@ class ProgressMeter {
 
     /// Adds to the work done. Cheap; rethrows exceptions of the caller's progress function.
     void add(std::uint64_t amount);
-    /// Reports the end. To be called once when the stage is complete.
+    /// Reports the end. Must be called once, when the stage is complete.
     void finish();
 
   private:

@@ -7,7 +7,7 @@
 namespace lamella {
 
 /// Largest allowed absolute coordinate, in millimetres or in the unit of a mesh. Beyond it sums and areas
-/// could overflow; no real part comes close.
+/// could overflow. Real parts are far smaller.
 inline constexpr double farthest_mm = 1e100;
 
 /// Returns true if the length is beyond `farthest_mm` or is NaN.

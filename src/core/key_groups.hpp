@@ -1,15 +1,15 @@
 #pragma once
 
 // Finds equal keys among many: in parallel, in expected linear time, and with the same result for any number
-// of threads. Welding and all other matching is based on it.
+// of threads. Welding and all other matching of equal keys use it.
 //
-//     partition   each key goes to the partition given by the top bits of its hash, one chunk of keys at a
-//                 time while it is in a core's cache; the order of the keys is kept
+//     partition   the top bits of its hash select the partition of each key; keys are moved there in chunks
+//                 that fit into a core's cache, and keep their order
 //     join        within a partition, which fits into the cache, too, a small hash table finds for each key
 //                 the first one equal to it
 //
-// Keys come from files, and files may be hostile: if a probe in a table gets long, the partition is sorted
-// instead. Crafted keys cost O(n log n), never O(n^2).
+// Keys come from files, which may be hostile. If a probe in a table gets long, the partition is sorted
+// instead, so that crafted keys cost O(n log n), never O(n^2).
 
 #include "core/executor.hpp"
 #include "core/pages.hpp"
@@ -27,7 +27,8 @@
 
 namespace lamella {
 
-/// Multiplies to 128 bits and folds: every bit of the result depends on all bits of both arguments.
+/// Combines both halves of the 128-bit product, so that every bit of the result depends on all bits of both
+/// arguments.
 [[nodiscard]] inline std::uint64_t mix(std::uint64_t a, std::uint64_t b) noexcept {
     __extension__ using Wide = unsigned __int128;
     const Wide product = static_cast<Wide>(a ^ 0x9e3779b97f4a7c15) * (b ^ 0xd1b54a32d192ed03);
@@ -39,10 +40,10 @@ namespace key_groups {
 /// Keys per partition: keys and table fit into the second-level cache.
 inline constexpr std::size_t partition_keys = std::size_t{1} << 13;
 inline constexpr unsigned most_partition_bits = 12;
-/// Least average number of keys of a chunk per partition: scattered keys are slow to collect.
+/// Least average number of keys of a chunk in a partition. With fewer, collecting the scattered keys is slow.
 inline constexpr std::size_t partition_share = 8;
 inline constexpr std::size_t least_block = std::size_t{1} << 14;
-/// With tables at most half full, a probe this long does not happen by chance.
+/// In a table that is at most half full, a probe this long is not due to chance.
 inline constexpr unsigned longest_probe = 64;
 
 template <class Key>
@@ -51,7 +52,7 @@ struct Record {
     std::uint32_t id;
 };
 
-/// Reports records from `from` on (earlier ones were reported before).
+/// Reports equal keys by sorting. Records before `from` were already reported.
 template <class Key, class Found>
 void join_sorted(std::span<const Record<Key>> records, std::size_t from, unsigned worker,
                  const Found& found) {
@@ -69,7 +70,7 @@ void join_sorted(std::span<const Record<Key>> records, std::size_t from, unsigne
     }
 }
 
-/// `table` is scratch memory with any content.
+/// Reports equal keys by a hash table. `table` is scratch memory with any content.
 template <class Key, class Hash, class Found>
 void join_partition(std::span<const Record<Key>> records, std::vector<std::uint32_t>& table, unsigned worker,
                     const Hash& hash, const Found& found) {
@@ -102,8 +103,8 @@ void join_partition(std::span<const Record<Key>> records, std::vector<std::uint3
 
 } // namespace key_groups
 
-/// Keys with ids, sorted into partitions chunk by chunk and joined when all are present. Equal keys must have
-/// equal hashes; a key may omit what its hash already contains.
+/// Keys with ids, which are sorted into partitions chunk by chunk and joined when all are present. Equal keys
+/// must have equal hashes; a key may omit what its hash already contains.
 template <class Key>
 class KeyPartitions {
     static_assert(std::is_trivially_copyable_v<Key> && std::totally_ordered<Key>);
@@ -111,7 +112,7 @@ class KeyPartitions {
   public:
     using Record = key_groups::Record<Key>;
 
-    /// Expects about this many keys.
+    /// `expected` is the approximate number of keys.
     explicit KeyPartitions(std::uint64_t expected)
         : bits_(std::min(static_cast<unsigned>(
                              std::countr_zero(std::bit_ceil(expected / key_groups::partition_keys + 1))),
@@ -151,10 +152,10 @@ class KeyPartitions {
         counts_[block] = count;
     }
 
-    /// Calls found(first, other, worker) for every key that is not the first of its kind: `first` is the
-    /// lowest id of an equal key, `worker` the calling worker. Calls come from all workers at once; those for
-    /// equal keys come from one worker and with ascending `other`. hash(key) returns 64 bits, of which the
-    /// lower ones must differ within a partition.
+    /// Calls found(first, other, worker) for every key `other` for which there is an equal key of lower id;
+    /// `first` is the lowest such id, `worker` the calling worker. Calls come from all workers at once; those
+    /// for equal keys come from one worker and with ascending `other`. hash(key) returns 64 bits, of which
+    /// the lower ones must differ within a partition.
     template <class Hash, class Found>
     void join(Executor& executor, const Hash& hash, const Found& found) const {
         struct Worker {
@@ -190,8 +191,8 @@ class KeyPartitions {
     PageArray<std::uint16_t> begins_; // per chunk and partition
 };
 
-/// Does the same for keys in memory: calls found(first, other, worker) as KeyPartitions::join does. The id of
-/// a key is its position in the concatenation of all parts, below 2^32. hash(key) returns 64 bits.
+/// Joins keys in memory, and calls found(first, other, worker) as KeyPartitions::join does. The id of a key
+/// is its position in the concatenation of all parts, below 2^32. hash(key) returns 64 bits.
 template <class Key, class Hash, class Found>
 void join_equal_keys(Executor& executor, std::span<const std::span<const Key>> parts, const Hash& hash,
                      const Found& found) {

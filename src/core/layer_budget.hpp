@@ -16,7 +16,7 @@ class LayerBudget {
   public:
     /// Sets no limits.
     LayerBudget() = default;
-    /// `layer` is the index of the layer and `z` its height in mm, for errors.
+    /// `layer` is the index of the layer and `z` its height in mm, for error messages.
     LayerBudget(const LayerLimits& limits, std::uint64_t layer, double z) noexcept
         : limits_(limits), layer_(layer), z_(z) {}
 
@@ -26,13 +26,13 @@ class LayerBudget {
             stop();
     }
 
-    /// Returns the number of items of this size that fit.
+    /// Returns the number of items of `bytes_each` bytes that fit into the budget.
     [[nodiscard]] std::uint64_t room(std::uint64_t bytes_each) const noexcept {
         return limits_.memory == 0 ? std::numeric_limits<std::uint64_t>::max() : limits_.memory / bytes_each;
     }
-    /// Throws Error{limit} if the items do not fit; to be called before memory is allocated. `items` names
-    /// them, such as "scan vectors". `cure` describes how to have fewer of them, if anything but more memory
-    /// and fewer threads helps.
+    /// Throws Error{limit} if the items do not fit. Must be called before memory is allocated. `items` is
+    /// their name in the error, such as "scan vectors". `cure` describes how to reduce their number, if there
+    /// is a remedy other than more memory and fewer threads.
     void need(std::uint64_t count, std::uint64_t bytes_each, std::string_view items,
               std::string_view cure = {}) const {
         if (count > room(bytes_each))
@@ -42,7 +42,7 @@ class LayerBudget {
     /// Returns the name of the layer that errors begin with: "layer 3 at z = 0.5 mm".
     [[nodiscard]] std::string layer() const;
 
-    /// Returns the rest of the budget while this number of bytes is kept.
+    /// Returns the remaining budget while `bytes` bytes are in use.
     [[nodiscard]] LayerBudget without(std::uint64_t bytes) const noexcept {
         LayerBudget left = *this;
         left.limits_ = limits_.without(bytes);

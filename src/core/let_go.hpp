@@ -4,7 +4,7 @@
 
 namespace lamella {
 
-/// Frees the memory of a list: `items = {}` would empty it but keep its memory.
+/// Empties a container and frees its memory; `items = {}` would keep the memory.
 template <class T>
 void let_go(std::vector<T>& items) noexcept {
     std::vector<T>().swap(items);

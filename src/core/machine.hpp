@@ -1,14 +1,14 @@
 #pragma once
 
-// The two resources that the engine asks its machine for: processors and large memory. `system/machine.cpp`
-// asks the operating system, `core/plain_machine.cpp` only the standard library; the build compiles one of
-// them.
+// The two resources that the engine requests from the machine: processors and large memory. The build
+// compiles one of two sources: `system/machine.cpp` uses the operating system, `core/plain_machine.cpp` only
+// the standard library.
 
 #include <cstddef>
 
 namespace lamella {
 
-/// Size of a large page, bytes. Large memory starts at a multiple of it where the system has such pages.
+/// Size of a large page, bytes. If the system has such pages, large memory starts at a multiple of it.
 inline constexpr std::size_t large_page = std::size_t{2} << 20;
 
 /// Returns the number of processors that this process may use; at least 1.
@@ -16,16 +16,17 @@ inline constexpr std::size_t large_page = std::size_t{2} << 20;
 
 /// Large memory whose bytes are zero. It starts at a multiple of `large_page`.
 struct LargeMemory {
-    void* data = nullptr;  ///< nullptr if the machine lacks the memory
-    std::size_t bytes = 0; ///< as `release_large_memory` takes them
+    void* data = nullptr;  ///< nullptr if there is not enough memory
+    std::size_t bytes = 0; ///< to be passed to `release_large_memory`
 };
 [[nodiscard]] LargeMemory take_large_memory(std::size_t bytes) noexcept;
 void release_large_memory(LargeMemory memory) noexcept;
 
-/// Asks for large pages in [data, data + bytes), which holds whole large pages. A hint.
+/// Requests large pages for [data, data + bytes), which must consist of whole large pages. The system may
+/// ignore it.
 void prefer_large_pages(void* data, std::size_t bytes) noexcept;
-/// Lets the machine provide the pages of [data, data + bytes) now, not at the first write. A hint; the
-/// content stays.
+/// Requests that the pages of [data, data + bytes) are provided now, not at the first write. Their content is
+/// kept. The system may ignore it.
 void provide_pages(void* data, std::size_t bytes) noexcept;
 
 } // namespace lamella

@@ -10,8 +10,8 @@
 
 namespace lamella {
 
-/// Returns the result of `work`. Puts the name in front of its errors, "part.stl: the mesh ...", except for
-/// cancellation; an empty name adds nothing.
+/// Returns the result of `work`. Prefixes its errors, except for cancellation, with the name, as in
+/// "part.stl: the mesh ..."; an empty name adds nothing.
 template <class Work>
 auto naming(const std::string& name, const Work& work) -> decltype(work()) {
     try {

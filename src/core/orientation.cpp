@@ -13,7 +13,7 @@ namespace {
 __extension__ using SignedWide = __int128;
 
 /// Computes the determinant of three differences in integers. Returns false unless all are exact multiples of
-/// one power of two with at most 40 bits, as differences of single-precision coordinates mostly are.
+/// one power of two with at most 40 bits, as most differences of single-precision coordinates are.
 bool integer_orientation(const Point3& a, const std::array<const Point3*, 3>& others, int& sign) noexcept {
     std::array<double, 9> gaps; // NOLINT: filled below
     double largest = 0;
@@ -50,8 +50,8 @@ bool integer_orientation(const Point3& a, const std::array<const Point3*, 3>& ot
     return true;
 }
 
-/// The sign for coordinates that are whole multiples of one power of two, with at most 62 bits, as those of
-/// similar size are. False where they are not.
+/// Computes the sign in integers. Returns false unless all coordinates are multiples of one power of two with
+/// at most 62 bits, as coordinates of similar size are.
 bool integer_orientation(const Point2& a, const Point2& b, const Point2& c, int& sign) noexcept {
     const std::array<double, 6> coordinates{a.x, a.y, b.x, b.y, c.x, c.y};
     double largest = 0;

@@ -9,7 +9,8 @@
 
 namespace lamella {
 
-/// The exact results by integer arithmetic; slow, for the rare cases that `orientation` cannot decide.
+/// Compute the exact results in integer arithmetic, which is slow, for the rare cases that `orientation`
+/// cannot decide.
 [[nodiscard]] int exact_orientation(const Point2& a, const Point2& b, const Point2& c) noexcept;
 [[nodiscard]] int exact_orientation(const Point3& a, const Point3& b, const Point3& c,
                                     const Point3& d) noexcept;
@@ -23,8 +24,8 @@ namespace lamella {
 /// and r has the sign of the exact one and at most 1 + u times its size. Hence the computed det has the sign
 /// of D if |det| > (1 + u) (3u + 7u^2) (|l| + |r|); the coefficient 3u + 16u^2 also covers the two roundings
 /// of the bound itself. A product that underflows has an additional error of 2^-1075: with |l| + |r| > 1e-280
-/// the slack of the coefficient, more than u^2 (|l| + |r|) / 2, is far larger. Overflow makes the bound
-/// infinity or NaN, and nothing exceeds those.
+/// the slack of the coefficient, more than u^2 (|l| + |r|) / 2, is far larger. If something overflows, the
+/// bound is infinity or NaN, which nothing exceeds.
 [[nodiscard]] inline int orientation(const Point2& a, const Point2& b, const Point2& c) noexcept {
     constexpr double u = 0x1p-53;
     const double ax = a.x - c.x;
@@ -37,7 +38,7 @@ namespace lamella {
     const double size = std::abs(l) + std::abs(r);
     if (size > 1e-280 && std::abs(det) > (3 + 16 * u) * u * size)
         return det > 0 ? 1 : -1;
-    // The signs of the differences are exact, and so are those of L and R; often they decide.
+    // The signs of the differences are exact, and so are those of L and R. They often suffice.
     const auto sign = [](double x) {
         return (x > 0) - (x < 0);
     };
@@ -66,7 +67,7 @@ class Plane {
                   std::abs(p.x * q.y) + std::abs(p.y * q.x)};
     }
 
-    /// Returns +1 or -1 if that is certain, as `orientation` of the three points and d; otherwise 0.
+    /// Returns the `orientation` of the three points and d, +1 or -1, if it is certain; otherwise 0.
     [[nodiscard]] int likely_side(const Point3& d) const noexcept {
         constexpr double u = 0x1p-53;
         const Point3 r{d.x - a_.x, d.y - a_.y, d.z - a_.z};
@@ -77,12 +78,12 @@ class Plane {
             return det > 0 ? 1 : -1;
         return 0;
     }
-    /// Returns the exact side, 0 in the plane.
+    /// Returns the exact side: the `orientation` of the three points and d, 0 in the plane.
     [[nodiscard]] int side(const Point3& d) const noexcept {
         const int likely = likely_side(d);
         if (likely != 0)
             return likely;
-        // All in one coordinate plane: the most frequent case of coplanar points.
+        // All points in one axis-parallel plane: the most frequent case of coplanar points.
         const auto level = [&](double Point3::*k) {
             return a_.*k == b_.*k && a_.*k == c_.*k && a_.*k == d.*k;
         };
@@ -95,7 +96,7 @@ class Plane {
     Point3 b_;
     Point3 c_;
     Point3 normal_;
-    Point3 sizes_; ///< the components of `normal_` without cancellation
+    Point3 sizes_; ///< sums of the absolute values of the terms of `normal_`
 };
 
 /// Returns +1 if d lies on the side of the plane through a, b and c from which they are counter-clockwise, -1

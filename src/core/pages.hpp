@@ -39,7 +39,7 @@ class Pages {
     std::size_t bytes_ = 0;
 };
 
-/// An array of trivial values, or of atomics of them, in Pages.
+/// An array of trivial values, or of atomics of trivial values, in Pages.
 template <class T>
 class PageArray {
     static_assert(std::is_trivially_destructible_v<T>);
@@ -48,7 +48,7 @@ class PageArray {
     PageArray() = default;
     explicit PageArray(std::size_t size, Fill fill = Fill::none)
         : pages_(size <= ~std::size_t{0} / sizeof(T) ? size * sizeof(T) : ~std::size_t{0}, fill),
-          size_(size) {} // a size beyond all memory must fail, not wrap around
+          size_(size) {} // a size beyond all memory must fail, not overflow
 
     [[nodiscard]] T* data() const noexcept { return static_cast<T*>(pages_.data()); }
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -60,12 +60,12 @@ class PageArray {
     std::size_t size_ = 0;
 };
 
-/// Requests large pages for [data, data + bytes) and lets all workers touch the whole pages in it. A hint:
-/// the content does not change, and it works without large pages, too.
+/// Requests large pages for [data, data + bytes) and lets all workers touch the pages that are entirely in
+/// it. The content does not change. If there are no large pages, this has no effect on anything but speed.
 void make_pages_ready(Executor& executor, void* data, std::size_t bytes);
 
-/// Resizes an empty vector. A thread that resizes would touch all fresh pages alone, so the workers touch
-/// them before.
+/// Resizes an empty vector. All workers touch its fresh pages first, because the resizing thread would do so
+/// alone, which is slower.
 template <class T>
 void resize_in_huge_pages(Executor& executor, std::vector<T>& values, std::size_t size) {
     values.reserve(size);

@@ -1,4 +1,5 @@
-// Implements machine.hpp with the standard library alone, for systems without a source of their own.
+// Implements machine.hpp with the standard library alone, for operating systems other than those of
+// system/machine.cpp.
 
 #include "core/machine.hpp"
 

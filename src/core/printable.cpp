@@ -38,7 +38,7 @@ std::string printable(std::string_view text, std::size_t max_bytes) {
     for (std::size_t i = 0; i < text.size();) {
         const std::size_t length = utf8_length(text, i);
         const unsigned lead = byte_at(text, i);
-        // U+0080 to U+009F are control characters, too; U+FFFE and U+FFFF are none, but XML forbids them.
+        // U+0080 to U+009F are control characters, too. U+FFFE and U+FFFF are not, but XML forbids them.
         const bool control = lead < 0x20 || lead == 0x7F || (lead == 0xC2 && byte_at(text, i + 1) < 0xA0);
         const bool none = length == 3 && text.substr(i, 3) >= "\xEF\xBF\xBE" && lead == 0xEF;
         if (i + std::max<std::size_t>(length, 1) > max_bytes)

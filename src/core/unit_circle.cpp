@@ -8,7 +8,7 @@ namespace lamella {
 
 namespace {
 
-/// Requires 0 <= angle <= pi / 4. Taylor's series: at pi / 4 the first omitted term is below 2^-60.
+/// Sums the Taylor series for 0 <= angle <= pi / 4, where the first omitted term is below 2^-60.
 CosSin first_octant(double angle) noexcept {
     const double q = angle * angle;
     double cosine = 0;
@@ -20,8 +20,8 @@ CosSin first_octant(double angle) noexcept {
     return {1 - cosine, angle - angle * sine};
 }
 
-/// Maps the values within the first octant to the given octant. In odd octants they are those of the angle up
-/// to the next octant.
+/// Maps cosine and sine from the first octant to the given octant. In odd octants they must be those of the
+/// angle from the point to the end of the octant.
 CosSin in_octant(unsigned octant, CosSin v) noexcept {
     if (octant % 4 == 1 || octant % 4 == 2)
         std::swap(v.cos, v.sin);

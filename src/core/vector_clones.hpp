@@ -2,9 +2,10 @@
 
 // Loops compiled for several processors.
 
-/// Before the definition of a function: compiles it for wider vectors, too; the widest version that the
-/// processor supports is selected when the program starts. Operations are neither fused nor reordered, so all
-/// give the same bits. Disabled under sanitizers, which are not initialised when the selection is made.
+/// Written before the definition of a function, LAMELLA_VECTOR_CLONES compiles it for wider vectors, too. The
+/// widest version that the processor supports is selected when the program starts. Operations are neither
+/// fused nor reordered, so all versions give the same bits. Disabled under sanitizers, which are not
+/// initialised when the selection is made.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define LAMELLA_SANITIZED

@@ -1,7 +1,7 @@
 #pragma once
 
 // GCC and clang vectors, for kernels that are compiled for the instruction sets of several processors. They
-// are passed by reference only: passed by value, they would need a different calling convention.
+// are passed by reference only, because the calling convention for values depends on the instruction set.
 
 namespace lamella {
 
