@@ -18,7 +18,7 @@ namespace lamella {
 /// beyond it in an anonymous file (see SpillFile). For one thread.
 class ByteStore {
   public:
-    /// Keeps about `most_in_memory` bytes in memory, in whole chunks of 8 MiB, and one more chunk.
+    /// Keeps up to `most_in_memory` bytes, rounded to whole chunks of 8 MiB, in memory, plus one chunk.
     explicit ByteStore(std::uint64_t most_in_memory = std::uint64_t{32} << 20)
         : most_blocks_(most_in_memory / block_bytes) {}
 
@@ -26,7 +26,7 @@ class ByteStore {
     void add(std::string_view bytes);
     [[nodiscard]] std::uint64_t size() const noexcept { return size_; }
 
-    /// Copies the bytes from offset `position` on into `bytes`. Requires that the store holds them.
+    /// Copies bytes.size() bytes from offset `position` on into `bytes`. Requires that the store holds them.
     void read(std::uint64_t position, std::span<char> bytes) const;
 
     static constexpr std::size_t block_bytes = std::size_t{8} << 20;

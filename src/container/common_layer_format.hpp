@@ -20,12 +20,12 @@ enum class CommonLayerCommand : std::uint16_t {
     hatches_long = 132,
 };
 
-/// Returns the size in bytes of the command that begins here; 16-bit numbers take two bytes each. Returns
-/// none if the bytes are not a command or are cut off.
+/// Returns the size in bytes of the command at the beginning of `bytes`; 16-bit numbers take two bytes each.
+/// Returns nullopt if there is no command or if it is truncated.
 [[nodiscard]] inline std::optional<std::uint64_t> common_layer_command_size(std::string_view bytes) noexcept {
     const auto number = [&]<class T>(std::size_t at, T value) -> std::uint64_t {
         if (bytes.size() < at + sizeof value)
-            return bytes.size(); // the number is cut off
+            return bytes.size(); // the number is truncated
         std::memcpy(&value, bytes.data() + at, sizeof value);
         return value;
     };

@@ -49,7 +49,7 @@ void Deflater::append_chunk(std::string_view bytes, std::string& out) {
         stream.next_in = const_cast<Bytef*>(input(part));
         stream.avail_in = static_cast<uInt>(part.size());
         const std::size_t begin = out.size();
-        // deflateBound counts the end of a stream instead of the few bytes of a flush.
+        // deflateBound includes the end of a stream, but not the few bytes of a flush.
         constexpr std::size_t most_of_flush = 16;
         out.resize(begin + deflateBound(&stream, static_cast<uLong>(part.size())) + most_of_flush);
         stream.next_out = reinterpret_cast<Bytef*>(out.data() + begin);
@@ -62,7 +62,7 @@ void Deflater::append_chunk(std::string_view bytes, std::string& out) {
 
 std::string deflated(std::string_view bytes) {
     std::string stream;
-    // zlib initialises some hundred kilobytes and cannot shorten an input of so few bytes.
+    // zlib would initialise several hundred kilobytes, and cannot shorten an input of so few bytes.
     constexpr std::size_t few = 64;
     if (bytes.size() <= few) {
         constexpr char last_and_stored = 1;

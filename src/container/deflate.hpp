@@ -1,6 +1,6 @@
 #pragma once
 
-// Deflate compression in chunks that any thread can make and that are joined by concatenation.
+// Deflate compression in chunks, which several threads can make and which are joined by concatenation.
 
 #include <cstdint>
 #include <memory>
@@ -16,7 +16,7 @@ namespace lamella {
 
 /// Makes chunks of a raw Deflate stream. Each chunk can be read without the ones before it and ends on a byte
 /// boundary, so chunks of several deflaters can be joined in any order; `deflate_end` ends the stream. Equal
-/// bytes give equal chunks, whichever deflater makes them. For one thread at a time.
+/// bytes give equal chunks, no matter which deflater makes them. For one thread at a time.
 class Deflater {
   public:
     /// Uses the fast setting, so that compressing a layer is not much slower than formatting it.

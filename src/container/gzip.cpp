@@ -70,7 +70,7 @@ bool is_gzip(std::span<const std::byte> bytes) noexcept {
 ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes, const Execution& execution) {
     if (!is_gzip(source.bytes))
         return source;
-    // Fits zlib's counters and lets cancellation take effect soon.
+    // Small enough for zlib's counters and for prompt cancellation.
     constexpr std::size_t step = std::size_t{8} << 20;
     const std::uint64_t most = max_bytes != 0 ? max_bytes : usual_most_unpacked(source.bytes.size());
     Inflater inflater;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Decompression of Deflate by libdeflate, and the checksums of zip and PNG files. gzip.cpp contains what
-// needs zlib.
+// Decompression of Deflate by libdeflate, and the checksums of zip and PNG files. Functions that need zlib
+// are in gzip.cpp.
 
 #include <cstddef>
 #include <cstdint>
@@ -24,18 +24,18 @@ enum class Inflated {
     broken,    ///< not a Deflate stream, truncated, or followed by other data
 };
 
-/// Largest ratio of decompressed to compressed size that Deflate can reach.
+/// Upper bound on the ratio of decompressed to compressed size in Deflate.
 inline constexpr std::uint64_t most_inflation = 1032;
 
 /// Returns the default limit for the decompressed size of a file: 64 times its compressed size, at least 64
-/// MiB, which meshes and layers do not exceed, but at most `usual_memory`.
+/// MiB and at most `usual_memory`. Meshes and layers do not compress better than that.
 [[nodiscard]] std::uint64_t usual_most_unpacked(std::uint64_t compressed_bytes);
 
 /// Decompresses a raw Deflate stream into a buffer of exactly the expected size. Pages of the buffer beyond
 /// the end of the stream are not touched.
 [[nodiscard]] Inflated inflate(std::string_view compressed, std::span<std::byte> room);
 
-/// Returns the first `most` bytes of the contents of a raw Deflate stream; fewer if the stream ends or is
+/// Returns the first `most` decompressed bytes of a raw Deflate stream; fewer if the stream ends or is
 /// damaged before.
 [[nodiscard]] std::string first_inflated(std::string_view compressed, std::size_t most);
 

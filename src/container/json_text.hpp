@@ -8,7 +8,8 @@
 
 namespace lamella {
 
-/// A cursor in a JSON text. Values are read in the order of the text. Errors are Error{input} with the line.
+/// A cursor in a JSON text, which reads values in the order of the text. All errors are Error{input} with the
+/// number of the line.
 class JsonText {
   public:
     /// Reads the text from byte `begin` on; lines and `at` count from the first byte of the text.
@@ -45,7 +46,7 @@ class JsonText {
     /// Returns the offset of the next byte.
     [[nodiscard]] std::size_t at() const noexcept { return at_; }
 
-    /// Throws Error{input} with the line of the next value.
+    /// Throws Error{input} with the number of the line of the next value.
     [[noreturn]] void fail(const std::string& found, const std::string& expected) const;
     /// Describes the text at the cursor, for error messages.
     [[nodiscard]] std::string here() const;

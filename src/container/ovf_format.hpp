@@ -1,7 +1,7 @@
 #pragma once
 
-// Field numbers and values of the schema of the Open Vector Format that the writer and the reader know.
-// Messages are nested as the names are.
+// Field numbers and values in the schema of the Open Vector Format, as far as the writer and the reader use
+// them. Namespaces are nested like the messages of the schema.
 
 #include <cstdint>
 #include <string_view>
@@ -63,7 +63,8 @@ namespace block {
 enum : std::uint32_t {
     line_sequence = 1,
     hatches = 2,
-    last_of_vectors = 12, ///< largest number of a kind of vectors; the numbers between are other kinds
+    last_of_vectors = 12, ///< largest field number of a kind of vectors; the numbers between those above are
+                          ///< other kinds
     marking_params_key = 50,
     laser_index = 53,
     repeats = 54,

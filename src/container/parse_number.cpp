@@ -1,6 +1,7 @@
 #include "container/parse_number.hpp"
 
-// Not std::from_chars: libc++ has it for integers only, and overflow and underflow give the same code.
+// std::from_chars is not used, because libc++ has it for integers only, and because it returns the same code
+// for overflow and underflow.
 #include <fast_float/fast_float.h>
 
 namespace lamella {

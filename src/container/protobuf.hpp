@@ -1,7 +1,7 @@
 #pragma once
 
-// The wire format of Protocol Buffers, for messages of numbers, texts and other messages. A field is a
-// number, a type and a value: a varint, 32 bits, 64 bits, or a length and that many bytes.
+// Writes the wire format of Protocol Buffers. A message consists of fields: a field number, a type and a
+// value, which is a varint, 32 bits, 64 bits, or a length followed by as many bytes.
 
 #include <bit>
 #include <cstdint>
@@ -31,8 +31,8 @@ inline char* put_varint(char* out, std::uint64_t value) noexcept {
     return std::uint64_t{field} << 3U | static_cast<std::uint64_t>(type);
 }
 
-/// A message under construction. Fields of value 0 and empty texts are omitted, as an absent field has this
-/// value.
+/// A message under construction. Fields of value 0 and empty texts are omitted, because absent fields have
+/// this value.
 class ProtobufMessage {
   public:
     void integer(std::uint32_t field, std::int64_t value) {
@@ -53,7 +53,7 @@ class ProtobufMessage {
         if (!value.empty())
             bytes(field, value);
     }
-    /// Writes an empty message, too, because its presence is significant.
+    /// Adds a message. It is written even if it is empty, because its presence has a meaning.
     void message(std::uint32_t field, const ProtobufMessage& value) { bytes(field, value.bytes_); }
     /// Writes an entry of a map from integers to messages.
     void entry(std::uint32_t field, std::int64_t key, const ProtobufMessage& value) {
@@ -72,7 +72,7 @@ class ProtobufMessage {
     }
 
     [[nodiscard]] std::string_view view() const noexcept { return bytes_; }
-    /// Returns the message preceded by its length, as in files of several messages.
+    /// Returns the message preceded by its length, for files with several messages.
     [[nodiscard]] std::string delimited() const {
         ProtobufMessage length;
         length.append(bytes_.size());

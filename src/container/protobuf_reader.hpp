@@ -18,19 +18,18 @@ class ProtobufReader {
     ProtobufReader(std::string_view bytes, std::uint64_t position, const std::string& name)
         : rest_(bytes), position_(position), name_(&name), field_offset_(position) {}
 
-    /// Moves to the next field; false at the end.
+    /// Moves to the next field. Returns false at the end.
     [[nodiscard]] bool next();
     [[nodiscard]] std::uint32_t field() const noexcept { return field_; }
     [[nodiscard]] ProtobufType type() const noexcept { return type_; }
 
-    // Each returns the value, which must have this type.
+    // These functions return the value of the field, which must have their type.
     [[nodiscard]] std::int64_t integer() const;
     [[nodiscard]] float real() const;
     [[nodiscard]] std::string_view bytes() const;
     [[nodiscard]] ProtobufReader message() const { return {bytes(), value_offset_, *name_}; }
 
-    /// Calls take(value) for each integer of the field: a single value, or several if the list is in one
-    /// field.
+    /// Calls take(value) for each integer of the field, which may contain one integer or a whole list.
     template <class Take>
     void integers(const Take& take) const {
         if (type_ == ProtobufType::varying) {
@@ -45,8 +44,8 @@ class ProtobufReader {
     /// Returns the offset of the field in the file.
     [[nodiscard]] std::uint64_t position() const noexcept { return field_offset_; }
 
-    /// Returns the message whose length is at offset `position` of the file, and moves `position` after the
-    /// message.
+    /// Returns the message that begins with its length at offset `position` of the file, and advances
+    /// `position` beyond the message.
     [[nodiscard]] static ProtobufReader delimited(std::string_view file, std::uint64_t& position,
                                                   const std::string& name);
 

@@ -174,10 +174,10 @@ class Parse {
     /// Returns the number of bytes of an incomplete token that the parser holds.
     [[nodiscard]] std::size_t waiting() const { return static_cast<std::size_t>(fed_ - parsed_); }
 
-    /// Returns how many more bytes of an incomplete token to feed: at least as many as it has. Expat scans
-    /// the token from its start each time; newer versions (2.6, and older ones with its security patches)
-    /// wait until they have twice as much of it. The steps end at exactly the longest token: a token that is
-    /// then incomplete is too long for any version of Expat.
+    /// Returns the number of further bytes of an incomplete token to feed: at least as many as were already
+    /// fed. Expat scans the token from its start each time; newer versions (2.6, and older ones with its
+    /// security patches) wait until they have twice as many bytes. The last step ends exactly at the longest
+    /// permitted size: a token that is then incomplete is refused, for any version of Expat.
     [[nodiscard]] std::size_t more_of_token() const {
         constexpr std::size_t first_step = std::size_t{1} << 16;
         std::size_t enough = longest_token;
@@ -193,10 +193,10 @@ class Parse {
         }
     }
 
-    /// Feeds everything up to the last sequence of skimmed elements, except these sequences.
+    /// Feeds the document, except skimmed elements, up to the end of the last skimmed elements.
     void skim_through() {
         std::size_t from = 0;
-        // An unsuccessful request costs time, so the distance to the next one doubles.
+        // A call of `skim` without success costs time, so the distance to the next call doubles.
         std::size_t patience = std::size_t{1} << 16;
         while (const std::optional<std::size_t> tag = find_tag(from)) {
             std::size_t blanks = *tag;
@@ -265,8 +265,7 @@ class Parse {
     XML_Index parsed_ = 0;        ///< bytes fed that the parser has consumed
     XML_Index last_tag_end_ = -1; ///< counts bytes fed
     std::size_t skimmed_lines_ = 0;
-    std::vector<std::size_t> next_tags_; ///< for each of `many`, its first offset that the last search had
-                                         ///< not passed
+    std::vector<std::size_t> next_tags_; ///< for each tag of `many`, the offset of its next occurrence
     std::size_t reported_ = 0;
 };
 

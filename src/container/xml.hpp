@@ -26,8 +26,8 @@ class XmlAttributes {
   public:
     explicit XmlAttributes(const char** pairs) : pairs_(pairs) {}
 
-    /// Returns the value, or an empty view without data() if there is no such attribute. An attribute without
-    /// a prefix is in no namespace.
+    /// Returns the value of the attribute, or a view whose data() is null if there is none. An attribute
+    /// without a prefix is in no namespace.
     [[nodiscard]] std::string_view find(std::string_view local) const noexcept;
     [[nodiscard]] std::string_view find(XmlName name) const noexcept;
 
@@ -40,19 +40,20 @@ struct XmlHandlers {
     /// `line` counts from 1. Views are valid during the call.
     std::function<void(XmlName name, const XmlAttributes& attributes, std::size_t line)> start;
     std::function<void(XmlName name)> end;
-    /// Called after every few megabytes with the number of bytes read since the last call; may throw to stop.
+    /// Called every few megabytes with the number of bytes read since the last call; may throw to stop the
+    /// parser.
     std::function<void(std::size_t bytes)> progress = {};
     /// Text between tags; one text may take several calls.
     std::function<void(std::string_view text)> text = {};
-    /// A prefix (empty for the default one) and its namespace; called before the element that declares them
-    /// starts.
+    /// Called with a prefix (empty for the default namespace) and its namespace, before `start` of the
+    /// element that declares them.
     std::function<void(std::string_view prefix, std::string_view space)> declare = {};
 
-    /// Reads numerous elements without the parser. If one of the tags in `many` (such as "<vertex") follows
-    /// another tag, with only blanks between them, `skim` is called with the whole document and the offset of
-    /// that tag. It returns how many bytes from there the parser must skip; the handler guarantees that these
-    /// are whole, well-formed elements. If it returns 0, the parser reads the elements, and `skim` may not be
-    /// called again for a while.
+    /// Tags of numerous elements, such as "<vertex", which a handler can read faster than the parser. If such
+    /// a tag follows another tag, with only blanks between them, `skim` is called with the whole document and
+    /// the offset of the tag. It returns the number of bytes that the parser must skip from there, and
+    /// guarantees that these are whole, well-formed elements. If it returns 0, the parser reads the elements,
+    /// and `skim` may not be called again for a while.
     std::vector<std::string_view> many = {};
     std::function<std::size_t(std::string_view document, std::size_t position)> skim = {};
 };
@@ -66,7 +67,7 @@ struct XmlRules {
     bool no_document_type = false;
 };
 
-/// Returns the text without the blanks around it, which carry no meaning in most XML files.
+/// Returns the text without blanks at its beginning and end, which have no meaning in most XML files.
 [[nodiscard]] std::string_view trimmed(std::string_view text) noexcept;
 
 /// Parses a whole document. An exception of a handler ends parsing and is rethrown. Throws Error{input} with

@@ -14,7 +14,7 @@ constexpr std::uint32_t zip_end_signature = 0x06054b50;
 constexpr std::uint32_t zip_end64_signature = 0x06064b50;
 constexpr std::uint32_t zip_end64_locator_signature = 0x07064b50;
 
-/// These values in a field mean that the actual value is in the zip64 records.
+/// A field with this value refers to the zip64 records, which have the actual value.
 constexpr std::uint64_t full16 = 0xFFFF;
 constexpr std::uint64_t full32 = 0xFFFFFFFF;
 
@@ -25,7 +25,7 @@ enum class ZipMethod : std::uint16_t { stored = 0, deflated = 8 };
 
 /// Directory record of an entry.
 struct ZipEntry {
-    std::string name; ///< with `/` between folders and no leading one
+    std::string name; ///< with `/` between folders, without a leading `/`
     std::uint64_t size = 0;
     std::uint64_t compressed_size = 0;
     std::uint64_t offset =

@@ -56,8 +56,8 @@ bool has_signature(std::string_view bytes, std::uint64_t at, std::uint32_t mark,
     return at <= bytes.size() && bytes.size() - at >= header && u32(bytes, at) == mark;
 }
 
-/// Replaces the values that are full by their 64-bit forms, which have the same order in the extra field.
-/// Returns false if the field is missing or too short.
+/// Replaces the values that refer to zip64 by the 64-bit values of the extra field, which has them in the
+/// same order. Returns false if the field is missing or too short.
 bool widen(std::string_view extra, std::initializer_list<std::uint64_t*> values) {
     std::string_view large;
     while (extra.size() >= 4 && large.data() == nullptr) {
@@ -118,7 +118,7 @@ class DirectoryFinder {
         throw Error(ErrorKind::input, fmt::format("{}: {}", name_, what));
     }
 
-    /// Finds the end record. A comment or appended data of any content may follow it.
+    /// Finds the end record. A comment, or appended data of any kind, may follow it.
     std::size_t find_end() const {
         std::optional<std::size_t> before_others;
         if (bytes_.size() >= end_header) {
@@ -140,7 +140,7 @@ class DirectoryFinder {
     }
 
     /// Reads the zip64 records of the archive with the end record at `end`. The end record must agree with
-    /// them: otherwise two readers could find two directories.
+    /// them, because otherwise different readers could find different directories.
     void read_end64(std::uint64_t at, std::size_t end, Directory& directory) const {
         constexpr std::size_t before_size_counts = 12;
         const bool is_there = has_signature(bytes_, at, zip_end64_signature, end64_header);
@@ -168,7 +168,7 @@ bool before_in_any_case(std::string_view a, std::string_view b) {
                                         [](char x, char y) { return lower_case(x) < lower_case(y); });
 }
 
-/// Order of names in which those that differ only in case are adjacent.
+/// Returns whether name `a` comes before `b` in an order where names that differ only in case are adjacent.
 bool comes_before(std::string_view a, std::string_view b) {
     return before_in_any_case(a, b) || (!before_in_any_case(b, a) && a < b);
 }
@@ -343,7 +343,7 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
     if (entry.method != ZipMethod::stored && entry.method != ZipMethod::deflated)
         fail(fmt::format("is compressed by method {}, expected 0 (stored) or 8 (Deflate)",
                          static_cast<unsigned>(entry.method)));
-    // Checked before memory is allocated: a few bytes must not reserve memory that others need.
+    // Checked before memory is allocated, so that a small file cannot reserve much memory.
     if (entry.method == ZipMethod::deflated ? entry.size / most_inflation > entry.compressed_size
                                             : entry.size != entry.compressed_size)
         fail(fmt::format("claims to hold {} bytes in {}, which is impossible", entry.size,

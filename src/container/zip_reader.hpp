@@ -17,34 +17,34 @@ namespace lamella {
 /// Returns whether the bytes begin with a signature of zip archives.
 [[nodiscard]] bool is_zip(std::string_view bytes) noexcept;
 
-/// The entries of a zip archive, including zip64; sizes may precede or follow the compressed bytes. An entry
-/// is decompressed only when it is read. Its claimed size is accepted only if Deflate can reach it from the
-/// available bytes, and pages of memory are used only as they are filled.
+/// The entries of a zip archive, with or without zip64; sizes may precede or follow the compressed bytes. An
+/// entry is decompressed only when it is read. Its claimed size is accepted only if Deflate can produce it
+/// from the available bytes, and pages of memory are used only when they are filled.
 ///
-/// Refuses, with Error{input}, archives that two readers could interpret differently: several discs, entries
-/// that overlap or exceed the file, duplicate names, and a name or size that differs between the directory
-/// and the entry. Encrypted entries and methods other than Deflate are refused when they are read.
+/// Throws Error{input} for archives that two readers could interpret differently: with several discs, entries
+/// that overlap or exceed the file, duplicate names, or a name or size that differs between the directory and
+/// the entry. Encrypted entries and methods other than Deflate are refused when they are read.
 class ZipReader {
   public:
-    /// Reads the directory. At most `max_unpacked` bytes will be decompressed in total, including stored
-    /// ones; 0 means `usual_most_unpacked`.
+    /// Reads the directory. `max_unpacked` limits the bytes of all entries that are read, decompressed or
+    /// stored; 0 means `usual_most_unpacked`.
     ZipReader(ByteSource source, std::uint64_t max_unpacked);
 
-    /// Returns the entries in the order of the directory, without folders.
+    /// Returns the entries except folders, in the order of the directory.
     [[nodiscard]] const std::vector<ZipEntry>& entries() const noexcept { return entries_; }
 
-    /// Returns the entry with this name (without a leading slash). If there is none, returns the first, in
-    /// byte order, of those that differ only in the case of ASCII letters, or null.
+    /// Returns the entry with this name (without a leading slash). Otherwise returns, of the entries whose
+    /// names differ only in the case of ASCII letters, the first in byte order; null if there is none.
     [[nodiscard]] const ZipEntry* find(std::string_view name) const noexcept;
 
-    /// Returns the bytes of an entry, perhaps none, after verifying their CRC. The bytes of a stored entry
-    /// are a view of the archive. The name of the source names archive and entry. May be called from several
-    /// threads. Throws Error{input} if the entry is damaged or differs from its record, and Error{limit} if
-    /// the bytes exceed the limit.
+    /// Returns the bytes of an entry, which may be empty, after verifying their CRC. The bytes of a stored
+    /// entry are a view of the archive. The name of the source contains those of archive and entry. May be
+    /// called from several threads. Throws Error{input} if the entry is damaged or differs from its record,
+    /// and Error{limit} if the bytes exceed the limit.
     [[nodiscard]] ByteSource read(const ZipEntry& entry) const;
 
-    /// Returns up to `most` of the first bytes of an entry, to detect its format. They are not verified and
-    /// do not count towards the limit. Returns none if the entry cannot be read.
+    /// Returns at most `most` of the first bytes of an entry, to detect its format; "" if the entry cannot be
+    /// read. They are not verified and do not count towards the limit.
     [[nodiscard]] std::string first_bytes(const ZipEntry& entry, std::size_t most) const;
 
     /// Returns warnings about the archive, one line each.

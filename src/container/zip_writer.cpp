@@ -73,7 +73,7 @@ bool is_large(const ZipEntry& entry) {
 }
 
 // Returns the header of an entry. A large entry has 64-bit sizes. `room` reserves space for them if the size
-// is not known yet; if they are not needed, it becomes a growth hint of Open Packaging (0xA220).
+// is not yet known; if they are not needed, the space becomes a growth hint of Open Packaging (0xA220).
 std::string header_of(const ZipEntry& entry, bool room = false) {
     const bool large = is_large(entry);
     Record sizes;
@@ -168,7 +168,7 @@ void ZipWriter::end(std::string_view header) {
 
 void ZipWriter::append_directory() {
     for (const ZipEntry& entry : entries_) {
-        // Only the values that do not fit, in this order.
+        // Contains only the values that do not fit, in this order.
         Record large;
         for (const std::uint64_t value : {entry.size, entry.compressed_size, entry.offset})
             if (value >= full32)

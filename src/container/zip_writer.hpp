@@ -19,13 +19,13 @@ struct ZipChunk {
     std::uint32_t crc = 0;  ///< CRC of the uncompressed bytes (`crc32_of`)
 };
 
-/// A zip archive that appears whole or not at all, as AtomicFile. Equal contents give equal bytes: all
-/// entries have the time 1980-01-01 00:00.
+/// A zip archive that appears complete or not at all, like AtomicFile. Equal contents give equal bytes,
+/// because all entries have the time 1980-01-01 00:00.
 ///
-/// Entries are in the order of the calls. The caller ensures that their names are unique, relative and have
-/// `/` between folders. Sizes precede the bytes of an entry. They follow them (as a data descriptor) only if
-/// the entry is deflated in chunks, because a sequential reader could not find the end of stored bytes.
-/// 64-bit sizes and offsets (zip64) are used only where 32 bits do not suffice.
+/// Entries are in the order of the calls. The caller ensures that their names are unique and relative, with
+/// `/` between folders. Sizes precede the bytes of an entry, so that a sequential reader finds their end.
+/// Only if an entry is deflated in chunks, sizes follow (as a data descriptor), because the end of a Deflate
+/// stream can be recognised. 64-bit sizes and offsets (zip64) are used only where 32 bits do not suffice.
 ///
 /// For one thread at a time, except `bytes`. Failures are Error{output}.
 class ZipWriter {
@@ -33,19 +33,19 @@ class ZipWriter {
     /// Without Overwriting::yes no byte is written twice, so the output can be a pipe.
     explicit ZipWriter(std::string path, Overwriting overwriting = Overwriting::no);
 
-    /// Adds a whole entry; compresses it here if it is deflated.
+    /// Adds a whole entry, and compresses it if the method is deflated.
     void add(std::string_view name, std::string_view content, ZipMethod method = ZipMethod::stored);
     /// Adds a whole entry that was prepared beforehand. If it is deflated, `bytes` is a stream with its end.
     void add_ready(std::string_view name, ZipMethod method, const ZipChunk& content);
 
-    /// Begin and end an entry that is written in chunks. A stored one requires Overwriting::yes; `end` may
-    /// then replace its first `header_size` bytes.
+    /// begin() and end() enclose an entry that is written in chunks. A stored entry requires
+    /// Overwriting::yes; `end` may then replace its first `header_size` bytes.
     void begin(std::string_view name, ZipMethod method, std::size_t header_size = 0);
     void append(const ZipChunk& chunk);
     void append_stored(std::string_view content);
     void end(std::string_view header = {});
 
-    /// Writes the directory and publishes the file under its name. Must be called once, after the last entry.
+    /// Writes the directory and gives the file its name. Must be called once, after the last entry.
     void finish();
 
     /// Returns the number of bytes written so far.

@@ -35,9 +35,9 @@ bool is_mount_point(const fs::path& folder) {
            (status.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0;
 }
 
-/// Identifies the owner of hidden folders: all processes of this machine until it is rebooted. Locks show
-/// which of the folders belong to a living process. Folders of other machines, which may share the disk but
-/// not the locks, have other names. If the system has no boot id, the owner is the process.
+/// Identifies the owner of hidden folders: all processes of this machine until it is rebooted. A lock shows
+/// whether the process of a folder is still running. Other machines may share the disk but not the locks;
+/// their folders have other names. If the system has no boot id, the owner is the process.
 std::string this_machine() {
     std::ifstream file("/proc/sys/kernel/random/boot_id");
     std::string id;
@@ -57,8 +57,8 @@ int open_folder(const char* name) {
     return ::open(name, O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
 }
 
-/// Removes the hidden folder unless its process is alive: a lock ends with its process, no matter how that
-/// ends. Returns whether the name is free afterwards.
+/// Removes the hidden folder unless its process is still running. (A lock ends with its process in any case.)
+/// Returns whether the name is free afterwards.
 bool remove_abandoned(const char* name) {
     const int folder = open_folder(name);
     if (folder < 0)
@@ -76,7 +76,7 @@ bool remove_abandoned(const char* name) {
 AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::path&)> may_remove)
     : path_(std::move(path)), may_remove_(std::move(may_remove)) {
     std::error_code error;
-    if (!path_.empty())                               // for an empty path libraries differ
+    if (!path_.empty())                               // standard libraries differ for an empty path
         target_ = fs::weakly_canonical(path_, error); // follows symbolic links, which are kept
     if (error)
         target_ = path_;
@@ -90,8 +90,8 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
         take_free_name(target_, this_machine(), [this](const char* name) { return make_working(name); });
     if (working_.empty())
         throw output_error(target_.string(), errno);
-    // A new folder gets permissions from the umask; those of a replaced one are kept, but until commit this
-    // process may write into it.
+    // A new folder gets permissions from the umask. A replacement gets those of the old folder, but this
+    // process may write into it until commit.
     if (struct stat replaced{}; ::stat(target_.c_str(), &replaced) == 0) {
         const bool same_group = ::chown(working_.c_str(), static_cast<uid_t>(-1), replaced.st_gid) == 0;
         permissions_ = kept_permissions(replaced.st_mode, same_group);
@@ -119,7 +119,7 @@ bool AtomicDirectory::make_working(const char* name) {
         return false;
     }
     lock_ = open_folder(name);
-    if (lock_ < 0 && errno != ENOENT) { // other processes would consider it abandoned
+    if (lock_ < 0 && errno != ENOENT) { // without a lock, other processes would consider the folder abandoned
         const int system_error = errno;
         ::rmdir(name);
         errno = system_error;
@@ -129,7 +129,7 @@ bool AtomicDirectory::make_working(const char* name) {
     const bool locked = lock_ >= 0 && (::flock(lock_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK);
     if (locked && is_still(lock_, name))
         return true;
-    // Another process considered it abandoned before it was locked.
+    // Another process considered the folder abandoned before it was locked, and removed it.
     if (lock_ >= 0)
         ::close(std::exchange(lock_, -1));
     errno = EEXIST;
@@ -153,8 +153,8 @@ void AtomicDirectory::check_replaceable() const {
                     fmt::format("cannot write '{}': it is a mount point, which nothing can replace; choose a "
                                 "folder in it, such as '{}'",
                                 path_, (target_ / "layers").string()));
-    // Another process may have exchanged the folder for its own and be removing this one. So entries that no
-    // longer exist are not foreign, and each name is tested twice: one test may combine answers from both.
+    // Another process may have replaced the folder and may be removing the old one. So entries that no longer
+    // exist are not foreign, and each name is tested twice, because one test may see both folders.
     const auto is_foreign = [this](const fs::path& entry) {
         std::error_code ignored;
         // An entry that cannot be examined exists.
@@ -209,8 +209,8 @@ void AtomicDirectory::commit() {
         remove_folder(std::exchange(working_, {}));
         return;
     }
-    // Not every file system supports that. The old folder is renamed first; if the new one cannot get its
-    // name, the old one gets it back.
+    // Not every file system supports the exchange. Otherwise the old folder is renamed first; if the new
+    // folder cannot get its name, the old one gets it back.
     const fs::path aside = take_free_name(target_, this_process(), [this](const char* name) {
         if (!fs::exists(fs::symlink_status(name)))
             return std::rename(target_.c_str(), name) == 0;

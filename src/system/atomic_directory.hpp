@@ -14,11 +14,11 @@
 
 namespace lamella {
 
-/// A new folder that gets its name when it is complete. Until then it has a temporary name next to it. This
-/// object removes the temporary folder; if the process was killed, the next one on the same machine that
-/// writes to the same name does. An existing folder of that name is replaced as a whole and its permissions
-/// are kept. It must not be a mount point, and `may_remove` must be true for each of its entries.
-/// `may_remove` must be false for an entry that does not exist.
+/// A new folder that gets its name when it is complete. Until then it has a hidden temporary name in the same
+/// parent folder. This object removes the temporary folder; if the process is killed, the next process on the
+/// same machine that writes to the same name removes it. An existing folder of that name is replaced as a
+/// whole and its permissions are kept. It must not be a mount point, and `may_remove` must return true for
+/// each of its entries. `may_remove` must return false for an entry that does not exist.
 ///
 /// Throws Error{output}.
 class AtomicDirectory {
@@ -28,24 +28,26 @@ class AtomicDirectory {
     AtomicDirectory(const AtomicDirectory&) = delete;
     AtomicDirectory& operator=(const AtomicDirectory&) = delete;
 
-    /// Creates one of the files; only before `commit`. May be called from any threads.
+    /// Creates one of the files. Must not be called after `commit`. May be called from several threads at
+    /// once.
     void write(const std::string& name, std::string_view bytes);
-    /// Bytes in all files so far.
+    /// Returns the number of bytes in all files so far.
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
 
     void commit();
 
   private:
     void check_replaceable() const;
-    /// Makes the hidden folder and locks it as long as this object lives. Returns false and sets errno on
-    /// failure: EEXIST if another process has the name.
+    /// Creates the hidden folder and locks it as long as this object lives. Returns false and sets errno on
+    /// failure, to EEXIST if another process has the name.
     bool make_working(const char* name);
 
     std::string path_;
     std::filesystem::path target_;
     std::function<bool(const std::filesystem::path&)> may_remove_;
     std::filesystem::path working_;       ///< empty after commit
-    int lock_ = -1;                       ///< locks the folder created as working_; -1 if it cannot be locked
+    int lock_ = -1;                       ///< descriptor that locks the hidden folder; -1 if it cannot be
+                                          ///< locked
     std::optional<unsigned> permissions_; ///< of the folder to be replaced
     UnfinishedName unfinished_;
     std::atomic<std::uint64_t> bytes_{0};

@@ -25,7 +25,8 @@ namespace {
 
 constexpr std::size_t buffer_size = std::size_t{1} << 18;
 
-// Returns the highest folder in `path` that is missing or is not a folder: the one the user has to examine.
+// Returns the first folder in `path` that is missing or is not a folder, which is the one that the user has
+// to examine.
 std::string first_bad_folder(const std::string& path) {
     fs::path folder = fs::path(path).parent_path();
     std::error_code ignored;
@@ -46,7 +47,8 @@ std::string folder_of(const std::string& path) {
     return folder.empty() ? "." : folder;
 }
 
-// Paths such as /dev/stdout name a file that is already open. Replacing it would take it away from its owner.
+// Returns whether a path, such as /dev/stdout, names a file that is already open. Such a file must not be
+// replaced, because its owner would no longer have it.
 bool names_open_file(const fs::path& path) {
     std::error_code error;
     const std::string text = fs::absolute(path, error).lexically_normal().string();
@@ -54,8 +56,8 @@ bool names_open_file(const fs::path& path) {
            text == "/dev/stderr";
 }
 
-// Returns the end of a chain of symbolic links, whether or not a file exists there. Empty if the chain leads
-// to a file that is already open. Throws errno as an int.
+// Returns the end of a chain of symbolic links, even if no file exists there; empty if the chain leads to a
+// file that is already open. Throws errno as an int.
 std::string follow_links(const std::string& path) {
     fs::path current = path;
     constexpr int most_links = 40; // the limit of Linux
@@ -192,7 +194,7 @@ void AtomicFile::open_unfinished() {
     const bool replaces = stat(target_.c_str(), &status) == 0;
     if (!replaces && errno == ENAMETOOLONG) // the temporary name may be shorter
         fail(errno);
-    // A rename would replace a write-protected file; whoever protected it did not want that.
+    // A rename would replace a write-protected file, against the intention of its owner.
     if (replaces && access(target_.c_str(), W_OK) != 0) {
         const int error = errno;
         if (error == EACCES)
@@ -211,8 +213,8 @@ void AtomicFile::open_unfinished() {
         open_named(everybody);
     else
         fail(errno);
-    // A new file gets permissions from the umask; those of a replaced one are kept, if this process may set
-    // them.
+    // A new file gets permissions from the umask. A replacement gets those of the old file, if this process
+    // may set them.
     if (replaces) {
         const bool same_group = fchown(descriptor_, static_cast<uid_t>(-1), status.st_gid) == 0;
         static_cast<void>(fchmod(descriptor_, kept_permissions(status.st_mode, same_group)));
@@ -257,7 +259,7 @@ void AtomicFile::append(std::string_view bytes) {
     if (descriptor_ < 0)
         throw Error(ErrorKind::internal, fmt::format("'{}' was written to after its end", path_));
     if (bytes.empty())
-        return; // an empty view may have no address
+        return; // an empty view may be a null pointer
     bytes_.fetch_add(bytes.size(), std::memory_order_relaxed);
     const std::size_t free = buffer_size - buffered_;
     if (bytes.size() > free && buffered_ > 0) {
@@ -336,7 +338,7 @@ void AtomicFile::commit() {
     flush();
     if (spool_ >= 0)
         copy_spool();
-    // A name that may be in use can only be taken by renaming.
+    // Only a rename can take a name that is in use.
     if (nameless_)
         give_temporary_name();
     const int descriptor = std::exchange(descriptor_, -1);

@@ -25,43 +25,45 @@ namespace lamella {
 /// advice, in one line.
 [[nodiscard]] Error output_error(const std::string& path, int system_error);
 
-/// States whether appended bytes will be replaced by others later.
+/// Specifies whether appended bytes may be overwritten later.
 enum class Overwriting : std::uint8_t { no, yes };
 
-/// A file that gets its name when it is complete. Until then its bytes are in a file without a name, of which
-/// nothing is left no matter how the process ends. If the file system has no such files, they are in a file
-/// with a temporary name in the same folder, which this object removes. An existing file of that name is
-/// replaced and its permissions are kept; for a symbolic link, this is the file that the link points to.
+/// A file that gets its name when it is complete. Until then its bytes are in an unnamed file, which
+/// disappears no matter how the process ends. If the file system does not support unnamed files, they are in
+/// a file with a temporary name in the same folder, which this object removes. An existing file of that name
+/// is replaced and its permissions are kept; a symbolic link stays, and the file that it points to is
+/// replaced.
 ///
 /// "-" is standard output. Standard output and files that are not regular (pipes, devices) are written in
 /// place, because they can be neither renamed nor withdrawn.
 ///
-/// For one thread at a time, except `bytes`. All failures are Error{output}; after one nothing is left behind
-/// and nothing more can be appended.
+/// For one thread at a time, except `bytes`. All failures are Error{output}. After a failure no file is left
+/// behind, and nothing more can be appended.
 class AtomicFile {
   public:
-    /// Output written in place that has to be overwritten is kept in a nameless temporary file until
+    /// With Overwriting::yes, output that is written in place is kept in an unnamed temporary file until
     /// `commit`.
     explicit AtomicFile(std::string path, Overwriting overwriting = Overwriting::no);
     ~AtomicFile();
     AtomicFile(const AtomicFile&) = delete;
     AtomicFile& operator=(const AtomicFile&) = delete;
 
-    /// Small amounts are buffered, large ones are written at once without being copied.
+    /// Appends bytes. Small amounts are buffered; large ones are written at once, without a copy.
     void append(std::string_view bytes);
 
     /// Replaces bytes that were appended before. Requires Overwriting::yes.
     void overwrite(std::uint64_t offset, std::string_view bytes);
 
-    /// Writes the buffered bytes and gives the file its name. To be called once, at the end.
+    /// Writes the buffered bytes and gives the file its name. Must be called once, at the end.
     void commit();
 
-    /// The path as given.
+    /// Returns the path as given.
     [[nodiscard]] const std::string& path() const noexcept { return path_; }
-    /// Bytes appended so far.
+    /// Returns the number of bytes appended so far.
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
-    /// Returns the path of the bytes until `commit`, for other processes that write some of them; "" if they
-    /// are written in place. From here on the file has a name, which remains if the process is killed.
+    /// Returns the temporary path of the file until `commit`, so that other processes can write some of its
+    /// bytes; "" if the output is written in place. Gives an unnamed file a temporary name, which remains if
+    /// the process is killed.
     [[nodiscard]] const std::string& share();
 
   private:
@@ -80,12 +82,12 @@ class AtomicFile {
     [[noreturn]] void fail_spool(int system_error);
 
     std::string path_;
-    std::string target_;    ///< path_ with symbolic links followed
-    std::string temporary_; ///< the name until `commit`; empty without one
-    bool nameless_ = false; ///< neither written in place nor named yet
+    std::string target_;    ///< path_ with symbolic links resolved
+    std::string temporary_; ///< the temporary name until `commit`; empty if there is none
+    bool nameless_ = false; ///< true while the file has no name
     UnfinishedName unfinished_;
     int descriptor_ = -1;
-    int spool_ = -1; ///< the nameless temporary file, if the output is stored in one
+    int spool_ = -1; ///< descriptor of the unnamed temporary file, if the output is kept in one
     bool owns_descriptor_ = true;
     std::unique_ptr<char[]> buffer_;
     std::size_t buffered_ = 0;

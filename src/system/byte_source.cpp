@@ -60,8 +60,8 @@ class OpenFile {
     OpenFile& operator=(const OpenFile&) = delete;
 
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
-    /// False if the process has opened so large a part of the files it may have that the rest should be kept
-    /// for other uses.
+    /// Returns false if the process already has half of the files open that it may open, because the others
+    /// are kept for other uses.
     [[nodiscard]] bool may_stay_open() const noexcept { return descriptor_ < sysconf(_SC_OPEN_MAX) / 2; }
 
     std::uint64_t size = 0;
@@ -124,8 +124,8 @@ std::size_t read_at(int descriptor, std::uint64_t offset, std::span<std::byte> t
     return done;
 }
 
-/// Reads up to `most` bytes from the beginning of a regular file. Some files of the system have fewer bytes
-/// than they report.
+/// Reads up to `most` bytes from the beginning of a regular file. Some system files have fewer bytes than
+/// they report.
 ByteSource read_beginning(int descriptor, std::string name, std::size_t most) {
     const auto memory = std::make_shared<Pages>(most);
     auto* const data = static_cast<std::byte*>(memory->data());
@@ -143,7 +143,7 @@ void wait_for_bytes(int descriptor, const Execution& execution) {
             throw Error(ErrorKind::cancelled, "cancelled");
         pollfd waiting{descriptor, POLLIN, 0};
         if (poll(&waiting, 1, patience_ms) != 0)
-            return; // ready, or an error that reading will name
+            return; // ready, or an error that the next read reports
     }
 }
 
@@ -201,10 +201,10 @@ ByteSource take(std::shared_ptr<OpenFile> file, std::string name, std::uint64_t 
         fail_with_errno(name, errno);
     if (S_ISDIR(status.st_mode))
         fail_with_errno(name, EISDIR);
-    // A device may have no end; a terminal ends when its user ends the input.
+    // A device may have no end. A terminal has one, when its user ends the input.
     if (S_ISBLK(status.st_mode) || (S_ISCHR(status.st_mode) && isatty(descriptor) == 0))
         fail(name, "is a device, expected a file or a pipe");
-    // Some files of the system report a size of 0, and standard input may be half read: these are read to
+    // Some system files report a size of 0, and standard input may have been read in part. These are read to
     // their end.
     if (!S_ISREG(status.st_mode) || status.st_size <= 0 || lseek(descriptor, 0, SEEK_CUR) != 0)
         return read_to_end(descriptor, std::move(name), most_in_memory, execution);
@@ -276,7 +276,7 @@ void copy_out(const ByteSource& source, std::uint64_t offset, std::span<std::byt
 void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept {
     if (!source.on_disk)
         return;
-    // Other readers may use the first and the last page; they are then read again.
+    // Other readers may be using the first and the last page of the range. These pages are then read again.
     static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
     const std::byte* const base = source.bytes.data(); // at the beginning of a page
     const auto begin = static_cast<std::size_t>(stretch.data() - base);

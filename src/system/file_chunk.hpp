@@ -1,6 +1,6 @@
 #pragma once
 
-// A part of a file that several processes write.
+// Writes a part of a file that several processes write together.
 
 #include <cstdint>
 #include <string>
@@ -11,7 +11,7 @@ namespace lamella {
 /// Writes consecutive bytes into an existing file from an offset on. Throws Error{output}. For one thread.
 class FileChunk {
   public:
-    /// `name` is the name of the file in errors: the user does not know its temporary path.
+    /// `name` is the name of the file in errors, because the user does not know its temporary path.
     FileChunk(const std::string& path, std::uint64_t offset, std::string name);
     ~FileChunk();
     FileChunk(const FileChunk&) = delete;
@@ -19,7 +19,7 @@ class FileChunk {
 
     void append(std::string_view bytes);
 
-    /// Makes sure that all bytes have reached the file. To be called once, at the end.
+    /// Makes sure that all bytes have reached the file. Must be called once, at the end.
     void finish();
 
   private:

@@ -7,7 +7,8 @@
 
 namespace lamella {
 
-/// Grows without copying: page tables are moved, not bytes. Throws std::bad_alloc.
+/// Memory that grows without copying bytes, because the system moves page tables instead. Throws
+/// std::bad_alloc.
 class GrowingMemory {
   public:
     GrowingMemory();

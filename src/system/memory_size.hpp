@@ -7,7 +7,7 @@
 namespace lamella {
 
 /// Returns the bytes that this process and others under the same limit can use in total: the physical memory,
-/// or less if a control group (of a container or a batch job) limits it. The system is asked once.
+/// or less if a control group (of a container or a batch job) limits it. Determined only once.
 [[nodiscard]] std::uint64_t memory_size();
 
 /// Returns the default memory limit of a job: three quarters of `memory_size`.
@@ -16,8 +16,8 @@ namespace lamella {
 [[nodiscard]] inline std::uint64_t memory_limit(std::uint64_t wished) {
     return wished != 0 ? wished : usual_memory();
 }
-/// Returns the part of that limit that a file may take while it is read; a longer file is read through a
-/// temporary file.
+/// Returns the part of that limit that the copy of a file may take; a longer file is copied to a temporary
+/// file.
 [[nodiscard]] inline std::uint64_t memory_of_file(std::uint64_t wished) {
     return memory_limit(wished) / 4;
 }

@@ -10,7 +10,7 @@
 namespace lamella {
 namespace {
 
-// The way to an open file that has no other.
+// Returns a path that leads to an open file, which need not have another one.
 std::string path_of(int descriptor) {
     return fmt::format("/proc/self/fd/{}", descriptor);
 }
@@ -28,7 +28,7 @@ int open_nameless(const std::string& folder, mode_t permissions) {
 
 // Returns a name for an unfinished file: hidden, in the folder of the target.
 std::string temporary_name(const std::filesystem::path& target, std::string_view owner, int attempt) {
-    // Room for the rest of the name: most file systems end at 255 bytes.
+    // Leaves space for the rest of the name: most file systems allow 255 bytes.
     const std::string stem = target.filename().string().substr(0, 200);
     return (target.parent_path() / fmt::format(".{}.{}-{}.tmp", stem, owner, attempt)).string();
 }
@@ -68,7 +68,7 @@ bool name_file(int descriptor, const char* name) {
 }
 
 std::string scratch_folder() {
-    // NOLINTNEXTLINE(concurrency-mt-unsafe): nobody here changes the environment
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): no code here changes the environment
     const char* const wished = std::getenv("TMPDIR");
     if (wished != nullptr && *wished != '\0')
         return wished;

@@ -67,7 +67,7 @@ void SpillFile::forget(std::uint64_t offset, std::uint64_t bytes) noexcept {
     const int before = errno;
     fallocate(descriptor_, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(offset),
               static_cast<off_t>(bytes));
-    errno = before; // failure has no consequence
+    errno = before; // a failure here has no consequence
 }
 
 void SpillFile::fail(int system_error) const {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Stores data on disk that temporarily do not fit into memory.
+// Stores data on disk that do not fit into memory.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,16 +9,16 @@
 
 namespace lamella {
 
-/// A temporary file that exists as long as this object. It has no name once it is open, so nothing is left
-/// behind however the program ends.
+/// A temporary file that exists as long as this object. It is unnamed, so it disappears no matter how the
+/// program ends.
 ///
-/// It is in the folder that the environment variable TMPDIR names, else in /var/tmp (which is on a disk,
-/// whereas /tmp may be in memory). All failures are Error{output} and name this folder. Any number of threads
-/// may use it at once.
+/// It is in scratch_folder(). All failures are Error{output} with the name of this folder. Any number of
+/// threads may use it at once.
 class SpillFile {
   public:
-    /// `bytes` is the total size, 0 if unknown. If the file system can, it is reserved at once, so that a
-    /// full disk is found before the work is done. `of_all` is the total size of several files, for errors.
+    /// `bytes` is the total size, 0 if unknown. If the file system supports it, this space is reserved at
+    /// once, so that a full disk is detected before the work is done. `of_all` is the total size of several
+    /// such files, for errors.
     explicit SpillFile(std::uint64_t bytes = 0, std::uint64_t of_all = 0);
     ~SpillFile();
     SpillFile(const SpillFile&) = delete;
@@ -26,7 +26,8 @@ class SpillFile {
 
     void write(std::uint64_t offset, std::span<const std::byte> bytes);
     void read(std::uint64_t offset, std::span<std::byte> bytes) const;
-    /// Frees the disk space of a range of bytes, if the file system can. The range must not be read again.
+    /// Frees the disk space of a range of bytes, if the file system supports it. The range must not be read
+    /// again.
     void forget(std::uint64_t offset, std::uint64_t bytes) noexcept;
 
     [[nodiscard]] int descriptor() const noexcept { return descriptor_; }

@@ -17,9 +17,10 @@
 
 namespace lamella {
 
-// The only global state of the library: a thread that ends the process cannot ask the others for their
-// objects, which may be in any state. A list without locks, so that a stuck thread blocks no other: slots are
-// reused but never freed, and the thread that takes a name out of its slot owns it.
+// A slot of the list of temporary names, the only global state of the library. It is needed because a thread
+// that ends the process cannot use the objects of other threads, which may be in any state. The list has no
+// locks, so that a stuck thread blocks no other. Slots are reused but never freed. The thread that takes a
+// name out of its slot owns the name.
 struct UnfinishedName::Slot {
     std::atomic<const char*> path{nullptr};
     Slot* next = nullptr;
@@ -33,7 +34,7 @@ std::atomic<Slot*> slots{nullptr};
 std::atomic<bool> ending{false};
 std::atomic<int> creations{0};
 
-// Replaces the names that remove_unfinished has taken: nobody may use these slots again.
+// Replaces the names that remove_unfinished has taken. Their slots must not be used again.
 constexpr char taken[] = "";
 
 // Empties the folder once and removes it; returns false if entries have been added in the meantime.
@@ -120,7 +121,8 @@ bool UnfinishedName::withdraw() noexcept {
 
 void remove_unfinished() noexcept {
     ending = true;
-    // Limited, since a file system may be stuck, and a thread that crashed in a creation never ends it.
+    // The time is limited, because a file system may be stuck, and a thread that crashed during a creation
+    // never ends it.
     constexpr timespec a_moment{.tv_sec = 0, .tv_nsec = 1'000'000};
     for (int moments = 0; creations != 0 && moments < 200; ++moments)
         ::nanosleep(&a_moment, nullptr);

@@ -16,12 +16,12 @@ class UnfinishedName {
     UnfinishedName(const UnfinishedName&) = delete;
     UnfinishedName& operator=(const UnfinishedName&) = delete;
 
-    /// Registers the name of a newly created file or folder. Returns false if the process is about to end:
-    /// then the caller has to remove it and to stop. To be called once.
+    /// Registers the name of a newly created file or folder. Returns false if the process is about to end;
+    /// then the caller must remove the file and stop. Must be called once.
     [[nodiscard]] bool announce(const std::string& path);
 
-    /// Removes the registration: the file has its final name or is gone. Returns false if remove_unfinished
-    /// has taken it.
+    /// Removes the registration, after the file got its final name or was removed. Returns false if
+    /// remove_unfinished has already taken the name.
     bool withdraw() noexcept;
 
     /// Must be held from before a name is created until it is announced or, if that fails, removed again.
