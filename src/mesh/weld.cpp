@@ -3,9 +3,9 @@
 //     gather     each worker reads one range of the file and replaces corners by local vertices. A small
 //                table of recent corners already joins most equal corners, because triangles that share a
 //                corner are mostly near each other in a file.
-//     join local vertices with equal coordinates are found by partitions (core/key_groups) number the first
-//     of equal local vertices becomes a vertex, in the order of the file rewrite triangles refer to vertices
-//     instead of local vertices, and vertices get their coordinates
+//     join       local vertices with equal coordinates are found by partitions (core/key_groups)
+//     number     the first of equal local vertices becomes a vertex, in the order of the file
+//     rewrite    triangles refer to vertices instead of local vertices, and vertices get their coordinates
 //
 // The order in the file determines all numbers, so the number of ranges or workers does not change the
 // result.

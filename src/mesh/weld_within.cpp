@@ -2,9 +2,10 @@
 //
 //     points   equal vertices become one point; points are numbered in lexicographic order, so that the
 //              following steps do not depend on the order of the mesh
-//     pairs a grid of cells as wide as the tolerance finds the points no farther apart than that join groups
-//     are joined, the closest pair first, if the diagonal of their common box is at most the tolerance
-//     rewrite triangles refer to the first point of each group instead of vertices
+//     pairs    a grid of cells as wide as the tolerance finds the points no farther apart than that
+//     join     groups are joined, the closest pair first, if the diagonal of their common box is at most the
+//              tolerance
+//     rewrite  triangles refer to the first point of each group instead of vertices
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/repair.hpp"

@@ -6,7 +6,7 @@ namespace lamella {
 
 namespace {
 
-/// Chosen so that the sums of a band stay in a processor's cache.
+/// Number of pixels of a band, so that its sums stay in a processor's cache.
 constexpr std::uint32_t pixels_of_band = 1U << 17;
 constexpr std::uint32_t fewest_rows = 4;
 constexpr std::uint32_t most_rows = 64;

@@ -15,19 +15,19 @@
 
 namespace lamella {
 
-/// An image divided into bands of a few rows from the top down, and the edges that reach into each. Contours
-/// are not copied; only the points where they enter and leave a band are stored.
+/// An image divided into bands of a few rows, from the top down, with the edges that reach into each band.
+/// Contours are not copied. Only references to the points where they enter and leave a band are stored.
 class Bands {
   public:
     /// The parts must outlive the bands. O(points).
     Bands(std::span<const Layer> parts, const PixelGrid& grid);
 
-    /// Rows of a band, except the last one, which may have fewer.
+    /// Returns the number of rows of a band; the last band may have fewer.
     [[nodiscard]] std::uint32_t rows() const noexcept { return rows_; }
 
-    /// Calls line(points) for parts of rings in image coordinates. Each edge that reaches into the band is in
-    /// one of them. They may contain other edges, but only horizontal ones, or ones that reach from one band
-    /// into the next.
+    /// Calls line(points) for parts of rings, in image coordinates. Together they contain each edge that
+    /// reaches into the band once. The only other edges in them are horizontal, or reach from one band into
+    /// the next.
     template <class Line>
     void for_each_line(std::uint32_t band, const Line& line) const {
         std::array<Point2, 256> positions;
@@ -59,7 +59,7 @@ class Bands {
     std::uint32_t rows_;
     std::int32_t count_;
     std::vector<PixelSpan> spans_;    ///< ordered by band
-    std::vector<std::size_t> starts_; ///< of each band, and the end
+    std::vector<std::size_t> starts_; ///< index of the first span of each band, and the number of spans
 };
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// Pixels of which the centre decides whether they are covered.
+// Draws pixels that are covered if their centres are.
 
 #include "lamella/raster/image.hpp"
 
@@ -35,7 +35,7 @@ class CentreRows {
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
 
   private:
-    /// Adds material from one column to another, which must not begin to the left of the previous end.
+    /// Covers the columns from `from` to `to`. `from` must not be less than the previous `to`.
     void cover(std::uint32_t from, std::uint32_t to);
 
     RowSweep<CentreCrossing> crossings_;

@@ -6,15 +6,15 @@
 
 namespace lamella {
 
-// A row consists of parts where a single edge passes from its upper to its lower border, and of knots:
-// groups of edges side by side, with corners, crossings, or the upper and lower ends of contours. Between
-// these nothing begins or ends at any height of the row, so the winding number there is constant and each can
-// be drawn by itself. A knot is divided into strips at its corners and crossings. Within a strip the order of
-// edges is constant, and coverage rises (or falls) along each edge that bounds material, so it is exact.
+// A row consists of single edges that pass from its upper to its lower border, and of knots: groups of
+// adjacent edges with corners, crossings, or upper and lower ends of contours. Between two of these the
+// winding number is constant, so each can be drawn independently. A knot is divided into strips at its
+// corners and crossings. Within a strip the order of edges is constant, so coverage is an exact sum over the
+// edges that bound material.
 
 namespace {
 
-/// A gap between two bodies up to this width, in pixels, is attributed to rounding of their common border.
+/// Gaps between two bodies up to this width, in pixels, are attributed to rounding of their common border.
 constexpr double most_rounding = 1e-6;
 
 } // namespace
@@ -78,7 +78,7 @@ std::uint32_t CoverageRows::cover(std::uint32_t row) {
         winding = right;
         begin = end;
     }
-    upright = upright && begin == pieces.size(); // otherwise edges to the right may come closer
+    upright = upright && begin == pieces.size(); // otherwise edges to the right may approach in later rows
     return upright ? pieces_.same_edges_until() - row : 1;
 }
 
@@ -119,7 +119,7 @@ bool CoverageRows::draw_line(Pieces knot, int left, std::uint32_t row) {
     for (const LinePiece& piece : line_) {
         const double middle = 0.5 * (piece.top + piece.bottom);
         if (piece.top != reached || !(piece.top < middle && middle < piece.bottom))
-            // There are gaps or other edges, or the height of an edge is below the resolution of numbers.
+            // There are gaps or other edges, or an edge is lower than numbers can resolve.
             return false;
         reached = piece.bottom;
     }
@@ -186,7 +186,7 @@ void CoverageRows::draw_strip(Pieces knot, int left, double from, double to) {
     });
     const double height = to - from;
     int winding = left;
-    const Border* end = nullptr; // end of material, unless more begins there
+    const Border* end = nullptr; // the end of material, unless further material begins there
     for (const Border& border : borders_) {
         const int before = std::exchange(winding, winding + border.edge->winding);
         if (before == 0) {

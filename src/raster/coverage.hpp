@@ -1,6 +1,6 @@
 #pragma once
 
-// Pixels valued by the fraction of their area that is covered.
+// Draws pixels with the fraction of their area that is covered.
 
 #include "raster/coverage_band.hpp"
 #include "raster/drawn_row.hpp"
@@ -25,13 +25,13 @@ struct RowPiece {
     void move_to(const ImageEdge& edge, std::uint32_t row) noexcept;
     bool operator<(const RowPiece& other) const noexcept { return low < other.low; }
 
-    /// Range of its columns; it is extended to left_of_image if it reaches beyond the left border.
+    /// Range of its columns. It begins at left_of_image if the part reaches beyond the left border.
     double low = 0;
     double high = 0;
     double top = 0;
     double bottom = 0;
     double bottom_column = 0;
-    bool through = false; ///< it runs from the row's upper to its lower border
+    bool through = false; ///< true if it runs from the upper to the lower border of the row
 
   private:
     void reach(const ImageEdge& edge, std::uint32_t row, double top_column) noexcept;
@@ -62,12 +62,13 @@ class CoverageRows {
         const ImageEdge* edge;
     };
 
-    /// Adds the coverage of a row; returns the number of rows from there on that are equal.
+    /// Adds the coverage of a row. Returns the number of equal rows from this one on.
     std::uint32_t cover(std::uint32_t row);
     void draw_knot(Pieces knot, int left, std::uint32_t row);
-    /// Draws a knot that is a single line with bends through the whole row, as most are; false if it is not.
+    /// Draws a knot if it is, as most are, a single line with bends through the whole row. Returns false if
+    /// it is not.
     bool draw_line(Pieces knot, int left, std::uint32_t row);
-    /// Finds the heights at which a knot has corners and crossings; returns false if there are too many.
+    /// Finds the heights at which a knot has corners and crossings. Returns false if there are too many.
     bool find_strips(Pieces knot, std::uint32_t row);
     void add_crossing(const RowPiece& a, const ImageEdge& edge_a, const RowPiece& b, const ImageEdge& edge_b);
     void draw_strip(Pieces knot, int left, double from, double to);
@@ -76,7 +77,7 @@ class CoverageRows {
     RowSweep<RowPiece> pieces_;
     std::uint32_t width_;
     unsigned strips_;       ///< see RasterOptions::antialias
-    CoverageBand coverage_; ///< of a single row
+    CoverageBand coverage_; ///< coverage of a single row
     std::vector<LinePiece> line_;
     std::vector<double> heights_;
     std::vector<Border> borders_;

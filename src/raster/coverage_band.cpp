@@ -10,7 +10,7 @@ namespace {
 // The coverage of a column is the integral of the slope over it. With the slope s per column, it is
 //     s (i + 1 - from)^2 / 2            in the first column i,
 //     s (k + 1/2 - from)                in a column k between the first and the last,
-//     weight - s (to - j)^2 / 2         in the last column j, and the weight from there on.
+//     weight - s (to - j)^2 / 2         in the last column j, and the full weight to its right.
 [[gnu::always_inline]] inline void slope(RowChanges::Row row, double width, double from, double to,
                                          double weight) {
     if (from >= width)
@@ -95,7 +95,8 @@ void CoverageBand::begin_along(const ImageEdge& edge, std::uint32_t top, std::ui
 }
 
 std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
-    // Copies of members, because stores of bytes would force them to be reloaded in each step.
+    // Members are copied to local variables, because stores of bytes would force the compiler to reload
+    // members in each step.
     const std::uint32_t width = width_;
     PixelRun* next = runs_.data();
     double covered = 0;
@@ -120,7 +121,8 @@ std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
         const double rounded_up = clamped * 255 + 0.5;
         const std::uint8_t value_here =
             value_of_[static_cast<std::size_t>(static_cast<std::int32_t>(rounded_up))];
-        // A run that ends here is always written, but kept only if it has pixels and another value.
+        // A run that ends here is always written, but kept only if it has pixels and a value other than the
+        // next one.
         *next = {here, value};
         next += value_here != value && here > 0 ? 1 : 0;
         value = value_here;

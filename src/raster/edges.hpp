@@ -11,7 +11,7 @@
 
 namespace lamella {
 
-/// Column of edges to the left of the image: the distance does not matter.
+/// Column that stands for all edges to the left of the image, because their distance does not matter.
 inline constexpr double left_of_image = -1;
 
 /// Returns the least integer that is not below v, between 0 and `most`. (std::ceil is a function call in code
@@ -25,15 +25,15 @@ inline constexpr double left_of_image = -1;
     return whole + (whole < v ? 1 : 0);
 }
 
-/// An edge in columns and rows, from its upper to its lower end in either direction of the ring: a border
-/// that two bodies share is one line.
+/// An edge in image coordinates, from its upper to its lower end for either direction of the ring, so that
+/// the common border of two bodies gives the same line for both.
 struct ImageEdge {
     Point2 upper;
     Point2 lower;
     double slope = 0;         ///< columns per row; 0 for a horizontal edge
     std::int32_t winding = 0; ///< 1 if the ring runs downwards here, else -1
 
-    /// Makes the edge of a ring that runs from one point to the other.
+    /// Makes the edge for a ring that runs from `from` to `to`.
     ImageEdge(const Point2& from, const Point2& to) noexcept {
         const bool down = from.y < to.y;
         upper = down ? from : to;
@@ -44,7 +44,7 @@ struct ImageEdge {
         if (!level())
             slope = (lower.x - upper.x) / (lower.y - upper.y);
     }
-    /// Returns the column at height v, which must lie between the ends.
+    /// Returns the column at the height v, which must lie between those of the ends.
     [[nodiscard]] double column(double v) const noexcept {
         const auto [low, high] = std::minmax(upper.x, lower.x);
         return std::clamp(upper.x + (v - upper.y) * slope, low, high);
@@ -63,15 +63,16 @@ struct ImageEdge {
     return {near(grid.ux * p.x + grid.uy * p.y + grid.u0), near(grid.vx * p.x + grid.vy * p.y + grid.v0)};
 }
 
-/// Does the same for many points; `to` must have space for them.
+/// Converts many points; `to` must have space for them.
 void position_in_image(std::span<const Point2> points, const PixelGrid& grid, Point2* to);
 
-/// Writes to `to`, for each point, the first of the rows 0 to height - 1 whose line is not above the point;
-/// `height` if there is none. `line` is the distance of a row's line from its upper border.
+/// Each row has a line at the distance `line` from its upper border. Writes to `to`, for each point, the
+/// first row whose line is not above the point; `height` if there is none.
 void find_rows_below(std::span<const Point2> points, const PixelGrid& grid, double line, std::int32_t* to);
 
-/// Writes to `to` the bands that contain the points: from 0 to count - 1, -1 for points above the image and
-/// `count` for those below. A point above a border by half a rounding may be assigned to the band below.
+/// Writes to `to`, for each point, the index of the band that contains it, -1 if it is above the image, or
+/// `count` if it is below. A point that is above a border by less than a rounding error may be assigned to
+/// the band below.
 void find_bands(std::span<const Point2> points, const PixelGrid& grid, double bands_per_row,
                 std::int32_t count, std::int32_t* to);
 

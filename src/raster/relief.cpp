@@ -25,7 +25,8 @@ constexpr std::array<double, 3> to_viewer{0, view_cos, view_sin};
 constexpr double ambient = 0.25;
 constexpr std::array<double, 3> colour{120, 166, 204};
 
-/// Distance of the neighbours from which a slope is computed: a single layer is a step.
+/// Distance of the neighbours from which a slope is computed. Adjacent pixels would show the steps of single
+/// layers.
 constexpr std::size_t reach = 4;
 /// Radius around a pixel in which its light is smoothed.
 constexpr std::size_t blur = 2;
@@ -101,7 +102,7 @@ std::array<std::uint8_t, 4> mean(const ColourImage& image, double left, double t
     return {byte(sum[0] / sum[3]), byte(sum[1] / sum[3]), byte(sum[2] / sum[3]), byte(alpha)};
 }
 
-/// Adds to each of `count` sums the light of a neighbour that is at about the same height.
+/// Adds to each of `count` sums the brightness of a neighbour if it is at about the same height.
 LAMELLA_VECTOR_CLONES
 void add_near(const float* heights, const float* heights_there, const float* lights_there, float most_higher,
               std::size_t count, float* sums, float* counts) {
@@ -222,7 +223,8 @@ Relief::Vector Relief::tangent(std::size_t row, std::size_t column, bool down) c
     const Vector here = position(row, column);
     Vector sum{};
     bool found = false;
-    // Beyond the first row or column the index wraps around, and nothing is covered there.
+    // Before the first row or column the index wraps around to a number beyond the image, where no pixel is
+    // covered.
     for (const bool ahead : {false, true}) {
         const std::size_t r = !down ? row : ahead ? row + reach : row - reach;
         const std::size_t c = down ? column : ahead ? column + reach : column - reach;
@@ -240,7 +242,7 @@ Relief::Vector Relief::tangent(std::size_t row, std::size_t column, bool down) c
     }
     if (found)
         return sum;
-    return down ? Vector{0, view_sin, -view_cos} : Vector{1, 0, 0}; // as if it faced the viewer
+    return down ? Vector{0, view_sin, -view_cos} : Vector{1, 0, 0}; // as if the surface faced the viewer
 }
 
 double Relief::light(std::size_t row, std::size_t column) const noexcept {

@@ -22,8 +22,8 @@ struct ColourImage {
     std::vector<std::uint8_t> values;
 };
 
-/// Returns the visible part of an image, centred in an image of another size and not enlarged. A pixel is the
-/// mean of those that it covers.
+/// Returns an image of the given size with the visible part of `image` in its centre, reduced if necessary,
+/// but not enlarged. Each pixel is the mean of the pixels that it covers.
 [[nodiscard]] ColourImage fitted(const ColourImage& image, std::uint32_t width, std::uint32_t height);
 
 /// A contribution of a layer to a relief: the columns from `first` to `end` of a row, at the height z.
@@ -34,37 +34,38 @@ struct ReliefSpan {
     float z;
 };
 
-/// The outside of a part seen from above and in front, slightly rotated, lit from the left. Upper layers are
-/// drawn over lower ones, each at its own height. So in the end the height of each pixel is known, and
-/// neighbours determine the slope. One height is drawn for each two rows of pixels: thin layers are skipped,
-/// thick ones drawn several times, so time is proportional to the number of rows.
+/// The outside of a part, slightly rotated, seen from the front and above, and lit from the left. Upper
+/// layers are drawn over lower ones, each at its own height. In the end the height of each pixel is known,
+/// and its neighbours determine the slope. One height is drawn for every two rows of pixels: thin layers are
+/// skipped, thick ones are drawn several times. So time is proportional to the number of rows.
 class Relief {
   public:
-    /// A relief of a part within this box.
+    /// Begins the relief of a part whose bounding box is `box`.
     Relief(const Box3& box, std::uint32_t width, std::uint32_t height);
 
     /// Returns the visible spans of the layers of all parts at one height. For any number of threads.
     [[nodiscard]] std::vector<ReliefSpan> spans(std::span<const Layer> parts) const;
-    /// Adds a layer above the lower ones.
+    /// Adds the spans of a layer, which must be above all layers added before.
     void add(std::span<const ReliefSpan> spans);
 
     [[nodiscard]] ColourImage image() const;
 
   private:
-    /// Along the columns, along the ground towards the viewer, and upwards; all in pixels.
+    /// A vector in pixels: along the columns, along the ground towards the viewer, and upwards.
     using Vector = std::array<double, 3>;
 
-    /// Draws one height, and the rows that are drawn with it.
+    /// Draws the layers at the height z, into all rows for which this height is drawn.
     void draw(std::span<const Layer> parts, double z, std::vector<ReliefSpan>& spans) const;
     [[nodiscard]] bool covered(std::size_t row, std::size_t column) const noexcept {
         return row < height_ && column < width_ && !std::isnan(heights_[row * width_ + column]);
     }
     [[nodiscard]] Vector position(std::size_t row, std::size_t column) const noexcept;
-    /// Returns the direction of the surface down the rows, or along the columns.
+    /// Returns the tangent of the surface, down the rows or along the columns.
     [[nodiscard]] Vector tangent(std::size_t row, std::size_t column, bool down) const noexcept;
-    /// Returns the light from 0 (dark) to 1 (perpendicular).
+    /// Returns the brightness of a pixel, from 0 (dark) to 1 (light perpendicular to the surface).
     [[nodiscard]] double light(std::size_t row, std::size_t column) const noexcept;
-    /// Returns the light of all pixels, smoothed along the surface: columns and rows are steps, too.
+    /// Returns the brightness of all pixels, smoothed along the surface, because columns and rows form steps,
+    /// too.
     [[nodiscard]] std::vector<float> smooth_light() const;
 
     std::uint32_t width_;
@@ -72,7 +73,7 @@ class Relief {
     double lowest_;
     PixelGrid ground_;           ///< position of the plane z = 0 in the image
     double scale_;               ///< pixels per millimetre
-    double row_per_z_;           ///< rows upwards per millimetre
+    double row_per_z_;           ///< rows by which a millimetre of height moves a pixel upwards
     std::vector<float> heights_; ///< visible heights in mm; NaN where there is nothing
 };
 

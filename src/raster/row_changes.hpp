@@ -13,16 +13,16 @@
 
 namespace lamella {
 
-/// For each of a few rows, the changes of coverage from one column to the next. Only columns with changes
-/// cost time, not those between them, nor rows without changes: one bit per column marks a change, and the
-/// values of other columns are never read. A row has two columns more than the image.
+/// The changes of coverage from one column to the next, for each of a few rows. Only columns with changes
+/// cost time: one bit per column marks a change, and the values of other columns are never read. A row has
+/// two columns more than the image.
 class RowChanges {
   public:
     RowChanges(std::uint32_t width, std::uint32_t rows)
         : columns_(std::size_t{width} + 2), words_(columns_ / 64 + 1), changes_(new double[columns_ * rows]),
           changed_(words_ * rows), touched_(rows) {}
 
-    /// A row to add to.
+    /// A row, to which changes can be added.
     class Row {
       public:
         void add(std::size_t column, double by) noexcept {
@@ -32,7 +32,7 @@ class RowChanges {
             bits |= bit;
         }
 
-        /// Adds to a column and those after it.
+        /// Adds one change to each of several columns, from `column` on.
         template <std::same_as<double>... Changes>
         void add_from(std::size_t column, Changes... by) noexcept {
             const std::size_t first = column % 64;

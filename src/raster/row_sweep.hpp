@@ -27,8 +27,8 @@ struct RowRange {
 ///     static constexpr bool only_on_lines; an edge intersects a row only if it crosses its line
 ///     static std::uint32_t first(double y, std::uint32_t below);   the first row that an edge with its upper
 ///                                          end at y intersects, if `below` is the first line not above y
-///     Item(const ImageEdge&, std::uint32_t row);                       in the first of them
-///     void move_to(const ImageEdge&, std::uint32_t row);               to the next or a later one
+///     Item(const ImageEdge&, std::uint32_t row);                       in the first row
+///     void move_to(const ImageEdge&, std::uint32_t row);               to the next or a later row
 ///     bool operator<(const Item&) const;                          a strict weak order along the row
 /// The result depends on the order of the edges only if items are neither less nor greater.
 template <class Item>
@@ -46,11 +46,11 @@ class RowSweep {
 
     [[nodiscard]] std::span<const Entry> entries() const noexcept { return entries_; }
     [[nodiscard]] const ImageEdge& edge(const Entry& entry) const noexcept { return edges_[entry.edge]; }
-    /// Returns the row in which the next edge begins, or the height of the image.
+    /// Returns the row in which the next edge begins; the height of the image if there is none.
     [[nodiscard]] std::uint32_t next_begin() const noexcept {
         return begun_ < edges_.size() ? rows_[begun_].first : height_;
     }
-    /// Returns the row up to which all present edges continue and no other begins.
+    /// Returns the row up to which all present edges continue and no other edge begins.
     [[nodiscard]] std::uint32_t same_edges_until() const noexcept {
         std::uint32_t until = next_begin();
         for (const Entry& entry : entries_)
@@ -64,7 +64,8 @@ class RowSweep {
         for (const Entry& entry : entries_) {
             if (rows_[entry.edge].end <= row)
                 continue;
-            // Copied only if an entry was removed: a copy just after a move waits for its stores.
+            // Copied only if an entry was removed, because a copy just after move_to would wait for its
+            // stores.
             Entry& here = entries_[kept++];
             if (&here != &entry)
                 here = entry;
@@ -117,8 +118,8 @@ class RowSweep {
         }
     }
 
-    /// Calls found(edge) for the edges of a ring that intersect a row and are not to the right of the image,
-    /// nor horizontal and to the left of it. `below` is scratch memory with any content.
+    /// Calls found(edge) for the edges of a ring that intersect a row. Omits edges to the right of the image,
+    /// and horizontal edges to the left of it. `below` is scratch memory with any content.
     template <class Found>
     void find_met(std::span<const Point2> ring, const PixelGrid& grid, std::vector<std::int32_t>& below,
                   const Found& found) const {
@@ -152,7 +153,8 @@ class RowSweep {
         }
     }
 
-    /// Insertion sort: from one row to the next few edges change their order, unless very many cross.
+    /// Sorts by insertion, because few edges change their order from one row to the next, unless very many
+    /// cross.
     void sort_again() {
         std::size_t moves = 8 * entries_.size();
         for (std::size_t i = 1; i < entries_.size(); ++i) {

@@ -5,9 +5,9 @@
 
 namespace lamella {
 
-// The area between an edge and the right end of a row, with the sign of its direction, is linear in the edge,
-// so the coverage of a pixel is the sum over all edges, in any order. Edges are visited in the order of the
-// contours. Many of them may lie in one pixel: their sum is added to that of the row at once.
+// The coverage of a pixel is a sum over all edges, in any order: each contributes the area between itself and
+// the right end of the row, with the sign of its direction. Edges are visited in the order of the contours.
+// Many consecutive edges may lie in one pixel; their sum is added to the row at once.
 
 SummedRows::SummedRows(std::span<const Layer> parts, const PixelGrid& grid, double gamma)
     : bands_(parts, grid), width_(grid.width), height_(grid.height),
@@ -31,7 +31,7 @@ DrawnRow SummedRows::draw(std::uint32_t row) {
 }
 
 void SummedRows::add_line(std::span<const Point2> points) {
-    // The pixel that contains the previous point; empty if that is outside.
+    // The pixel that contains the previous point; empty if that point is outside of the image.
     double left = 0, right = 0, upper = 0, lower = 0;
     double weight = 0;
     double moment = 0;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Pixels valued by the fraction of their area that is covered, if no area is covered twice.
+// Draws pixels with the fraction of their area that is covered, if no area is covered twice.
 
 #include "raster/bands.hpp"
 #include "raster/coverage_band.hpp"
@@ -12,8 +12,8 @@
 
 namespace lamella {
 
-/// Draws the rows of an image from the top down: for each pixel the integral of the winding number over its
-/// area, which is the coverage if the winding number is 0 or 1 everywhere.
+/// Draws the rows of an image from the top down. The value of a pixel is the integral of the winding number
+/// over its area, which is the coverage if the winding number is 0 or 1 everywhere.
 class SummedRows {
   public:
     SummedRows(std::span<const Layer> parts, const PixelGrid& grid, double gamma);
@@ -27,7 +27,7 @@ class SummedRows {
     Bands bands_;
     std::uint32_t width_;
     std::uint32_t height_;
-    double downwards_;      ///< the weight of material that begins along an edge running down the image
+    double downwards_; ///< weight of an edge that runs downwards: -1 or 1, by the orientation of the grid
     std::uint32_t top_ = 0; ///< first row of the band
     std::uint32_t end_ = 0;
     CoverageBand coverage_;

@@ -3,10 +3,10 @@
 // Ranges of planes that are sliced separately, because the memory of one machine is too small for all planes,
 // or because several processes share the work.
 //
-//     count the triangles that begin and end on each plane, in one pass over the triangles, in chunks of any
-//     size divide the planes into ranges of equal work, or into ranges that fit into memory find the ranges
-//     that a triangle touches: the layers of a range depend on these triangles only slice each range alone:
-//     `slice_to` with its triangles, in any order, and its part of the plan
+//     count      the triangles that begin and end on each plane, in one pass, in chunks of any size
+//     divide     the planes into ranges of equal work, or into ranges that fit into memory
+//     find       the ranges that a triangle touches: the layers of a range depend on these triangles only
+//     slice      each range alone: `slice_to` with its triangles, in any order, and its part of the plan
 //
 // The layers of all ranges are, bit for bit, those of the whole mesh on the whole plan.
 
