@@ -95,7 +95,8 @@ class AmfReader {
         source_.owner.reset();
     }
 
-    /// Volumes of skimmed meshes count in runs of triangles so far; this converts them to triangles.
+    /// Converts the ranges of volumes of skimmed meshes, which count sequences of triangles, to ranges of
+    /// triangles.
     void count_triangles_of_volumes() {
         for (AmfObject& object : document_.objects) {
             if (has_parts_only(object))
@@ -146,8 +147,8 @@ class AmfReader {
                     fmt::format("{}: an object has the same id; instances of this id are of the object",
                                 nodes_.back().location));
         }
-        // Slic3r and its descendants number objects and constellations separately: an instance means the
-        // object.
+        // Slic3r and its descendants number objects and constellations separately. There an instance refers
+        // to an object.
         const auto node_of = [&](const AmfInstance& instance) {
             for (const NodesById* const known : {&objects, &constellations})
                 if (const auto found = known->find(instance.object); found != known->end())

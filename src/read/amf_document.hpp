@@ -27,8 +27,8 @@ struct AmfObject {
     bool has_mesh = false;
     IndexedMesh mesh;
     MeshText text;
-    /// Volumes, if any of them is not a part. They index the mesh's triangles; in a skimmed document, the
-    /// sequences of triangles in `text`.
+    /// Volumes, if any of them is not a part. Their ranges count the mesh's triangles or, in a skimmed
+    /// document, the sequences of triangles in `text`.
     std::vector<VolumeRange> volumes;
 };
 
@@ -59,14 +59,15 @@ struct AmfDocument {
     Occurrences bent; ///< curved edges and normals
 };
 
-/// Reads a document; errors call it `name`. If `skim` is true, vertices and triangles that form plain
+/// Reads a document, whose name in errors is `name`. If `skim` is true, vertices and triangles in plain
 /// sequences are left unread in `text`; others are then Error{input}. Throws Error{input} with the line if
-/// the document is not AMF, and Error{limit} as soon as a limit is exceeded. The limits count the result.
+/// the document is not AMF, and Error{limit} as soon as a limit is exceeded. The result remains counted in
+/// the limits.
 [[nodiscard]] AmfDocument read_amf_document(std::string_view document, const std::string& name, bool skim,
                                             ReadLimits& limits,
                                             const std::function<void(std::size_t)>& progress);
 
-/// Returns how AMF documents write meshes.
+/// Returns the form in which AMF documents write meshes.
 [[nodiscard]] const MeshTextForm& amf_text_form() noexcept;
 
 } // namespace lamella

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int deepest = 64;
 constexpr std::uint64_t most_instances = std::uint64_t{1} << 20;
-constexpr std::uint64_t instance_bytes = 1024; ///< with the notes of the plate
+constexpr std::uint64_t instance_bytes = 1024; ///< including the data that the plate stores for it
 
 std::uint64_t sum(std::uint64_t a, std::uint64_t b) {
     return a > std::numeric_limits<std::uint64_t>::max() - b ? std::numeric_limits<std::uint64_t>::max()
@@ -38,7 +38,7 @@ class Placer {
 
     std::vector<MeshInstance> place(std::span<const AssemblyUse> roots) {
         for (std::size_t node = 0; node < nodes_.size(); ++node)
-            total(node, 0); // a cycle is an error even if no root leads to it
+            total(node, 0); // finds cycles even if no root leads to them
         Total all;
         for (const AssemblyUse& root : roots)
             all.add(total(root.node, 0));
@@ -104,7 +104,7 @@ class Placer {
         return result;
     }
 
-    // Depth is checked again: a node counted at one depth may be used at a greater one.
+    // Depth is checked again, because a node that was counted at one depth may also be used at a greater one.
     void put(const AssemblyUse& use, const Transform& outer, const std::string& name, MeshRole outer_role,
              std::uint64_t body, int depth = 0) {
         const AssemblyNode& node = nodes_[use.node];

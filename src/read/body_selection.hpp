@@ -27,7 +27,7 @@ class BodySelection {
     [[nodiscard]] bool takes(MeshRole role) const noexcept {
         return include_.contains(role) || !row_of(role).left_out;
     }
-    /// Returns the role under which a body of this role is read. Included bodies are parts or supports.
+    /// Returns the role that a body of this role has after reading: part or support if it is included.
     [[nodiscard]] MeshRole taken_as(MeshRole role) const noexcept {
         return role == MeshRole::support || (role == MeshRole::negative && !include_.contains(role))
                    ? role
@@ -37,8 +37,8 @@ class BodySelection {
     /// Counts a body that is not read.
     void leave_out(MeshRole role, const std::string& name);
     [[nodiscard]] bool left_out_any() const noexcept;
-    /// Adds one note on all bodies that were not read ("3 volumes are no material: ..."). It does not stop
-    /// strict callers.
+    /// Adds one note on all bodies that were not read ("3 volumes are no material: ..."). It is not an error
+    /// for strict callers.
     void report(Remarks& remarks) const;
 
   private:
@@ -61,13 +61,13 @@ struct VolumeRange {
 
 /// Triangles of a mesh that have the same role.
 struct RoleMesh {
-    MeshRole role = MeshRole::part; ///< as BodySelection::taken_as
+    MeshRole role = MeshRole::part; ///< see BodySelection::taken_as
     IndexedMesh mesh;
 };
 
 /// Divides a mesh by the roles of its volumes; triangles of no volume are parts. Adds volumes that are not
 /// read to the selection, and all volumes to `bodies`; a volume without a name gets that of the object. A
-/// mesh of one role is passed through. The limits count new data.
+/// mesh of one role is returned as it is. New data are counted in the limits.
 [[nodiscard]] std::vector<RoleMesh> divided_by_role(IndexedMesh mesh, std::span<const VolumeRange> volumes,
                                                     const std::string& object_name, BodySelection& selection,
                                                     std::vector<MeshBody>& bodies, ReadLimits& limits);

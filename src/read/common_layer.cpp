@@ -18,7 +18,7 @@ namespace lamella {
 
 namespace {
 
-/// Tolerance of heights in millimetres, for the rounding of the box in a header.
+/// Tolerance of heights in millimetres, because the box in a header is rounded.
 constexpr double one_height = 1e-6;
 
 /// Returns the kind of each part: contour if it has contours and no hatch line, otherwise hatch.
@@ -111,8 +111,8 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
         expose(file.parts[i], parts[i], exposure_of(file.parts[i].label, held[i]));
     sort_by_height(content.layers, file.warnings);
     const RawLayer& first = content.layers.front();
-    // The heights of a box specify where the part begins. Some programs write the heights of the first and
-    // the last plane there instead; such heights are ignored.
+    // The box of the header gives the bottom of the part. Some programs write the heights of the first and
+    // the last plane there instead; these are ignored.
     const auto lies_at = [&](std::size_t corner, double z) {
         return std::abs((*header.dimension)[corner] - z) <= one_height * std::max(1.0, std::abs(z));
     };
@@ -136,7 +136,7 @@ std::vector<double> bottoms_of(std::span<const CommonLayerContent> files, double
     const bool on_bottom = std::any_of(files.begin(), files.end(), [&](const CommonLayerContent& content) {
         return content.on_bottom && content.layers.front().z - heights.front() <= same;
     });
-    if (!on_bottom || heights.size() == 1) // one plane gives no thickness
+    if (!on_bottom || heights.size() == 1) // a single plane does not determine a thickness
         heights.clear();
     return heights;
 }
@@ -163,7 +163,7 @@ LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms,
     } else if (n > 1 && !layers.front().drawn) {
         layers = layers.subspan(1);
     } else {
-        // One layer below the bottom of the part gives no thickness.
+        // A single layer below the bottom of the part does not determine a thickness.
         bottom -= n > 1 ? layers[1].z - first : std::max(0.0, first - content.lowest);
     }
     check_part_planes(file, layers.size(), content.bytes);

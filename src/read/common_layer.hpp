@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads Common Layer Interface files whose layers are made later: in an archive, the heights of all files are
-// tops of layers, or those of all are bottoms.
+// Reads Common Layer Interface files. Their layers are made later, because in an archive either the heights
+// of all files are tops of layers, or all are bottoms.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -26,22 +26,22 @@ struct CommonLayerContent {
     bool on_bottom = false; ///< the first layer is at `lowest` and has contours
 };
 
-/// Returns the exposure of a part from its label and its kind: contour if it has contours and no hatch line,
-/// otherwise hatch.
+/// Returns the exposure of a part from its label and its kind, which is contour if it has contours and no
+/// hatch line, otherwise hatch.
 using ExposureOfPart = std::function<std::optional<Exposure>(std::string_view label, VectorKind held)>;
 
 [[nodiscard]] CommonLayerContent read_common_layer_content(std::string_view bytes, const std::string& name,
                                                            const ExposureOfPart& exposure_of,
                                                            ReadLimits& limits, const Execution& execution);
 
-/// Returns none if heights are tops of layers, as usual. If the first layer of a file is on the bottom of the
-/// part and has contours, as in some exports, heights are bottoms. Then the heights of all files are
-/// returned, ascending; heights at most `same` apart are merged.
+/// Returns the heights of all files, ascending, if they are bottoms of layers; heights at most `same` apart
+/// are merged. Returns an empty list if they are tops, as usual. They are bottoms if the first layer of a
+/// file is on the bottom of the part and has contours, as in some exports.
 [[nodiscard]] std::vector<double> bottoms_of(std::span<const CommonLayerContent> files, double same,
                                              ReadLimits& limits);
 
-/// Makes the layers; `bottoms` is the result of bottoms_of. If it is empty, an empty layer before the first
-/// other one specifies where that layer begins.
+/// Makes the layers; `bottoms` is the result of bottoms_of. If it is empty, a layer without contours at the
+/// beginning specifies the bottom of the layer after it.
 [[nodiscard]] LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms,
                                   ReadLimits& limits);
 

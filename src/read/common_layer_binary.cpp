@@ -75,7 +75,7 @@ class Bytes {
 void read_binary_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
                           const Execution& execution, CommonLayerGeometry& geometry) {
     std::size_t begin = header.aligned ? (header.end + 3) / 4 * 4 : header.end;
-    // Some writers end the header with a line end; a command never begins with one.
+    // Some writers end the header with a line end, with which no command begins.
     if (!header.aligned) {
         const std::string_view rest = bytes.substr(begin);
         if (rest.starts_with("\r\n"))
@@ -84,8 +84,8 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             begin += 1;
     }
     Bytes in(bytes, std::min(begin, bytes.size()), header.aligned, name);
-    // The standard specifies unsigned 16-bit numbers, but some exports have signed ones. Only the header's
-    // box distinguishes them: they are unsigned if it has no negative coordinate.
+    // The standard specifies unsigned 16-bit numbers, but some exports have signed ones. Only the box in the
+    // header distinguishes the two: if it has no negative coordinate, they are unsigned.
     const auto reaches_below = [&](std::size_t axis) {
         return header.dimension && (*header.dimension)[axis] < 0;
     };

@@ -41,18 +41,18 @@ namespace lamella {
     return static_cast<CommonLayerDirection>(number);
 }
 
-/// Expected values, for the error about another number.
+/// The permitted values, for the error about any other number.
 inline constexpr const char* common_layer_directions =
     "it must be 0 (clockwise), 1 (counter-clockwise) or 2 (open)";
 
-/// Largest number of decimals of the numbers noted.
+/// Finds the largest number of decimals of the numbers in a file.
 class Decimals {
   public:
     void note(double number) noexcept {
         while (locations_ < steps.size() - 1 && !is_whole(number / steps[locations_]))
             ++locations_;
     }
-    /// Returns 1, 0.1 and so on; 0 if there are more decimals than supported.
+    /// Returns the unit of the last decimal: 1, 0.1 and so on; 0 if there are more decimals than supported.
     [[nodiscard]] double step() const noexcept { return steps[locations_]; }
 
   private:
@@ -67,8 +67,8 @@ class Decimals {
     std::size_t locations_ = 0;
 };
 
-/// Exposure settings of the commands beyond the standard that CLI+ has. They apply to the vectors that
-/// follow, until they are changed.
+/// Exposure settings of the non-standard commands of CLI+. They apply to the vectors that follow, until they
+/// are changed.
 struct BeamSettings {
     std::optional<double> power_w;
     std::optional<double> speed_mm_s;
@@ -81,8 +81,8 @@ struct BeamSettings {
     }
 };
 
-/// Key of a part of the result: a part of the file, or, if the file specifies exposures, its vectors of one
-/// kind with the same settings.
+/// Key of a part of the result, which is a part of the file or, if the file specifies exposures, the vectors
+/// of a part that have the same kind and settings.
 struct CommonLayerPart {
     std::int64_t number = 0;
     BeamSettings beam = {};
@@ -100,8 +100,8 @@ class CommonLayerGeometry {
     CommonLayerGeometry(const CommonLayerHeader& header, const std::string& name, ReadLimits& limits)
         : units_(header.units_mm), name_(name), limits_(limits), parts_(limits) {}
 
-    /// Takes a command beyond the standard, with its number if it has one. Commands that set the exposure
-    /// apply to the vectors that follow; others are skipped and counted.
+    /// Takes a non-standard command, with its number if it has one. Commands that set the exposure apply to
+    /// the vectors that follow; others are skipped and counted.
     template <class Location>
     void take_setting(std::string_view command, std::optional<double> number, const Location& location) {
         const bool usable = number && !is_too_far(*number) && (*number >= 0 || command == "FOCUS");
@@ -126,7 +126,8 @@ class CommonLayerGeometry {
         layers_.back().location = std::move(location);
     }
     [[nodiscard]] bool in_layer() const { return !layers_.empty(); }
-    /// Reserves memory for ends of hatches, or for points of a polyline, and returns the list to add them to.
+    /// Reserves memory for ends of hatch lines, or for points of a polyline, and returns the list to which
+    /// they must be added.
     template <class Location>
     std::vector<Point2>& expect_points(bool hatches, std::uint64_t count, const Location& location) {
         RawLayer& layer = layers_.back();
@@ -173,7 +174,7 @@ class CommonLayerGeometry {
         }
     }
 
-    /// Puts the parts into `file` in the order of their numbers, including those that only have a label, and
+    /// Puts the parts into `file` in the order of their numbers, including parts that only have a label, and
     /// returns their keys.
     std::vector<CommonLayerPart> number_parts(const CommonLayerHeader& header, LayerFile& file) {
         const auto at_end = [] {
@@ -198,8 +199,8 @@ class CommonLayerGeometry {
 
     [[nodiscard]] std::vector<RawLayer>& layers() { return layers_; }
 
-    /// Returns the rounding of the coordinates; not every file uses whole units. In single precision other
-    /// numbers have many decimals without significance.
+    /// Returns the rounding of the coordinates. Not all files use whole units; numbers of single precision
+    /// that are not whole have many meaningless decimals.
     [[nodiscard]] Rounding rounding(bool single_precision) const noexcept {
         const bool known = !single_precision || decimals_.step() == 1;
         return {known ? units_ * decimals_.step() : 0, single_precision};

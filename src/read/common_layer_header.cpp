@@ -16,7 +16,8 @@ namespace {
 
 constexpr std::string_view end_command = "$$HEADEREND";
 
-/// Returns the label that begins a line: up to its closing quote, or else to a comment or command.
+/// Returns the label at the beginning of a line, up to its closing quote or, without quotes, up to a comment
+/// or command.
 std::string_view label_of(std::string_view line) {
     line = trimmed(line);
     if (line.starts_with('"') && line.find('"', 1) != std::string_view::npos)
@@ -71,7 +72,7 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
         if (text.take(end_command))
             break;
         if (!text.take("$$")) {
-            text.skip_to_command(); // the standard allows other characters, to be ignored
+            text.skip_to_command(); // the standard allows other characters here, which are ignored
             continue;
         }
         const std::string_view command = text.take_command();
@@ -121,7 +122,7 @@ CommonLayerHeader read_common_layer_header(std::string_view bytes, const std::st
                           fmt::format("{} bytes are left in the file", bytes.size() - text.at()));
             text.move_to(text.at() + static_cast<std::size_t>(length));
         } else {
-            text.skip_to_command(); // VERSION, DATE and others do not matter
+            text.skip_to_command(); // VERSION, DATE and other commands are not needed
         }
     }
     header.end = text.at();

@@ -15,7 +15,7 @@
 
 namespace lamella {
 
-/// A cursor over the text of a Common Layer Interface file. Errors state the line.
+/// A cursor over the text of a Common Layer Interface file. Its errors contain the number of the line.
 class CommonLayerText {
   public:
     CommonLayerText(std::string_view text, std::size_t at, const std::string& name)
@@ -62,7 +62,7 @@ class CommonLayerText {
         return true;
     }
 
-    /// Takes the letters of a command; "$$" was taken before.
+    /// Takes the letters of a command after "$$".
     std::string_view take_command() {
         const std::size_t begin = at_;
         while (!done() &&
@@ -94,8 +94,8 @@ class CommonLayerText {
         return true;
     }
 
-    /// Takes a number that a blank, a comment or a command must follow: otherwise the rest of "1,5" or
-    /// "1.5abc" would be skipped.
+    /// Takes a number, after which a blank, a comment or a command must follow, so that the rest of "1,5" or
+    /// "1.5abc" is not silently skipped.
     double last_number(const char* what) {
         const std::size_t before = at_;
         skip_blanks();
@@ -121,8 +121,8 @@ class CommonLayerText {
         ++at_;
     }
 
-    /// Reports a number missing after offset `before`. Lists of numbers may continue on the next line, but if
-    /// a command follows there, the error is at `before`, where the list ends.
+    /// Reports that a number is missing after offset `before`. A list of numbers may continue on the next
+    /// line; if a command follows there instead, the error refers to `before`, where the list ends.
     [[noreturn]] void fail_behind(std::size_t before, std::string_view found, const std::string& expected) {
         const std::string_view blanks = text_.substr(before, at_ - before);
         if (done())

@@ -29,9 +29,8 @@ namespace lamella {
 
 namespace coordinate_text {
 
-/// Returns whether rounding this double to a float gives the float nearest to the decimal number that the
-/// double was rounded from. If the double is half-way between two floats, the nearer one is not known any
-/// more.
+/// Returns whether rounding `value`, a decimal number rounded to double, to a float gives the float nearest
+/// to that decimal number. This is unknown if `value` is half-way between two floats.
 [[nodiscard]] inline bool rounds_once_more(double value) noexcept {
     std::uint64_t bits = 0;
     std::memcpy(&bits, &value, sizeof bits);
@@ -39,16 +38,16 @@ namespace coordinate_text {
     return (bits & below_a_float) != std::uint64_t{1} << 28;
 }
 
-/// Reads numbers that `parse_coordinate` cannot read quickly: many digits, large exponents, NaN, infinity, or
-/// none.
+/// Reads words that `parse_coordinate` cannot read quickly: many digits, large exponents, NaN, infinity, and
+/// words that are not numbers.
 [[nodiscard]] const char* parse_unusual(const char* at, const char* end, double& value) noexcept;
 [[nodiscard]] const char* parse_unusual(const char* at, const char* end, float& value) noexcept;
 
 } // namespace coordinate_text
 
 /// Reads the word that begins at `at` (not blank, not the end) as a number, rounded once, to the nearest.
-/// Returns the end of the word, or null if it is no number. All spellings of NaN give NaN, numbers beyond the
-/// range of T infinity. T is float or double.
+/// Returns the end of the word, or null if it is not a number. All spellings of NaN give NaN; numbers beyond
+/// the range of T give infinity. T is float or double.
 ///
 /// Most numbers are read by one division (see DecimalDigits), in half the time of std::from_chars, which
 /// reads the others.
@@ -69,7 +68,7 @@ template <class T>
     return number.end;
 }
 
-/// Returns what to expect instead of a word that is no number.
+/// Returns a text that describes what is expected instead of a word that is not a number.
 [[nodiscard]] std::string_view expected_instead(std::string_view word) noexcept;
 
 } // namespace lamella

@@ -18,8 +18,8 @@ struct DecimalDigits {
     std::ptrdiff_t count = 0;  ///< number of digits of the mantissa
     const char* end = nullptr; ///< end of the number; null if its exponent has no digits
 
-    /// Returns whether `magnitude` is correctly rounded: mantissa and power of ten are exact doubles, so
-    /// their quotient or product is rounded once. This holds for most numbers of mesh files.
+    /// Returns whether `magnitude` is correctly rounded, because mantissa and power of ten are exact doubles,
+    /// so that their quotient or product is rounded once. This holds for most numbers of mesh files.
     [[nodiscard]] bool exact() const noexcept {
         constexpr std::ptrdiff_t most_digits = 19;
         constexpr std::int64_t last_power = 22;
@@ -71,7 +71,8 @@ inline DecimalDigits take_decimal(const char* at, const char* end) noexcept {
 
 /// Reads the decimal number that begins at `first`: a sign, digits, a point, an exponent, independent of the
 /// locale. It is rounded correctly; numbers too small for a double give 0, and -0 gives +0. Returns the end
-/// of the number, or null if there is no number (NaN and infinity are none) or it is too large for a double.
+/// of the number, or null if there is no number (NaN and infinity do not count) or if it is too large for a
+/// double.
 inline const char* read_decimal(const char* first, const char* end, double& value) noexcept {
     const bool negative = first != end && *first == '-';
     const bool signed_number = negative || (first != end && *first == '+');

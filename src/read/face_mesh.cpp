@@ -23,7 +23,7 @@ using Corners = std::array<std::uint32_t, 3>;
 constexpr std::uint64_t triangles_per_chunk = 50'000;
 
 bool finite(const Point3& p) {
-    // Anything times zero is zero, except NaN and infinity; one comparison checks all three.
+    // All numbers times zero are zero, except NaN and infinity. So one comparison checks all three.
     return (p.x * 0 + p.y * 0 + p.z * 0) == 0;
 }
 
@@ -35,7 +35,7 @@ void keep_least(std::atomic<std::uint64_t>& least, std::uint64_t value) {
 
 constexpr std::uint64_t none = std::numeric_limits<std::uint64_t>::max();
 
-/// Returns the first triangle for which `is_bad` returns true, or none.
+/// Returns the first triangle for which `is_bad` returns true; nullopt if there is none.
 template <class IsBad>
 std::uint64_t first_triangle(const IndexedMesh& mesh, Executor& executor, IsBad is_bad) {
     std::atomic<std::uint64_t> first{none};
@@ -127,7 +127,7 @@ FaceMesh join(std::vector<FaceChunk>& chunks, const std::string& source_name, Ex
         FaceChunk& chunk = chunks[i];
         const Begin& begin = begins[i];
         for (const std::uint64_t corner : chunk.relative) {
-            // An index before this chunk has wrapped around; the addition wraps back.
+            // An index of a vertex before this chunk has wrapped around. The addition wraps it back.
             chunk.triangles[corner / 3][corner % 3] += static_cast<std::uint32_t>(begin.vertex);
         }
         std::copy(chunk.vertices.begin(), chunk.vertices.end(),

@@ -1,6 +1,7 @@
 #pragma once
 
-// Texts of rows, first the vertices, then the faces, as in ASCII PLY and OFF files.
+// Reads texts that consist of rows, first those of the vertices, then those of the faces, as in ASCII PLY and
+// OFF files.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -39,14 +40,15 @@ class RowWords : Words {
     [[nodiscard]] double coordinate();
     [[nodiscard]] std::int64_t integer();
     void skip_word();
-    /// Skips a count and this many words.
+    /// Takes a count, and skips as many words.
     void skip_list();
-    /// Adds a face to the chunk: a count, then this many vertex indices from 0.
+    /// Takes a count and as many vertex indices, from 0, and adds them to the chunk as a face.
     void add_face(FaceChunk& chunk);
-    /// Takes a count and this many vertex indices: strips of triangles, separated by a negative number.
+    /// Takes a count and as many vertex indices, which are strips of triangles separated by a negative
+    /// number.
     void add_strips(FaceChunk& chunk);
 
-    /// Ends the row. Returns the earliest beginning of the next one.
+    /// Ends the row. Returns the earliest position at which the next one can begin.
     [[nodiscard]] const char* end_row();
 
   private:
@@ -61,11 +63,12 @@ class RowWords : Words {
 struct FaceRows {
     std::size_t begin = 0;       ///< offset of the first row
     std::uint64_t rows = 0;      ///< number of rows needed
-    std::uint64_t more_rows = 0; ///< number of rows expected after those
+    std::uint64_t more_rows = 0; ///< number of further rows in the file, which are not needed
     char comment = '\0';         ///< lines that begin with it are not rows
-    /// Rows may be divided among lines in any way. `read_row` then takes all words of its row.
+    /// True if a row may extend over several lines, and a line may contain several rows. `read_row` must then
+    /// take all words of its row.
     bool any_lines = false;
-    std::string counted_where; ///< where the file states the numbers of rows, for errors
+    std::string counted_where; ///< part of the file that contains the numbers of rows, for errors
     /// Reads row number `row` into the chunk.
     std::function<void(std::uint64_t row, RowWords& words, FaceChunk& chunk)> read_row;
 };
@@ -74,8 +77,8 @@ struct FaceRows {
 ///
 /// If each row is on its own line, as in nearly all files, rows are read in parallel, and lines beyond the
 /// stated number are skipped with a remark. Otherwise, if `any_lines` is true, the text is read word by word
-/// on one thread up to its end; if that fails although there are as many lines as rows, excess words of a
-/// line are skipped with a remark. Throws Error{input} with the line.
+/// on one thread up to its end. If that fails although there are as many lines as rows, each line is read as
+/// a row, and excess words are skipped with a remark. Throws Error{input} with the line.
 [[nodiscard]] MeshFile read_face_rows(const ByteSource& source, const FaceRows& rows, Remarks& remarks,
                                       ReadLimits& limits, const Execution& execution);
 

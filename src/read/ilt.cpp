@@ -1,5 +1,5 @@
-// The list of parameters names the files of the archive. Each is read as a Common Layer Interface file; then
-// all of them get the union of their planes.
+// The list of parameters names the files of the archive. Each is read as a Common Layer Interface file. Then
+// all parts get layers on the union of the planes of all files.
 
 #include "lamella/core/error.hpp"
 
@@ -36,7 +36,7 @@ struct Section {
     std::string name;
     std::size_t line;
     ParameterSet parameters = unknown_parameters();
-    bool pulsed = false; ///< the beam is pulsed; read only to warn
+    bool pulsed = false; ///< true if the beam is pulsed, which causes a warning
     bool has_speed = false;
     bool has_power = false;
 };
@@ -53,7 +53,7 @@ constexpr IltUnit lengths[] = {
 /// A parameter that the list may give for a file.
 struct Parameter {
     std::string_view key;
-    double ParameterSet::*to; ///< null if it only causes a warning
+    double ParameterSet::*to; ///< null if the parameter only causes a warning
     std::span<const IltUnit> units;
     bool may_be_negative;
     const char* form;
@@ -152,7 +152,7 @@ constexpr NameWord codes[] = {
     {"uk", ScanRegion::downskin, VectorKind::contour}, {"kvu", ScanRegion::downskin, VectorKind::contour, 2},
     {"sx", ScanRegion::support, VectorKind::hatch},    {"skin", ScanRegion::upskin, VectorKind::hatch}};
 
-/// Regions as named by 3DXpert: alone for hatches, after the number of a contour as in "c1md".
+/// Names of regions in 3DXpert, which are alone for hatches, and follow the number of a contour as in "c1md".
 constexpr NameWord short_regions[] = {{"md", ScanRegion::core},
                                       {"up", ScanRegion::upskin},
                                       {"dn", ScanRegion::downskin},
@@ -259,8 +259,8 @@ Exposure named_exposure(std::string_view file, VectorKind held, bool& known) {
     return exposure;
 }
 
-/// Returns the exposure of a part of a file in the archive. Returns none if the file has no speed and its
-/// label does not specify scan vectors. `unknown` notes names without a known word.
+/// Returns the exposure of a part of a file in the archive. Returns nullopt if the file has no speed and its
+/// label does not specify scan vectors. Counts names without a known word in `unknown`.
 std::optional<Exposure> exposure_of(const Section& section, std::string_view label, VectorKind held,
                                     CountedWarning& unknown) {
     std::optional<Exposure> exposure = labelled_exposure(label);
@@ -298,7 +298,7 @@ LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
     for (std::size_t i = 0; i < all.size(); ++i) {
         Layer& plane = all[i];
         plane.index = i;
-        // If a file omits layers, their neighbours seem thicker than they are.
+        // If a file omits layers, the layers next to them appear thicker than they are.
         if (i > 0 && plane.bottom < all[i - 1].top) {
             plane.bottom = all[i - 1].top;
             plane.z = plane.bottom + (plane.top - plane.bottom) / 2;

@@ -15,8 +15,9 @@ namespace lamella {
 
 namespace {
 
-/// Returns whether scan vectors in the file have the order of a layer: by part, and in each part rings,
-/// chains, hatches. Contours of parts without an exposure have no order.
+/// Returns whether the scan vectors have the order in which a layer stores them: by part, and in each part
+/// first rings, then chains, then hatches. The order of contours of parts without an exposure does not
+/// matter.
 bool is_in_order(const RawLayer& raw, const LayerFile& file) {
     enum : std::uint8_t { ring, chain, hatch };
     std::tuple<std::uint32_t, std::uint8_t> last{};
@@ -128,7 +129,8 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
         builder.end_contour(closed);
     }
     std::vector<std::vector<Point2>> hatches(file.parts.size());
-    std::vector<std::size_t> ends_of_hatches(file.parts.size()); // so that none takes more than it has
+    std::vector<std::size_t> ends_of_hatches(file.parts.size()); // used to reserve exactly the memory that
+                                                                 // each part needs
     next = 0;
     for (const auto& [end, part, behind] : raw.hatch_ends)
         ends_of_hatches[part] += end - std::exchange(next, end);
@@ -146,7 +148,7 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
         if (!hatches[part].empty())
             layer.hatches = PointArray(std::move(hatches[part]));
     }
-    // Layers that follow still need the height, so `raw` itself stays.
+    // The points are freed, but not the height, which the following layers need.
     let_go(raw.points);
     let_go(raw.ends);
     let_go(raw.hatches);
@@ -172,7 +174,7 @@ void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double t
 }
 
 void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_t bytes) {
-    // This many layers are those of about two thousand small stacked parts in a file of 200 KB. They take a
+    // About two thousand small stacked parts in a file of 200 KB can have this many layers. They take a
     // gigabyte, which counts towards the memory limit.
     constexpr std::uint64_t never_too_many = std::uint64_t{1} << 22;
     const std::uint64_t most = std::max(never_too_many, bytes);

@@ -27,10 +27,10 @@ namespace lamella {
 /// Counts one kind of irregularity and warns once for the whole file.
 class CountedWarning {
   public:
-    /// Takes the warning for one occurrence, and for several.
+    /// `one` is the warning for one occurrence, `many` that for several.
     CountedWarning(const char* one, const char* many) : one_(one), many_(many) {}
 
-    /// `location` is called only for the first one.
+    /// Counts an occurrence. `location` is called only for the first one.
     template <class Location>
     void note(const Location& location) {
         if (count_++ == 0)
@@ -63,10 +63,10 @@ struct ReturningChains : CountedWarning {
                          "open contours end where they began; they are taken for closed ones") {}
 };
 
-/// Makes labels of parts in a file fit for messages and other files.
+/// Makes labels of parts suitable for messages and for other files.
 class ReadLabels {
   public:
-    /// Returns the label made printable (see printable()) and cut to the largest length of a label.
+    /// Returns the label in printable form (see printable()), truncated to the largest length of a label.
     [[nodiscard]] std::string of(std::string_view label);
     /// Warns of labels that were changed.
     void append_to(std::vector<std::string>& warnings) const;
@@ -86,7 +86,7 @@ struct RawLayer {
     struct Hatches {
         std::size_t end; ///< index in `hatches`
         std::uint32_t part;
-        std::size_t behind; ///< number of contours before these hatches
+        std::size_t behind; ///< number of contours that precede these hatches in the file
     };
 
     double z = 0;         ///< as in the file
@@ -95,11 +95,12 @@ struct RawLayer {
     std::vector<Contour> ends;
     std::vector<Point2> hatches; ///< two points each
     std::vector<Hatches> hatch_ends;
-    bool drawn = false; ///< the file has points for it, perhaps of a dropped contour (Common Layer Interface)
+    bool drawn = false; ///< the file has points for this layer, possibly only of dropped contours (Common
+                        ///< Layer Interface)
 
     /// Returns the index in `points` of the first point of the contour under construction.
     [[nodiscard]] std::size_t contour_begin() const { return ends.empty() ? 0 : ends.back().end; }
-    /// Returns whether its last point so far repeats the first one.
+    /// Returns whether the last point of this contour repeats its first one.
     [[nodiscard]] bool returns() const {
         return points.size() > contour_begin() && points.back() == points[contour_begin()];
     }
@@ -108,8 +109,8 @@ struct RawLayer {
     [[nodiscard]] bool is_returning_chain() const { return returns() && points.size() - contour_begin() > 3; }
 
     /// Ends the contour. Drops points equal to the one before, and the last point of a ring if it repeats the
-    /// first one. If fewer than three points (of a chain: two) are left, drops the contour, notes it in
-    /// `dropped` and returns false.
+    /// first one. If fewer than three points of a ring or two of a chain are left, drops the contour, counts
+    /// it in `dropped` and returns false.
     template <class Location>
     bool end_contour(bool closed, std::uint32_t part, ReadLimits& limits, const Location& where,
                      DroppedContours& dropped) {
@@ -133,8 +134,8 @@ struct RawLayer {
     bool keep_contour(bool closed, std::uint32_t part);
 };
 
-/// Numbers the parts of contours and hatches by their keys in order of appearance, and puts the parts into
-/// the file in the order of their keys.
+/// Numbers the parts of contours and hatches, identified by keys, in the order of their first occurrence.
+/// Then puts the parts into the file in the order of their keys.
 template <class Key>
 class PartNumbers {
   public:
@@ -159,7 +160,8 @@ class PartNumbers {
         return last_->second;
     }
 
-    /// Makes parts by `part_of(key)`; contours and hatches get the numbers that the parts have in the file.
+    /// Makes the parts by calling `part_of(key)`, and replaces the part numbers of contours and hatches by
+    /// indices of parts in the file.
     template <class PartOf>
     void put(LayerFile& file, std::span<RawLayer> layers, const PartOf& part_of) const {
         std::vector<std::uint32_t> locations(numbers_.size());
@@ -181,29 +183,32 @@ class PartNumbers {
     typename std::map<Key, std::uint32_t>::iterator last_ = numbers_.end();
 };
 
-/// Returns the name of the first parameter of scan vectors that is negative and must not be; empty if there
-/// is none.
+/// Returns the name of the first parameter of scan vectors that is negative although it must not be; empty if
+/// there is none.
 [[nodiscard]] std::string_view negative_parameter(const ParameterSet& set);
 
 /// Warns of names of parts that were changed.
 void append_to(const DistinctNames& names, std::vector<std::string>& warnings);
 
-/// Bytes that even an empty layer takes besides itself: the list of offsets, and the owner of the points.
+/// Number of bytes that an empty layer takes in addition to its struct: the list of offsets, and the owner of
+/// the points.
 inline constexpr std::uint64_t of_empty_layer = 128;
 
 /// Appends a layer to each part, in normal form unless the part has an exposure. Frees the contours and
-/// hatches of `raw`, which the limits have counted; the layers replace them.
+/// hatches of `raw`; in the limits, the layers take their place.
 void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,
                ReadLimits& limits);
 
-/// Adds layers whose heights are their tops. Each extends down to the one before, the first to `bottom`, and
-/// is cut half-way up. Warns of layers in which the order of scan vectors changes.
+/// Adds layers whose heights are their tops. Each layer extends down to the top of the one before, the first
+/// one to `bottom`. Cuts are assumed to be half-way up. Warns of layers in which the order of scan vectors
+/// changes.
 void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits);
 /// Adds layers whose heights are their bottoms in the same way; the last one extends up to `top`.
 void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits);
 
-/// Throws Error{input} if parts times planes is implausible for the size of the file: even empty layers take
-/// memory. Some millions are accepted in a file of any size, because a stack of small parts can have them.
+/// Throws Error{input} if the number of parts times the number of planes is implausibly large for the size of
+/// the file, because even empty layers take memory. A few millions are accepted for any size, because a stack
+/// of many small parts can have that many.
 void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_t bytes);
 
 /// Sorts layers by height and merges layers that are `same`, such as those of equal heights; warns if it

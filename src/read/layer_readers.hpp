@@ -1,8 +1,8 @@
 #pragma once
 
-// The formats of slice files, each in a source of its name; docs/formats.md describes them. Each has a
-// function that recognises it by its content, and one that reads it. The latter throws Error{input} with the
-// offset, the line, or the file within an archive and the position there.
+// The readers of slice files. Each format has a source of its name; docs/formats.md describes the formats.
+// Each has a function that recognises it by its content, and one that reads it. The latter throws
+// Error{input} with the offset, the line, or the file within an archive and the position there.
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
@@ -18,7 +18,7 @@ namespace lamella {
 
 class ReadLimits;
 
-/// Thrown if an archive has no layers, or none that can be placed; the caller may then read its meshes.
+/// Thrown if an archive has no layers, or if no build item places any; the caller may then read its meshes.
 struct NoLayers : Error {
     explicit NoLayers(const std::string& text) : Error(ErrorKind::input, text) {}
 };
@@ -60,7 +60,8 @@ struct NoLayers : Error {
 [[nodiscard]] bool is_slc(std::string_view bytes);
 [[nodiscard]] LayerFile read_slc(std::string_view bytes, const std::string& name, ReadLimits& limits,
                                  const Execution& execution);
-/// Returns the name of another format called SLC that the file has, for an error; "" if it has none.
+/// Returns, for an error, the name of the format if the file has another format that is also called SLC;
+/// otherwise "".
 [[nodiscard]] std::string_view other_slc(std::string_view bytes);
 
 /// 3MF with slice stacks (3MF Slice Extension). Reading decides whether a package has slices.

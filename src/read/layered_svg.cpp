@@ -87,7 +87,7 @@ void place_groups(std::vector<Group>& groups, std::vector<std::string>& warnings
     const bool legacy = !has_slice_z && highest < 0.01;
     for (Group& group : groups)
         group.z *= legacy ? 1e6 : 1;
-    // Layers with different cuts are distinct, even if their tops are rounded to the same value.
+    // Layers with different cuts are different layers, even if their tops are rounded to the same value.
     sort_by_height(groups, warnings,
                    [](const Group& a, const Group& b) { return a.z == b.z && a.slice_z == b.slice_z; });
     const std::size_t n = groups.size();
@@ -106,14 +106,15 @@ void place_groups(std::vector<Group>& groups, std::vector<std::string>& warnings
         group.bottom = group.top - thickness;
         const double middle = group.bottom + thickness / 2;
         group.cut = legacy ? group.z : group.slice_z.value_or(middle);
-        // Heights are rounded separately or come from other programs: the cut must be within the layer.
+        // The cut may be outside of the layer, because heights are rounded separately or come from other
+        // programs. Extend the layer to it.
         group.bottom = std::min(group.bottom, group.cut);
         group.top = std::max(group.top, group.cut);
     }
     std::stable_sort(groups.begin(), groups.end(),
                      [](const Group& a, const Group& b) { return a.cut < b.cut; });
-    // Heights and thicknesses are rounded separately: a layer within this distance of the one below adjoins
-    // it.
+    // Heights and thicknesses are rounded separately. A layer within this distance of the one below counts as
+    // adjoining it.
     constexpr double rounding = 1e-3;
     for (std::size_t i = 1; i < n; ++i) {
         const double top_below = groups[i - 1].top;
@@ -361,8 +362,8 @@ class SvgReader {
     int depth_ = 0;
     bool in_layer_ = false;
     double height_ = 0;
-    Point2 origin_; ///< origin of the part in Lamella's own files; else coordinates are relative to a corner
-                    ///< of the part
+    Point2 origin_; ///< origin of the part in Lamella's own files; in other files coordinates are relative to
+                    ///< a corner of the part
     std::vector<Group> groups_;
     CountedWarning open_{"contour is open", "contours are open"};
     CountedWarning outside_{"outline lies outside of the groups with slic3r:z; it was left out",

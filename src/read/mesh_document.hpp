@@ -1,7 +1,7 @@
 #pragma once
 
-// Reads XML documents with meshes, element by element. Sequences of vertices and triangles may be left to
-// `read/mesh_text`.
+// Reads XML documents with meshes, element by element. Sequences of vertices and triangles may be skipped and
+// left to `read/mesh_text`.
 
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
@@ -22,8 +22,8 @@
 
 namespace lamella {
 
-/// The step to take for an element in a certain parent. The step returns the kind of the element, for the
-/// elements in it.
+/// The function that handles an element in a certain parent. It returns the kind of the element, as the
+/// parent of the elements in it.
 template <class Where, class Step>
 struct ElementRule {
     Where in;
@@ -31,7 +31,7 @@ struct ElementRule {
     Step step;
 };
 
-/// Returns the step, or null if the element has no meaning in this parent.
+/// Returns the function, or null if the element has no meaning in this parent.
 template <class Where, class Step, std::size_t count>
 [[nodiscard]] Step step_for(const std::array<ElementRule<Where, Step>, count>& rules, Where in,
                             std::string_view element) {
@@ -48,7 +48,7 @@ class MeshDocumentReader {
   public:
     MeshDocumentReader(const MeshDocumentReader&) = delete;
     MeshDocumentReader& operator=(const MeshDocumentReader&) = delete;
-    /// Subtracts the document from the limits unless it was taken.
+    /// Subtracts the document from the limits, unless take() was called.
     virtual ~MeshDocumentReader() { limits_.give_back(triangles_, bytes_); }
 
   protected:
@@ -82,7 +82,7 @@ class MeshDocumentReader {
         parse_xml(text, name_, handlers, rules);
     }
 
-    /// Returns the document; the limits continue to count it.
+    /// Returns the document, which remains counted in the limits.
     [[nodiscard]] Document take() {
         count_open();
         triangles_ = bytes_ = 0;
@@ -100,8 +100,8 @@ class MeshDocumentReader {
 
     [[nodiscard]] std::string here() const { return fmt::format("{}line {}", part_, line_); }
 
-    /// Counts memory; must be called before it is allocated. Threads share the limits, so they are asked once
-    /// for several elements.
+    /// Counts memory; must be called before it is allocated. All threads share the limits, so the limits are
+    /// updated only once for several elements.
     void count(std::uint64_t bytes, std::uint64_t triangles = 0) {
         constexpr std::uint64_t stretch = 1 << 16;
         open_triangles_ += triangles;
@@ -132,7 +132,8 @@ class MeshDocumentReader {
                         : take_run(document, location, form.triangle.end_of_list, text.triangles);
     }
 
-    /// In a skimmed document the parser must not read a vertex: the order of vertices would be lost.
+    /// Fails if the document is skimmed, because the order of vertices would be lost if the parser read some
+    /// of them.
     void require_all_by_parser() const {
         if (skim_)
             fail("found a mesh that is not written plainly");
@@ -158,8 +159,8 @@ class MeshDocumentReader {
     std::vector<Where> where_{Where::outside};
 };
 
-/// Returns `read(true)`, which skims, or `read(false)` if that fails: the document may be invalid, or only
-/// written in a form that cannot be skimmed.
+/// Returns `read(true)`, which skims, or `read(false)` if that fails, because the document may be valid
+/// although it cannot be skimmed.
 template <class Read>
 [[nodiscard]] auto skimmed_or_parsed(const Read& read) {
     try {

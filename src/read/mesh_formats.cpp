@@ -61,7 +61,7 @@ bool holds_images(const ZipReader& zip) {
     return holds(zip, ".png") && !holds_model(zip);
 }
 
-/// Checks the checksum of the first header, which all kinds of tar have.
+/// Returns whether the checksum of the first header, which all variants of tar have, is correct.
 bool is_tar(std::string_view text) {
     constexpr std::size_t header_bytes = 512;
     constexpr std::size_t checksum_at = 148;
@@ -93,8 +93,8 @@ constexpr std::string_view surfaces =
 constexpr std::string_view scene =
     "is a kind of mesh file that is not read here; save it as STL, 3MF, OBJ or PLY";
 
-/// The first row that recognises a file applies. A file that no row recognises has the first one, because STL
-/// has no signature.
+/// The first row that recognises a file applies. If no row does, the first row of the table applies, because
+/// STL has no signature.
 constexpr std::array rows = {
     MeshFormatRow{.extension = "stl", .recognises = is_any_stl, .read = read_stl, .stream = stream_stl},
     // Zip archives.
@@ -131,7 +131,8 @@ constexpr std::array rows = {
     // Slice files, and web pages, which may hold SVG.
     MeshFormatRow{.first_bytes = "<!doctype html"sv, .advice = web_page},
     MeshFormatRow{.first_bytes = "<html"sv, .advice = web_page},
-    // A text that contains the signature of the Common Layer Interface can still be one of the two before.
+    // Texts that contain the signature of the Common Layer Interface can also have one of the two formats
+    // above.
     MeshFormatRow{.extension = "slc",
                   .first_bytes = "-slc"sv,
                   .recognises = by_text<is_slc>,
@@ -163,8 +164,8 @@ constexpr std::array rows = {
                             "layers as they are",
                   .read_layers = read_layered_svg,
                   .layer_magic = "layered SVG (<svg)"},
-    // Files that are often named like a mesh file, or given by mistake. Binary ones would be taken for binary
-    // STL with a wrong count.
+    // Files that are often named like a mesh file, or passed by mistake. Binary ones would be mistaken for
+    // binary STL with a wrong count.
     MeshFormatRow{.first_bytes = "\x1f\x8b"sv,
                   .advice = "is compressed with gzip twice; decompress it once first"},
     MeshFormatRow{.first_bytes = "<?xml"sv, .advice = "is an XML file of an unknown kind, no mesh file"},
@@ -261,7 +262,7 @@ const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOpti
     if (named != nullptr)
         refuse(source, fmt::format("is neither a mesh file nor the slice file that its extension .{} says",
                                    extension));
-    // A file with another extension is not meant to be STL.
+    // A file with the extension of another format is not meant to be STL.
     if (first_row([&](const MeshFormatRow& row) {
             return row.read != nullptr && row.extension == extension && &row != rows.data();
         }) != nullptr)

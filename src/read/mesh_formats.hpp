@@ -1,7 +1,7 @@
 #pragma once
 
-// The table of formats that may be given as a mesh: those that are read, and others that are often given
-// instead, including slice files.
+// The table of formats of mesh input: those that can be read, and others that users often pass instead,
+// including slice files.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -23,18 +23,20 @@ class ReadLimits;
 /// A kind of file. It has either `read` or `advice`.
 struct MeshFormatRow {
     std::string_view extension = {}; ///< in lower case; empty for files of any name
-    /// Recognise such a file, also after a byte order mark and blanks; lower-case letters match both cases.
+    /// First bytes of such a file, after an optional byte order mark and blanks; lower-case letters match
+    /// both cases.
     std::string_view first_bytes = {};
     /// Recognises such a file with certainty.
     bool (*recognises)(const ByteSource&, const MeshReadOptions&) = nullptr;
-    /// The extension decides if no content does.
+    /// True if the extension decides when no content is recognised.
     bool goes_by_name = false;
-    /// Recognises a probable file of this kind if neither content nor name decides.
+    /// Recognises files that probably have this format, if neither content nor name decides.
     bool (*resembles)(std::string_view text) = nullptr;
 
-    /// The kind of file and advice: the end of a sentence that begins with the file's name.
+    /// The kind of file, and advice, as the end of a sentence that begins with the file's name.
     std::string_view advice = {};
-    /// Reads a slice file that is not an archive. `layer_magic` is its name and first bytes, for errors.
+    /// Reads a slice file that is not an archive. `layer_magic` is the format's name with its first bytes,
+    /// for errors.
     LayerFile (*read_layers)(std::string_view bytes, const std::string& name, ReadLimits&,
                              const Execution&) = nullptr;
     std::string_view layer_magic = {};
@@ -50,8 +52,8 @@ struct MeshFormatRow {
 [[nodiscard]] const MeshFormatRow* recognised_format(const ByteSource& source,
                                                      const MeshReadOptions& options);
 
-/// Returns the format for reading a file: by its content if that decides, otherwise by its name. Throws
-/// Error{input} with advice if the file is not a mesh file.
+/// Returns the format by which a file is read: that of its content if that is recognised, otherwise that of
+/// its name. Throws Error{input} with advice if the file is not a mesh file.
 [[nodiscard]] const MeshFormatRow& mesh_format_of(const ByteSource& source, const MeshReadOptions& options);
 
 /// Opens a file that may contain a mesh (system/byte_source); binary STL is read in windows.

@@ -1,7 +1,7 @@
 #pragma once
 
-// The formats of mesh files, each in a source of its name. Each has a function that recognises it by its
-// content, and one that reads it, by the contract of read_mesh.
+// The readers of mesh files. Each format has a source of its name, with a function that recognises the format
+// by its content, and one that reads it, by the contract of read_mesh.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -31,8 +31,8 @@ using ReadMesh = MeshFile(const ByteSource& source, const MeshReadOptions& optio
 /// 3. other text: an error that shows it;
 /// 4. at least 84 bytes: binary with a wrong count.
 ReadMesh read_stl;
-/// Returns the number of records of a binary file, according to its header and its length; none for an ASCII
-/// file. The form is recognised by the same rules.
+/// Returns the number of records of a binary file, according to its header and its length; nullopt for an
+/// ASCII file. The form is recognised by the same rules.
 [[nodiscard]] std::optional<std::uint64_t> stl_records(const ByteSource& source);
 /// Passes the triangles of either form to the sink; see MeshInput::stream.
 [[nodiscard]] MeshFile stream_stl(const ByteSource& source, const TriangleSink& sink,
@@ -41,12 +41,12 @@ ReadMesh read_stl;
 
 /// AMF (ISO/ASTM 52915): objects as meshes in XML, plain or in a zip archive, and constellations of them.
 [[nodiscard]] bool is_amf(std::string_view text);
-/// A text is recognised within this many bytes.
+/// Number of bytes within which the root element must begin for a text to be recognised.
 inline constexpr std::size_t amf_root_within = std::size_t{1} << 16;
-/// The volumes of an object become one mesh, those of type support only if the options include them. Objects
-/// that no constellation places keep their coordinates. Edges and normals, which bend triangles, are skipped
-/// with a warning. Angles are degrees, except in files of Slic3r and its descendants: these have radians, and
-/// also scale, mirror and printable.
+/// Reads AMF. The volumes of an object become one mesh; volumes of type support are read only if the options
+/// include them. Objects that no constellation places keep their coordinates. Edges and normals, which bend
+/// triangles, are skipped with a warning. Angles are in degrees, except in files of Slic3r and its
+/// descendants, which have radians, and also the elements scale, mirror and printable.
 ReadMesh read_amf;
 
 /// 3MF: a package of model parts with meshes, assemblies of them, and a build that places objects. Each mesh
@@ -62,8 +62,8 @@ ReadMesh read_three_mf;
 /// "face", in any order and of any type; skips all others.
 ReadMesh read_ply;
 
-/// OFF, the format of Geomview: the word OFF or one like it (COFF, STNOFF, 4OFF, nOFF...), three counts,
-/// vertices and faces, one on each line.
+/// OFF, the format of Geomview: the word OFF or a similar one (COFF, STNOFF, 4OFF, nOFF...), three counts,
+/// then one vertex or face per line.
 ///
 ///     OFF
 ///     3 1 0
@@ -83,12 +83,13 @@ ReadMesh read_off;
 ///     v 0 1 0
 ///     f 1 2 3
 ///
-/// OBJ has no signature, so the first line that is not a comment must be one with which OBJ files begin.
+/// OBJ has no signature. The first line that is not a comment must therefore be one with which OBJ files
+/// usually begin.
 [[nodiscard]] bool looks_like_obj(std::string_view text);
-/// Faces may have any number of corners, each V, V/VT, V//VN or V/VT/VN: numbers of lines of these kinds from
-/// 1 on, or backwards from -1. Only V is used. All groups and objects are joined; texture, normals,
-/// materials, points and lines are skipped. Runs in parallel, with the same result and errors as a sequential
-/// parser.
+/// Reads OBJ. Faces may have any number of corners, each V, V/VT, V//VN or V/VT/VN. These are indices of
+/// lines of the kinds v, vt and vn, counted from 1, or backwards from -1. Only V is used. All groups and
+/// objects are joined; texture, normals, materials, points and lines are skipped. Runs in parallel, with the
+/// same result and errors as a sequential parser.
 ReadMesh read_obj;
 
 } // namespace lamella

@@ -54,7 +54,7 @@ class Elements {
         }
     }
 
-    /// Returns the number of elements, or none if a chunk is not plain.
+    /// Returns the number of elements, or nullopt if a chunk is not plain.
     [[nodiscard]] const std::optional<std::size_t>& count_of(std::size_t mesh) const { return counts_[mesh]; }
 
     /// Reads into `items_of(mesh)` and calls `done` with each chunk that was read.

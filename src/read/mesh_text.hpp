@@ -1,7 +1,7 @@
 #pragma once
 
 // Reads long sequences of small elements in XML files, the vertices and triangles, in parallel and without an
-// XML parser. Elements that are not plain are left to the parser.
+// XML parser. Elements that are not plain (see read/plain_elements.hpp) are left to the parser.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
@@ -22,8 +22,7 @@ namespace lamella {
 class Executor;
 class ReadLimits;
 
-/// The sequences of elements of one mesh, in order. Each is followed by another byte of the text, which is
-/// '<'.
+/// The sequences of elements of one mesh, in order. The byte after each sequence can be read and is '<'.
 struct MeshText {
     std::vector<std::string_view> vertices;
     std::vector<std::string_view> triangles;
@@ -32,8 +31,8 @@ struct MeshText {
     std::string location; ///< for error messages
 };
 
-/// Appends the sequence from offset `location` of a document up to `end_tag` to `runs` and returns its
-/// length; 0 if this tag is missing.
+/// Appends the sequence from offset `location` of a document up to `end_tag` to `runs`. Returns its length; 0
+/// if this tag is missing.
 [[nodiscard]] std::size_t take_run(std::string_view document, std::size_t location, std::string_view end_tag,
                                    std::vector<std::string_view>& runs);
 
@@ -44,7 +43,7 @@ struct MeshTextKind {
     std::string_view end_of_list; ///< for example "</vertices"
     std::size_t marks;            ///< number of '<' in each element
     std::size_t least;            ///< bytes of the shortest element
-    /// Reads a sequence of exactly this many elements with blanks between them. Returns false if it is not
+    /// Reads a sequence of exactly items.size() elements with blanks between them. Returns false if it is not
     /// plain.
     bool (*read)(std::string_view run, const MeshText& text, std::span<Item> items);
 };
@@ -62,12 +61,12 @@ struct MeshTextForm {
     MeshTextKind<TriangleIndices> triangle;
 };
 
-/// Bound of coordinates: beyond it, squares and volumes would overflow.
+/// Upper bound on coordinates, beyond which squares and volumes would overflow.
 inline constexpr double farthest_coordinate = 1e38;
 
-/// Reads the meshes; returns none for a mesh that is not plain: an element has another form, or an index is
-/// out of range. Memory is allocated only for elements that the text can contain and that the limits allow.
-/// The limits count the result.
+/// Reads the meshes. Returns nullopt for a mesh that is not plain, because an element has another form or an
+/// index is out of range. Memory is allocated only for elements that the text can contain and that the limits
+/// allow. The result remains counted in the limits.
 [[nodiscard]] std::vector<std::optional<IndexedMesh>> read_mesh_texts(std::span<const MeshText> texts,
                                                                       const MeshTextForm& form,
                                                                       ReadLimits& limits, Executor& executor);
@@ -76,7 +75,8 @@ inline constexpr double farthest_coordinate = 1e38;
 void give_back(const IndexedMesh& mesh, ReadLimits& limits);
 
 /// Reads the texts of all objects of skimmed documents into their meshes. Returns false for a document with a
-/// mesh that is not plain: a parser must read the whole document, and the limits no longer count its meshes.
+/// mesh that is not plain. A parser must then read the whole document, whose meshes are no longer counted in
+/// the limits.
 template <class Document>
 [[nodiscard]] std::vector<bool> read_skimmed_meshes(std::span<Document* const> documents,
                                                     const MeshTextForm& form, ReadLimits& limits,

@@ -124,7 +124,7 @@ class Array {
         if (value(dictionary, "fortran_order").starts_with("True") && shape_.size() > 1)
             fail("an array in Fortran's order", "the last index must run fastest");
         element_ = element_size();
-        // If elements were empty, the first number could claim any number of them.
+        // If elements could be empty, the first number of the shape could claim any number of them.
         if (std::find(shape_.begin() + 1, shape_.end(), 0U) != shape_.end())
             fail("a shape with a 0 behind its first number", "elements must not be empty");
         std::uint64_t numbers = 1;

@@ -47,8 +47,8 @@ class ObjLines : Words {
             return true;
         }
         other();
-        // A backslash does not continue a comment or a folder name. The second line of other statements, such
-        // as the numbers of a curve, begins with no keyword that matters.
+        // A backslash continues neither a comment nor a folder name. Other statements, such as the numbers of
+        // a curve, may continue, but their second line does not begin with a keyword that is read.
         at_ = skip_to_line_end(at_, end_);
         return true;
     }
@@ -132,8 +132,8 @@ class ObjLines : Words {
         if (!backwards)
             return number - 1 < FaceChunk::no_vertex ? static_cast<std::uint32_t>(number - 1)
                                                      : FaceChunk::no_vertex;
-        // Relative to the vertices so far, in this chunk or before it. In a file of more than 2^31 vertices
-        // none further back can be addressed.
+        // The index is relative to the vertices so far, in this chunk or before it. Vertices more than 2^31
+        // back cannot be addressed.
         relative = true;
         constexpr std::uint64_t furthest = std::uint64_t{1} << 31;
         relative_.resize(corners_.size() + 1, false);

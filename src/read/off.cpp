@@ -41,7 +41,7 @@ std::optional<OffKind> kind_of(std::string_view word) {
     return kind;
 }
 
-/// A cursor over the words before the rows.
+/// A cursor over the words of the header.
 class OffHeader : public Words {
   public:
     explicit OffHeader(std::string_view text) : Words(text, after_byte_order_mark(text)) {}
@@ -71,7 +71,7 @@ class OffHeader : public Words {
     /// Returns whether there is another word on this line.
     [[nodiscard]] bool line_goes_on() { return skip_blanks_in_line() && *position() != '#'; }
 
-    /// Returns whether the next line that is not a comment contains only one word. A row never does.
+    /// Returns whether the next line that is not a comment consists of one word, which a row never does.
     [[nodiscard]] bool next_line_is_one_word() const {
         OffHeader ahead = *this;
         ahead.skip_line();

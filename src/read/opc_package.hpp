@@ -16,12 +16,12 @@ namespace lamella {
 struct OpcRelationship {
     std::string type;      ///< a URI
     std::string target;    ///< name of a part; if external, as written
-    bool external = false; ///< outside of the package
+    bool external = false; ///< the target is outside of the package
     std::size_t line = 0;
 };
 
-/// Returns the relationships of a part, or those of the package for "". Returns none if there is no list of
-/// them.
+/// Returns the relationships of a part, or those of the package for "". Returns an empty list if the package
+/// has no list of them.
 [[nodiscard]] std::vector<OpcRelationship> opc_relationships(const ZipReader& package, std::string_view part);
 
 /// Returns the name of the part that a reference in `part` refers to: absolute ("/3D/a.model") or relative to

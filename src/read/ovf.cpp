@@ -1,6 +1,6 @@
-// A table at the end contains the offsets of the job and its work planes, and a table of each work plane
-// those of its blocks of vectors. Blocks of the same part, parameters, region and kind become the layers of
-// one part of the result.
+// A table at the end contains the offsets of the job and of its work planes. A table in each work plane
+// contains the offsets of its blocks of vectors. Blocks with the same part, parameters, region and kind
+// become the layers of one part of the result.
 
 #include "lamella/core/error.hpp"
 
@@ -54,7 +54,7 @@ double finite_real(const ProtobufReader& field) {
     return static_cast<double>(value);
 }
 
-/// Properties of the job for all of its blocks: parameters, and parts.
+/// Properties of the job that apply to all blocks: parameters and parts.
 class JobShell {
   public:
     JobShell(const std::string& name, ReadLimits& limits) : name_(name), limits_(limits) {}
@@ -75,10 +75,10 @@ class JobShell {
         }
     }
 
-    // Returns 0 if the job does not specify it.
+    // Returns the number of planes; 0 if the job does not specify it.
     [[nodiscard]] std::int64_t planes() const noexcept { return planes_; }
     [[nodiscard]] double layer_thickness() const noexcept { return layer_thickness_; }
-    /// Returns the key of the part for blocks that name none.
+    /// Returns the key of the part for blocks that specify no part.
     [[nodiscard]] std::int64_t first_part() const { return labels_.empty() ? 0 : labels_.begin()->first; }
     [[nodiscard]] std::string label(std::int64_t part) const {
         const auto label = labels_.find(part);
@@ -86,7 +86,7 @@ class JobShell {
     }
     /// Returns whether there are parameters with this key.
     [[nodiscard]] bool has_parameters(std::int64_t key) const { return parameters_.count(key) != 0; }
-    /// Returns the exposure of blocks of this kind, or none if they have no parameters.
+    /// Returns the exposure of blocks of this kind; nullopt if they have no parameters.
     [[nodiscard]] std::optional<Exposure> exposure(const BlockKind& kind) const {
         const auto parameters = parameters_.find(kind.parameters);
         if (parameters == parameters_.end())
@@ -214,8 +214,8 @@ class OvfMessages {
         return static_cast<std::uint64_t>(position);
     }
 
-    /// Returns the message at `offset`. Many tables can refer to the same message; if it were read again each
-    /// time, a small file could take long.
+    /// Returns the message at `offset`. Throws Error{input} if a part of it was read before. Otherwise a
+    /// small file whose tables refer to the same message many times could take very long.
     ProtobufReader at(std::uint64_t offset) {
         std::uint64_t end = offset;
         ProtobufReader fields = ProtobufReader::delimited(bytes_, end, name_);
@@ -298,7 +298,7 @@ class OvfReader {
         limits_.make_room(layers_, 1, at_byte(begin));
         RawLayer& raw = layers_.emplace_back();
         raw.location = fmt::format("byte {}", begin);
-        std::int64_t blocks = 0; // as stated by the plane
+        std::int64_t blocks = 0; // number of blocks that the plane claims
         std::uint64_t number = 0;
         ProtobufReader shell = messages_.at(table.shell);
         while (shell.next()) {
@@ -359,7 +359,8 @@ class OvfReader {
         if (!has_parameters)
             kind = {.part = kind.part}; // all blocks without parameters belong to one part
         else if (!says_kind && lines)
-            kind.area = ovf::block::lpbf::contour; // without metadata the type of vectors decides
+            kind.area = ovf::block::lpbf::contour; // without metadata the type of vectors determines the
+                                                   // region
         if (lines)
             add_line_sequence(*lines, begin, parts_.number_of(kind, at_byte(begin)), raw);
         if (hatches)
@@ -420,7 +421,8 @@ class OvfReader {
         raw.end_hatches(part, limits_, at_byte(begin));
     }
 
-    /// Numbers parts by their keys, and exposures of a part by those of their parameters.
+    /// Numbers parts in the order of their keys, and the exposures of a part in the order of the keys of
+    /// their parameters.
     void number_parts() {
         if (parts_.empty())
             parts_.number_of({.part = job_.first_part()}, at_byte(bytes_.size()));

@@ -14,15 +14,15 @@
 
 namespace lamella {
 
-/// A cursor over a sequence of tags with blanks between them. The sequence is followed by another byte of the
-/// text, which is '<'.
+/// A cursor over a sequence of tags with blanks between them. The byte after the sequence can be read and is
+/// '<'.
 class PlainTags {
   public:
     explicit PlainTags(std::string_view run) : at_(run.data()), end_(run.data() + run.size()) {}
 
     [[nodiscard]] const char* end() const noexcept { return end_; }
 
-    /// Takes a tag, or the beginning of one, if it is next.
+    /// Takes this tag, or this beginning of a tag, if it is next.
     bool take(std::string_view tag) {
         const char* const at = next();
         return static_cast<std::size_t>(end_ - at) >= tag.size() &&
@@ -67,9 +67,9 @@ class PlainElements : public PlainTags {
     PlainElements(std::string_view run, std::span<const std::string> prefixes)
         : PlainTags(run), prefixes_(prefixes) {}
 
-    /// Reads the next element, which begins with `tag`, and each of its `wanted` attributes once: read(name,
-    /// length of the name, value) returns a PlainValue. Returns false if the element is not plain or lacks
-    /// one of them.
+    /// Reads the next element, which begins with `tag`, and each of its `wanted` attributes by calling
+    /// read(name, length of the name, value), which returns a PlainValue. Returns false if the element is not
+    /// plain or lacks one of these attributes.
     template <class Read>
     bool take(std::string_view tag, int wanted, const Read& read) {
         if (!PlainTags::take(tag))
@@ -115,7 +115,7 @@ class PlainElements : public PlainTags {
         return is_letter(c) || (c >= '0' && c <= '9') || c == ':' || c == '-' || c == '.';
     }
 
-    /// Returns whether an unwanted attribute may have this name here, and notes the name.
+    /// Returns whether the name is permitted for an unwanted attribute and new in the element, and stores it.
     bool is_new(std::string_view name, std::size_t& others) {
         if (!is_letter(name.front()) || name.starts_with("xmlns") || others == others_.size())
             return false;

@@ -102,7 +102,8 @@ struct Rows {
     [[nodiscard]] bool hold(std::uint64_t row) const { return row >= begin && row < end; }
 };
 
-/// Returns the rows of each element. An element without properties has no words, and so no rows.
+/// Returns the rows of each element. An element without properties has no rows, because its rows would have
+/// no words.
 std::vector<Rows> rows_of(const PlyHeader& header) {
     std::vector<Rows> rows;
     std::uint64_t begin = 0;

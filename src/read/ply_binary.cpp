@@ -80,7 +80,7 @@ std::uint64_t whole_number_at(const std::byte* at, PlyType type) {
     if (type == PlyType::uint64)
         return value_at<std::uint64_t, swapped>(at);
     if (is_real(type)) {
-        // Some programs write indices as real numbers; from 2^53 on they are not exact.
+        // Some programs write indices as real numbers, which are not exact from 2^53 on.
         const double value = number_at<double, swapped>(at, type);
         return value >= 0 && value < 0x1p53 && value == std::floor(value) ? static_cast<std::uint64_t>(value)
                                                                           : impossible;
@@ -114,7 +114,7 @@ std::vector<Step> steps_of(const PlyElement& element, std::size_t first, std::si
     return steps;
 }
 
-/// Returns the position after these values; null if the file ends before.
+/// Returns the position after these values; null if the file ends before that.
 template <bool swapped>
 const std::byte* walk(const std::vector<Step>& steps, const std::byte* at, const std::byte* end) {
     for (const Step& step : steps) {
@@ -172,7 +172,7 @@ class CornerRows {
         return {list + ply_bytes(length_type_), list_end, whole_number_at<swapped>(list, length_type_),
                 walk<swapped>(after_, list_end, end)};
     }
-    /// Returns the list of row `number`; throws if the row is cut off.
+    /// Returns the list of row `number`. Throws Error{input} if the row is truncated.
     [[nodiscard]] List at(const std::byte* row, std::uint64_t number) const {
         const List list = at(row);
         if (list.row_end == nullptr)
@@ -226,7 +226,7 @@ class FaceRows {
     [[nodiscard]] std::uint64_t triangles() const { return runs_.back().triangles; }
     [[nodiscard]] std::uint64_t polygons() const { return runs_.back().polygons; }
     [[nodiscard]] const std::byte* end() const { return runs_.back().at; }
-    /// Returns the faces of fewer than three corners, by their offsets.
+    /// Returns the faces with fewer than three corners; their positions are offsets.
     [[nodiscard]] const Occurrences& thin() const { return thin_; }
 
     /// Writes all faces, in parallel, to arrays of sufficient size.
@@ -265,8 +265,9 @@ class FaceRows {
         std::uint64_t polygons;
     };
 
-    /// Prepares for rows of equal size, as in most files, which contain only triangles. All rows are checked
-    /// in parallel: if every length equals that of the first row, each row begins where it was expected.
+    /// Prepares for rows of equal size, as in most files, which contain only triangles. Returns false if they
+    /// may differ. All rows are checked in parallel at their expected positions, which are right if every
+    /// length equals that of the first row.
     bool plan_even_rows(const std::byte* first) {
         const auto around = rows_.bytes_around_list();
         if (!around)
@@ -327,8 +328,8 @@ class FaceRows {
         runs_.push_back({at, rows, triangles, polygons});
     }
 
-    /// Copies equal rows of triangles with 32-bit indices: twelve bytes from each row. Negative numbers
-    /// become large ones, which are not the index of a vertex.
+    /// Copies twelve bytes from each row, for rows of equal size with triangles and 32-bit indices. Negative
+    /// numbers become large numbers, which are not indices of vertices.
     void put_triangles(const Run& run, const Run& next, FaceMesh& faces) const {
         const std::byte* at = run.at + index_offset_;
         Corners* out = faces.mesh.triangles.data() + run.triangles;
@@ -357,7 +358,7 @@ class FaceRows {
 
     const CornerRows<swapped>& rows_;
     Executor& executor_;
-    std::vector<Run> runs_; ///< and the end of the last one
+    std::vector<Run> runs_; ///< and a last entry for the end
     bool even_ = false;     ///< all rows have the form described below
     std::uint64_t corners_ = 0;
     std::uint64_t row_bytes_ = 0;
@@ -418,8 +419,8 @@ class BinaryReader {
     }
 
   private:
-    /// Reports bytes after the rows of all elements: the counts in the file are wrong, and these bytes are
-    /// lost. The elements from `first` on are not needed, so they may be cut off.
+    /// Reports bytes after the rows of all elements, which are lost because the counts in the file are wrong.
+    /// The elements from `first` on are not needed, so they may be truncated.
     void report_rest(std::size_t first) {
         for (std::size_t i = first; i < header_.elements.size(); ++i) {
             const PlyElement& element = header_.elements[i];

@@ -90,8 +90,9 @@ class HeaderReader {
                                 source_.name, line_number_, printable(line_, 40), expected));
     }
 
-    /// Reads the next line. Lines end as the first one does, but some programs write LF and end the header
-    /// with CRLF. Binary rows begin immediately after it, perhaps with a byte that looks like a line end.
+    /// Reads the next line. Lines end like the first one, except that some programs write LF but end the
+    /// header with CRLF. Binary rows begin immediately after the header, possibly with a byte that looks like
+    /// a line end.
     bool next_line() {
         if (at_ == text_.size()) {
             line_ = {};

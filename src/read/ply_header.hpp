@@ -28,7 +28,7 @@ struct PlyElement {
     std::uint64_t rows = 0; ///< as the file claims
     std::vector<PlyProperty> properties;
 
-    /// Returns the bytes of a row in a binary file; none if rows contain lists.
+    /// Returns the number of bytes of a row in a binary file; nullopt if rows contain lists.
     [[nodiscard]] std::optional<std::size_t> row_bytes() const;
     [[nodiscard]] std::optional<std::size_t> find(std::string_view property) const;
 };
@@ -38,11 +38,11 @@ enum class PlyForm { ascii, little_endian, big_endian };
 struct PlyHeader {
     PlyForm form = PlyForm::ascii;
     std::vector<PlyElement> elements;
-    std::size_t end = 0; ///< offset of the rows
+    std::size_t end = 0; ///< offset of the first row
 };
 
-/// Reads the header. Lines end with LF, CRLF or CR, the last one as the first. Throws Error{input} with the
-/// line.
+/// Reads the header. All of its lines must end like the first one: with LF, CRLF or CR. Throws Error{input}
+/// with the number of the line.
 [[nodiscard]] PlyHeader read_ply_header(const ByteSource& source, Remarks& remarks);
 
 } // namespace lamella

@@ -1,6 +1,6 @@
 #pragma once
 
-// Limits of the size of a file's contents, checked before memory is allocated.
+// Limits on the size of a file's contents, which are checked before memory is allocated.
 
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -25,7 +25,7 @@ namespace lamella {
 /// Approximate bytes of a node of a set or map in addition to its value.
 inline constexpr std::uint64_t node_bytes = 80;
 
-/// Return functions that describe a position if an error occurs.
+/// These functions return functions that describe a position if there is an error.
 [[nodiscard]] inline auto at_byte(std::uint64_t byte) {
     return [byte] {
         return fmt::format("byte {}", byte);
@@ -41,7 +41,7 @@ inline constexpr std::uint64_t node_bytes = 80;
 /// a limit is exceeded, with the position in the file if it is given.
 class ReadLimits {
   public:
-    /// The bytes of the file in memory count from the start.
+    /// The bytes of the file that are in memory are counted at once.
     ReadLimits(const ByteSource& source, const MeshReadOptions& options)
         : ReadLimits(source, options.max_triangles, options.max_memory) {}
     ReadLimits(const ByteSource& source, const LayerReadOptions& options)
@@ -67,7 +67,7 @@ class ReadLimits {
         if (before > max_memory_ || count > max_memory_ - before)
             refuse_bytes(location());
     }
-    /// Makes room for `more` items and counts it before. The capacity grows as by push_back.
+    /// Reserves space for `more` items, after counting its memory. The capacity grows as by push_back.
     template <class T, class Location>
     void make_room(std::vector<T>& items, std::uint64_t more, const Location& location) {
         const std::uint64_t room = items.capacity();

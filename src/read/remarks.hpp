@@ -26,7 +26,7 @@ struct Occurrences {
         if (count++ == 0)
             first = location;
     }
-    /// Adds the occurrences of a later part of the file.
+    /// Adds the occurrences in a later part of the file.
     void add(const Occurrences& later) {
         first = count == 0 ? later.first : first;
         count += later.count;
@@ -47,7 +47,7 @@ class Remarks {
         texts_.push_back(std::move(text));
     }
 
-    /// Adds a note. Notes follow the warnings and do not stop strict callers.
+    /// Adds a note. Notes follow the warnings and are not errors for strict callers.
     void note(std::string text) { notes_.push_back(std::move(text)); }
 
     [[nodiscard]] std::vector<std::string> take() {

@@ -1,6 +1,6 @@
 // The header is text of at most 2048 bytes that ends with 0D 0A 1A, or at least with 1A. 256 reserved bytes,
-// the sampling table and the layers follow. A layer is the z of its bottom and its contours. A layer of 2^32
-// - 1 contours ends the file; its z is the top of the part.
+// the sampling table and the layers follow. A layer consists of the z of its bottom, the number of its
+// contours, and the contours. The number 2^32 - 1 ends the file; its z is the top of the part.
 
 #include "lamella/core/error.hpp"
 
@@ -229,7 +229,7 @@ class SlcReader {
     LayerFile& file_;
     ReadLimits& limits_;
     std::size_t at_ = 0;
-    bool open_ = false; ///< contours may be open
+    bool open_ = false; ///< true if contours may be open
     std::vector<Sampling> table_;
     std::vector<RawLayer> raw_;
     std::optional<double> top_;

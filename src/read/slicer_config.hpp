@@ -27,14 +27,14 @@ struct SlicerPart {
 };
 
 struct SlicerObject {
-    std::vector<VolumeRange> volumes; ///< of its mesh: PrusaSlicer and its relatives
-    std::vector<SlicerPart> parts;    ///< its components: OrcaSlicer and its relatives
+    std::vector<VolumeRange> volumes; ///< volumes of its mesh, in files of PrusaSlicer and its relatives
+    std::vector<SlicerPart> parts;    ///< its components, in files of OrcaSlicer and its relatives
 };
 
 /// Objects by their ids in the root model.
 using SlicerConfig = std::map<std::uint32_t, SlicerObject>;
 
-/// Reads Metadata/Slic3r_PE_model.config and the like, and Metadata/model_settings.config:
+/// Reads Metadata/Slic3r_PE_model.config and similar parts, and Metadata/model_settings.config:
 ///
 ///     <config><object id="1"><volume firstid="0" lastid="11">
 ///       <metadata type="volume" key="volume_type" value="NegativeVolume"/></volume></object></config>
@@ -45,8 +45,8 @@ using SlicerConfig = std::map<std::uint32_t, SlicerObject>;
 [[nodiscard]] SlicerConfig read_slicer_config(const ZipReader& package, Remarks& remarks, ReadLimits& limits,
                                               Executor& executor);
 
-/// Returns the role that slicers denote by "NegativeVolume", "negative_part" and the like; none for other
-/// words.
+/// Returns the role that slicers denote by a word such as "NegativeVolume" or "negative_part"; nullopt for
+/// other words.
 [[nodiscard]] std::optional<MeshRole> slicer_role(std::string_view word);
 
 } // namespace lamella

@@ -193,8 +193,8 @@ class SliceModelReader {
         start_.reset();
     }
 
-    /// Puts a stack on this one. All tops of its slices must be above this stack; its first slice begins
-    /// where this stack ends.
+    /// Appends a stack to this one. The tops of all its slices must be above this stack. Its first slice
+    /// begins at the top of this stack.
     void append(const Stack& other, const ThreeMfElement& element) {
         for (const Slice& slice : other.slices) {
             if (!(slice.top > top_of_stack()))
@@ -230,7 +230,7 @@ class SliceModelReader {
     DroppedContours dropped_;
 };
 
-/// A stack as placed by a build item.
+/// A stack with the placement by a build item.
 struct Placed {
     std::string label;
     std::shared_ptr<const Stack> stack;
@@ -252,7 +252,7 @@ class PackageReader {
             throw NoLayers(fmt::format("{}: found no part '{}'; a 3MF file of layers has its model there",
                                        zip_.name(), printable(root_, 100)));
         const Model& model = model_of(root_);
-        // The build of a package that contains only meshes may use features that are not supported here.
+        // A package without slices may use features in its build that are not supported here.
         if (has_slices(model))
             for (const ThreeMfUse& item : model.reader->items())
                 place(model, item, {}, false, 0);
@@ -307,8 +307,8 @@ class PackageReader {
         return model;
     }
 
-    /// Returns whether the root, or a part whose objects it uses, has slice stacks. Such a part must name the
-    /// extension.
+    /// Returns whether the root, or a part whose objects it uses, has slice stacks. Such a part must declare
+    /// the extension.
     bool has_slices(const Model& root) {
         if (!root.reader->stacks().empty())
             return true;
@@ -325,8 +325,8 @@ class PackageReader {
         });
     }
 
-    /// Returns a stack in another part, which must not refer to a third one. As in other readers, its lengths
-    /// are in the unit of the part that refers to it.
+    /// Returns a stack in another part, which must not refer to a third part. Its lengths are in the unit of
+    /// the part that refers to it, as other programs interpret it.
     std::shared_ptr<const Stack> referred(const ThreeMfElement& reference, const std::string& from) {
         const std::string part = opc_resolved(zip_, from, reference["slicepath"].text);
         const std::uint32_t id = reference["slicestackid"].index();
@@ -376,7 +376,7 @@ class PackageReader {
         const Transform placement = compose(outer, use.placement);
         const bool support =
             in_support || type == ThreeMfObjectType::support || type == ThreeMfObjectType::solid_support;
-        if (!object->second.stack) { // a stack replaces those of its components
+        if (!object->second.stack) { // an object's own stack replaces those of its components
             if (object->second.components.empty())
                 without_slices_.note(at_line(use.line));
             for (const ThreeMfUse& component : object->second.components)
@@ -417,7 +417,7 @@ class PackageReader {
         };
     }
 
-    /// Makes layers. All parts get the same planes: if their slices end at different heights, slices are
+    /// Makes layers. All parts get the same planes. If slices of parts end at different heights, they are
     /// divided, which does not change the material.
     void make_layers() {
         std::vector<double> heights;

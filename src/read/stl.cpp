@@ -23,7 +23,8 @@ namespace lamella {
 
 namespace {
 
-/// Binary STL contains control characters: in its numbers, and two in each attribute word.
+/// Returns whether there are no control characters. Binary STL contains some, in its numbers and in each
+/// attribute word.
 bool looks_like_text(std::string_view text) {
     constexpr std::size_t enough = 4096;
     text = text.substr(0, enough);
@@ -38,8 +39,8 @@ bool has_stl_size(std::span<const std::byte> beginning, std::uint64_t size) {
            size == stl_header_bytes + std::uint64_t{stl_record_bytes} * stl_declared_count(beginning);
 }
 
-/// Returns whether most corners can be those of a part. Most corners in data of another kind, such as
-/// compressed data, cannot: a float can be as large as 3e38 and as small as 1e-38.
+/// Returns whether most corners are plausible for a part. In data of another kind, such as compressed data,
+/// most are not, because floats range from 1e-38 to 3e38.
 bool has_likely_corners(std::span<const std::byte> bytes) {
     constexpr std::size_t enough = 1000;      // triangles
     constexpr std::size_t corners_begin = 12; // after the normal
@@ -58,8 +59,8 @@ bool has_likely_corners(std::span<const std::byte> bytes) {
     return 2 * likely >= 9 * count;
 }
 
-/// Returns whether the corners of a record can be those of a part: all are finite, none is huge, or nearly
-/// but not exactly 0.
+/// Returns whether the corners of a record are plausible: all numbers are finite, and none is huge or
+/// extremely close to 0 but not 0.
 bool is_likely(std::span<const std::byte> record) {
     std::array<float, 9> corners{};
     std::memcpy(corners.data(), record.data() + 12, sizeof corners);
@@ -69,9 +70,8 @@ bool is_likely(std::span<const std::byte> record) {
     });
 }
 
-/// Returns whether the first records are plausible and most others are not, or whether the last ones are
-/// plausible only if counted back from the end of the file. In both cases bytes were lost or added in
-/// between.
+/// Returns whether bytes were lost or added within the file. Then the first records are plausible and most
+/// others are not, or the last ones are plausible only if counted back from the end of the file.
 bool is_shifted(const ByteSource& source) {
     constexpr std::size_t few = 5; // for files that lose or gain bytes repeatedly
     constexpr std::size_t enough = 1000;
@@ -103,11 +103,11 @@ bool is_shifted(const ByteSource& source) {
            2 * likely(ends, [&](std::size_t i) { return record(records - 1 - i); }) < ends;
 }
 
-/// Describes the damage by a transfer as text to a binary file whose size contradicts its count; "" if there
-/// is none.
+/// For a binary file whose size contradicts its count, describes damage by a transfer in text mode; "" if
+/// there is none.
 std::string_view text_mode_damage(const ByteSource& source) {
     constexpr std::size_t enough = std::size_t{1} << 20;
-    constexpr std::size_t many = 4; // each byte would have this value by chance once in 256 times
+    constexpr std::size_t many = 4; // a byte has a given value by chance once in 256 times
     std::string text(std::min<std::uint64_t>(source.size(), enough), '\0');
     copy_out(source, 0, std::as_writable_bytes(std::span(text)));
     std::size_t line_feeds = 0;
@@ -118,7 +118,7 @@ std::string_view text_mode_damage(const ByteSource& source) {
     }
     if (line_feeds >= many && without_return == 0)
         return "each byte 0x0A has become 0x0D 0x0A";
-    std::size_t replaced = 0; // by U+FFFD, or encoded in two bytes
+    std::size_t replaced = 0; // bytes replaced by U+FFFD, or encoded as two bytes
     std::size_t high = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto byte = static_cast<unsigned char>(text[i]);

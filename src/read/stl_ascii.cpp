@@ -40,7 +40,7 @@ bool begins_next_part(std::string_view word) {
                        [&](std::string_view keyword) { return matches(word, keyword); });
 }
 
-/// Returns whether a comment begins here: some programs write them, up to the end of the line.
+/// Returns whether a comment begins here, which some programs write up to the end of the line.
 bool begins_comment(const Words& words) {
     if (words.at_end())
         return false;
@@ -100,13 +100,13 @@ std::string_view take_name(Words& words) {
 /// Thrown if the text ends within a facet.
 struct CutOff {};
 
-/// A chunk of facets, and of solids that begin and end between them. `before` is whether the chunk begins in
+/// A chunk of facets, and of solids that begin and end between them. `before` is 1 if the chunk begins within
 /// a solid.
 struct FacetChunk : TextChunk {
     std::vector<Triangle3f> triangles;
     std::uint64_t stored = 0; ///< number of facets, including those with a corner that is not finite
     Occurrences nonfinite;
-    Occurrences odd_normals; ///< not numbers, or more than three
+    Occurrences odd_normals; ///< normals that are not numbers, or more than three numbers
     Occurrences two_words;   ///< "end facet" and the like
     Occurrences extra_words; ///< lines with words after "endfacet" and the like
     Occurrences unended;     ///< a "solid" before the previous one has ended
@@ -136,7 +136,7 @@ class FacetParser {
     }
 
   private:
-    /// Takes one facet, or the beginning or the end of a solid. Returns false if the chunk is done.
+    /// Takes one facet, or the beginning or the end of a solid. Returns false at the end of the chunk.
     bool next() {
         to_next_word(words_);
         if (words_.at_end() || words_.offset() >= chunk_.limit)
@@ -162,13 +162,13 @@ class FacetParser {
         return true;
     }
 
-    /// Skips the text after the last solid. It may be anything but more facets: they would be lost.
+    /// Skips the text after the last solid. Throws if it contains facets, because these would be lost.
     bool skip_rest() {
         const std::size_t here = words_.offset();
         if (in_solid_) {
             if (ends_in("facet") || ends_in("endsolid") || ends_in_two_words("solid")) {
                 words_.move_to(words_.text_end());
-                return false; // the text was cut off in this word, and the solid has not ended
+                return false; // the text was truncated in this word, and the solid has not ended
             }
             throw TextFault{here, "'facet' or 'endsolid'"};
         }
@@ -213,7 +213,7 @@ class FacetParser {
         }
     }
 
-    /// Skips the normal: three numbers, or fewer, or other words on one line. It is not needed.
+    /// Skips the normal, which is not needed: up to three numbers, or other words on one line.
     void skip_normal() {
         bool odd = false;
         for (int i = 0;; ++i) {
@@ -313,7 +313,7 @@ class FacetParser {
         }
         const std::string_view word = words_.peek();
         if (is_last(word))
-            throw CutOff{}; // also after a number, which may be cut off
+            throw CutOff{}; // also after a number, because that may be truncated
         throw TextFault{words_.offset(), std::string(expected_instead(word))};
     }
 

@@ -35,7 +35,7 @@ namespace lamella {
 [[nodiscard]] MeshFile read_stl_ascii(const ByteSource& source, const MeshReadOptions& options,
                                       const Execution& execution);
 
-/// Passes the same triangles to the sink; see MeshInput::stream.
+/// Passes the triangles to the sink; see MeshInput::stream.
 [[nodiscard]] MeshFile stream_stl_ascii(const ByteSource& source, const TriangleSink& sink,
                                         const MeshReadOptions& options, const Execution& execution);
 

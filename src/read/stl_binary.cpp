@@ -37,11 +37,11 @@ constexpr std::size_t corners_at = stl_header_bytes + normal_bytes;
 /// About a megabyte: small enough to distribute to threads, large enough that overhead is negligible.
 constexpr std::uint64_t chunk_triangles = 20'000;
 
-/// Triangles of a chunk of a stream: as many as in a chunk of a fold, so that sums over chunks of the stream
-/// have the same bits as sums over the whole. pipeline/feed uses the chunk's number to find it again.
+/// Number of triangles of a chunk of a stream. It equals that of a chunk of a fold, so that sums over the
+/// chunks have the same bits as sums over the whole mesh. pipeline/feed finds a chunk again by its number.
 constexpr std::uint64_t batch_triangles = fold_chunk;
 
-// A float is NaN or infinite when all bits of its exponent are set.
+// A float is NaN or infinite if all bits of its exponent are set.
 constexpr std::uint32_t exponent_bits = 0x7F800000;
 
 using FourWords [[gnu::vector_size(16)]] = std::uint32_t;
@@ -53,8 +53,8 @@ struct Survey {
     Box3 box;    ///< of the corners; valid if all are finite
 };
 
-/// Surveys records at the speed of memory: three loads per record, no branch. `corners` is the position of
-/// the corners of the first record.
+/// Surveys n records; `corners` is the position of the corners of the first one. Three loads per record and
+/// no branches make it as fast as memory.
 Survey survey(const std::byte* corners, std::uint64_t n) {
     constexpr FourWords mask = {exponent_bits, exponent_bits, exponent_bits, exponent_bits};
     constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -172,7 +172,8 @@ TriangleSoup copy_finite(const std::byte* corners, std::uint64_t n, const NonFin
     return {TriangleSoup::KnownFinite{}, memory, first, sizeof(Triangle3f), kept};
 }
 
-/// Returns the header's text: the bytes before the first one that is not text, without blanks around them.
+/// Returns the text of the header, up to the first byte that is not text, without blanks at its beginning and
+/// end.
 std::string header_text(std::span<const std::byte> bytes) {
     std::string_view text(reinterpret_cast<const char*>(bytes.data()), 80);
     const auto is_control = [](char c) {

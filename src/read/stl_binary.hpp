@@ -27,11 +27,11 @@ inline constexpr std::size_t stl_record_bytes = 50;
 /// The triangles of a binary file; its size and its count field may disagree.
 struct StlExtent {
     std::uint64_t triangles = 0;
-    std::string remark; ///< the irregularity and its treatment; empty if size and count agree
+    std::string remark; ///< the irregularity, and how it was treated; empty if size and count agree
 };
 
-/// Computes the extent. The count is used as far as the file has records; 0 and 2^32 - 1 mean "unknown",
-/// because programs that cannot seek back leave these values.
+/// Computes the extent. The count is used unless the file has fewer records. Counts of 0 and 2^32 - 1 mean
+/// "unknown", because programs that cannot seek back leave these values.
 [[nodiscard]] StlExtent stl_extent(std::uint64_t file_bytes, std::uint32_t declared);
 
 /// Reads a binary file of at least stl_header_bytes.
@@ -42,7 +42,7 @@ struct StlExtent {
 /// Throws Error{input} if no triangle is left.
 void judge_nonfinite(std::uint64_t count, std::uint64_t first, std::uint64_t stored, Remarks& remarks);
 
-/// Passes the same triangles to the sink; see MeshInput::stream.
+/// Passes the triangles to the sink; see MeshInput::stream.
 [[nodiscard]] MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink,
                                          const MeshReadOptions& options, const Execution& execution,
                                          const std::optional<RecordRange>& share);

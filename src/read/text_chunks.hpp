@@ -1,6 +1,6 @@
 #pragma once
 
-// Parses texts in chunks, on many threads, with the result of a sequential parser.
+// Parses texts in chunks on several threads; the result is that of a sequential parser.
 
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
@@ -133,17 +133,17 @@ class Words {
 /// Size of a chunk: large enough that the cost of scheduling it is negligible.
 inline constexpr std::size_t text_chunk_bytes = std::size_t{1} << 20;
 
-/// No offset in a text.
+/// Stands for no offset.
 inline constexpr std::size_t nowhere = std::numeric_limits<std::size_t>::max();
 
-/// No bound for the triangles of a chunk.
+/// Stands for no bound on the triangles of a chunk.
 inline constexpr std::uint64_t all_triangles = std::numeric_limits<std::uint64_t>::max();
 
 /// A chunk of a text. Derived classes contain its contents.
 struct TextChunk {
     std::size_t begin = 0;
-    std::size_t limit = 0;    ///< parsing ends at the first possible cut that is not before this offset
-    std::uint64_t before = 0; ///< everything that the parser must know of the text before the chunk
+    std::size_t limit = 0;    ///< parsing ends at the first possible end of a chunk at or after this offset
+    std::uint64_t before = 0; ///< state of the parser at the beginning of the chunk
 
     std::size_t end = 0;     ///< offset at which parsing ended
     std::uint64_t after = 0; ///< `before` of the next chunk
@@ -153,12 +153,12 @@ struct TextChunk {
 /// The parser of a format. Chunk derives from TextChunk.
 template <class Chunk>
 struct ChunkFormat {
-    /// Parses a chunk, but stops before there are more than `most_triangles`. Called by many threads.
+    /// Parses a chunk, but stops before it has more than `most_triangles`. Called by several threads at once.
     std::function<void(Chunk& chunk, std::uint64_t most_triangles)> parse;
     /// Returns an offset in [from, limit) where a chunk probably begins, or `nowhere`. A wrong or missing
     /// offset only costs time.
     std::function<std::size_t(std::size_t from, std::size_t limit)> find_cut;
-    /// Guesses `before` of all chunks except the first.
+    /// Guesses the state `before` of all chunks except the first.
     std::function<void(std::vector<Chunk>& chunks)> guess = {};
 };
 
@@ -166,7 +166,7 @@ struct ChunkFormat {
 /// backslash continues on the next one.
 [[nodiscard]] std::size_t find_line(std::string_view text, std::size_t from, std::size_t limit);
 
-/// Parses a text several chunks at a time, in parallel, and releases the memory of the text that was parsed.
+/// Parses several chunks of a text at a time, in parallel, and releases the memory of text that was parsed.
 template <class Chunk>
 class ChunkParser {
   public:
@@ -178,9 +178,9 @@ class ChunkParser {
           progress_(progress), chunk_bytes_(chunk_bytes), stretch_bytes_(chunks_ahead * chunk_bytes),
           at_(begin) {}
 
-    /// Parses the next chunks, up to the end of the text at most. The chunks of all results cover the text
-    /// without gaps up to its end or to the first fault, with the result of a sequential parser: a chunk that
-    /// was parsed ahead is used only if the one before it ended where it begins.
+    /// Parses the next chunks. The chunks of all calls together cover the text without gaps, up to its end or
+    /// to the first fault. The result is that of a sequential parser, because a chunk that was parsed ahead
+    /// is used only if the one before it ended where it begins.
     std::vector<Chunk> next() {
         const std::size_t limit = stretch_bytes_ < text_.size() - at_ ? at_ + stretch_bytes_ : text_.size();
         const std::size_t begin = at_;
@@ -227,7 +227,7 @@ class ChunkParser {
 
     [[nodiscard]] bool done() const noexcept { return done_; }
 
-    /// Returns the line on which the number of triangles of the chunk exceeds this one; parses the chunk
+    /// Returns the line on which the number of triangles of the chunk exceeds `triangles`. Parses the chunk
     /// again up to there.
     [[nodiscard]] std::uint64_t line_of_triangle(const Chunk& chunk, std::uint64_t triangles) const {
         Chunk again = unparsed(chunk.begin, chunk.limit, chunk.before);
@@ -247,7 +247,7 @@ class ChunkParser {
     std::vector<Chunk> cut(std::size_t limit) const {
         std::vector<Chunk> chunks{unparsed(at_, limit, before_)};
         for (std::size_t from = at_ + chunk_bytes_; from < limit; from += chunk_bytes_) {
-            // The search ends at the next cut: otherwise blanks or a word of gigabytes would be scanned again
+            // The search ends at the next cut, so that blanks or a word of gigabytes are not scanned again
             // for each chunk.
             const std::size_t begin = format_.find_cut(from, std::min(from + chunk_bytes_, limit));
             if (begin == nowhere)

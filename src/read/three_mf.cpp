@@ -58,7 +58,7 @@ class PartLoader {
     }
 
   private:
-    /// Returns the size of all entries, since the needed ones are known late.
+    /// Returns the size of all entries, because it is not yet known which ones are needed.
     static std::uint64_t bytes_of(const ZipReader& zip) {
         std::uint64_t bytes = 0;
         for (const ZipEntry& entry : zip.entries())
@@ -318,7 +318,7 @@ class ThreeMfReader {
         return fmt::format("part '{}', line {}: {}", printable(model.part, longest_file_name), line, what);
     }
 
-    /// Returns which nodes these nodes consist of, including themselves.
+    /// Returns, for each node, whether it is one of these nodes or a component of them.
     [[nodiscard]] std::vector<bool> reached_from(std::vector<std::size_t> open) const {
         std::vector<bool> reached(nodes_.size());
         while (!open.empty()) {
@@ -430,7 +430,7 @@ class ThreeMfReader {
         if (degenerate != 0)
             remarks_.add(counted(degenerate, "triangle uses a vertex twice; it bounds nothing",
                                  "triangles use a vertex twice; they bound nothing"));
-        // These break no rule, so `strict` accepts them.
+        // Skipped bodies violate no rule, so they are not errors with `strict`.
         selection_.report(remarks_);
         const auto note_count = [&](std::size_t count, std::string_view thing, std::string_view what) {
             if (count == 1)

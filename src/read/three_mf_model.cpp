@@ -35,7 +35,7 @@ constexpr std::size_t longest_model_title = 1000;
 constexpr std::size_t most_remarks = 50;
 constexpr std::size_t longest_setting = 100; ///< of settings that are read
 
-/// Returns the object of an <object> without its contents.
+/// Returns the object for an <object> element, without its contents.
 ThreeMfObject object_of(const ThreeMfElement& element) {
     ThreeMfObject object;
     object.id = element["id"].index();
@@ -158,7 +158,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
             if (!prefix.empty())
                 model.prefixes.push_back(prefix);
         for (ThreeMfObject& object : model.objects)
-            object.text.prefixes = model.prefixes; // moving the model does not move them
+            object.text.prefixes = model.prefixes; // valid even after the model is moved
         return take();
     }
 
@@ -222,7 +222,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
         return Where::elsewhere;
     }
 
-    /// Handles the elements that programs add to the format.
+    /// Handles elements that are not part of the format but written by certain programs.
     Where start_foreign(const ThreeMfElement& element) {
         const std::string_view space = element.name.space;
         const std::string_view name = element.name.local;
@@ -298,7 +298,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
 
     Where start_build(const ThreeMfElement& element) {
         const Where build = once<Where::build>(element);
-        return is_root_ ? build : Where::elsewhere; // the builds of other parts are ignored
+        return is_root_ ? build : Where::elsewhere; // only the build of the root part counts
     }
 
     Where start_metadata(const ThreeMfElement& element) {

@@ -25,10 +25,10 @@ struct ThreeMfObject {
     std::string name;
     ThreeMfObjectType type = ThreeMfObjectType::model;
     std::size_t line = 0;
-    /// by the object's type or by settings of Cura
+    /// given by the object's type or by settings of Cura
     MeshRole role = MeshRole::part;
     bool is_mesh = false;             ///< otherwise it consists of components
-    bool is_coarse = false;           ///< its mesh only replaces its slices
+    bool is_coarse = false;           ///< its mesh is only a substitute for its slices
     std::vector<VolumeRange> volumes; ///< of its mesh, if Slic3r defines them
     IndexedMesh mesh;                 ///< in the unit of the part; empty until a skimmed `text` is read
     MeshText text;
@@ -46,14 +46,14 @@ struct ThreeMfModel {
     std::vector<std::string> remarks;  ///< violations of the format's rules, one line each
 };
 
-/// Reads a model part. If `skim` is true, vertices and triangles that form plain sequences are left unread in
+/// Reads a model part. If `skim` is true, vertices and triangles in plain sequences are left unread in
 /// `text`. Throws Error{input} with the line if the part is not a model, and Error{limit} as soon as a limit
-/// is exceeded. The limits count the result.
+/// is exceeded. The result remains counted in the limits.
 [[nodiscard]] ThreeMfModel read_three_mf_model(const ByteSource& source, const std::string& part,
                                                bool is_root, bool skim, ReadLimits& limits,
                                                const std::function<void(std::size_t)>& progress);
 
-/// Returns how model parts write meshes.
+/// Returns the form in which model parts write meshes.
 [[nodiscard]] const MeshTextForm& three_mf_text_form() noexcept;
 
 } // namespace lamella

@@ -34,15 +34,15 @@ struct ThreeMfUse {
     std::size_t line = 0;
 };
 
-/// The value of an attribute of an element. Functions throw Error{input} as by ThreeMfElement::fail if it is
-/// invalid.
+/// The value of an attribute of an element. If it is invalid, the functions throw the Error{input} of
+/// ThreeMfElement::fail.
 struct ThreeMfValue {
     const ThreeMfElement& element;
     std::string_view name;
     std::string_view text; ///< without the blanks around it
     bool is_there;
 
-    /// Each returns an integer: not negative, or of either sign.
+    /// These functions return an integer, which must not be negative in the first one.
     [[nodiscard]] std::uint32_t index() const;
     [[nodiscard]] std::int32_t whole() const;
     /// Returns a number within `farthest_coordinate`.
@@ -68,12 +68,12 @@ struct ThreeMfElement {
     /// Returns the unit of a <model> in millimetres.
     [[nodiscard]] double unit_mm() const;
     /// Returns the placement of a component or an item of the build, in the unit of the model; the identity
-    /// if there is none. The attribute has twelve numbers, row by row of a matrix by which row vectors are
-    /// multiplied.
+    /// if there is none. The attribute has the twelve numbers of a matrix M, row by row; a row vector v is
+    /// mapped to v M.
     [[nodiscard]] Transform transform() const;
 
-    /// Returns the extensions that a <model> requires. Refuses those that readers of meshes and slices do not
-    /// know.
+    /// Returns the extensions that a <model> requires. Throws Error{input} for extensions that the readers do
+    /// not support.
     [[nodiscard]] std::set<std::string> required_extensions() const;
     /// Returns the type of an <object>.
     [[nodiscard]] ThreeMfObjectType object_type() const;
@@ -85,7 +85,8 @@ struct ThreeMfElement {
     [[nodiscard]] auto location() const { return at_line(line); }
 };
 
-/// Returns the part that the package names as its model, or the usual one if it names none.
+/// Returns the name of the part that the package declares as its model, or the usual name if it declares
+/// none.
 [[nodiscard]] std::string root_model(const ZipReader& package);
 
 /// Decompresses a part. Throws Error{input} if there is no part with this name.

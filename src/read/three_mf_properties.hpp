@@ -1,7 +1,7 @@
 #pragma once
 
-// Checks materials, colours and textures of a 3MF model. They are not read, but a strict caller is informed
-// of violations.
+// Checks materials, colours and textures of a 3MF model. They are not used, but violations are remarks, which
+// are errors for strict callers.
 
 #include "container/xml.hpp"
 

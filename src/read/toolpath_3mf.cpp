@@ -1,6 +1,6 @@
-// The model has the profiles of a toolpath and lists its layers. Each layer is a part of the package, which
-// names parts on the plate and profiles by identifiers. Segments with the same part and profile become the
-// layers of one part of the result.
+// The model contains the profiles of a toolpath and the list of its layers. Each layer is a part of the
+// package, and refers to parts on the plate and to profiles by identifiers. Segments with the same part and
+// profile become the layers of one part of the result.
 
 #include "lamella/core/error.hpp"
 
@@ -32,7 +32,7 @@ bool is_toolpath(std::string_view space) {
     return space == toolpath_3mf::space || space == toolpath_3mf::draft_space;
 }
 
-/// Returns whether a profile or a segment names a laser other than the first.
+/// Returns whether a profile or a segment specifies a laser other than the first one.
 bool is_other_laser(const ThreeMfElement& element) {
     const std::string_view index = element["laserindex"].text;
     return !index.empty() && index != "0";
@@ -45,8 +45,9 @@ struct Toolpath {
     struct Profile {
         std::size_t number = 0;           ///< in the order of the model
         std::optional<Exposure> exposure; ///< its part is set later
-        bool says_kind = false;           ///< set by Lamella's files, which distinguish contours from hatches
-        bool other_laser = false;         ///< than the first
+        bool says_kind = false;           ///< true in Lamella's files, which distinguish contours from
+                                          ///< hatches
+        bool other_laser = false;         ///< true if it specifies a laser other than the first
     };
     struct Listed {
         double top;
@@ -331,7 +332,7 @@ class ToolpathReader {
     }
 
   private:
-    /// Returns the toolpath that the build names, or the first one.
+    /// Returns the toolpath to which the build refers, or the first one.
     [[nodiscard]] const Toolpath& chosen(const std::string& document) const {
         const auto found = model_.chosen ? model_.toolpaths.find(*model_.chosen) : model_.toolpaths.begin();
         if (found == model_.toolpaths.end())
