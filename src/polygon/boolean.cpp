@@ -23,7 +23,8 @@ namespace {
 
 using Rings = std::vector<std::span<const Point2>>;
 
-/// The rings of two layers in normal form: those in both, bit for bit, and those in one layer only.
+/// The rings of two layers in normal form: those that are, bit for bit, in both layers, and those in only
+/// one.
 struct Shares {
     Shares(const Layer& a, const Layer& b) {
         std::size_t i = 0;
@@ -48,8 +49,8 @@ struct Shares {
     Rings second;
 };
 
-/// Removes common rings that are irrelevant to the rings of one layer only. Outside of the box of the latter,
-/// the winding numbers of both layers are equal.
+/// Removes common rings outside of the box of the rings that are in only one layer. Out there the winding
+/// numbers of both layers are equal, so they do not affect the result.
 void drop_far(Shares& rings) {
     std::optional<Box2> box;
     for (const Rings* alone : {&rings.first, &rings.second})
@@ -63,7 +64,7 @@ void drop_far(Shares& rings) {
     });
 }
 
-/// Builds a layer without hatches.
+/// Builds a layer of these rings with the heights and open chains of `first`, without hatches.
 Layer with_header_and_chains_of(const Layer& first, const Rings& rings) {
     Layer layer{.index = first.index, .z = first.z, .bottom = first.bottom, .top = first.top};
     std::vector<Point2> points;
@@ -80,7 +81,7 @@ Layer with_header_and_chains_of(const Layer& first, const Rings& rings) {
     return layer;
 }
 
-/// `least` has the meaning that it has for `Material`.
+/// `least`: see `Material`.
 Layer combined(const Layer& first, const Layer& second, BooleanOperation operation, std::int64_t least,
                const LayerLimits& limits) {
     const Layer a = normal_form(first);
@@ -89,7 +90,7 @@ Layer combined(const Layer& first, const Layer& second, BooleanOperation operati
     const bool same = shares.first.empty() && shares.second.empty();
     if (operation == BooleanOperation::subtract || operation == BooleanOperation::exclude) {
         if (least == 1)
-            drop_far(shares); // common rings cancel there, whatever is around them
+            drop_far(shares); // for these operations common rings cancel there, no matter what is around them
     } else if (same) {
         Layer layer = fill(a, FillRule::positive, limits).layer;
         layer.hatches = {};

@@ -32,7 +32,7 @@ Directed directed(const Arrangement& arrangement, const Side& side, bool rightwa
                       : Directed{hi, lo, next_to_hi, next_to_lo, &side};
 }
 
-/// Returns whether a comes before b when turning clockwise about v, beginning at the direction to u.
+/// Returns whether the direction from v to a comes before that to b, clockwise from the direction to u.
 bool clockwise_before(const Point2& v, const Point2& u, const Point2& a, const Point2& b) noexcept {
     const auto half = [&](const Point2& p) {
         const int turn = orientation(v, u, p);
@@ -45,8 +45,8 @@ bool clockwise_before(const Point2& v, const Point2& u, const Point2& a, const P
     return half_a != half_b ? half_a < half_b : orientation(v, a, b) < 0;
 }
 
-/// For each point where sides begin, the sides that are not yet in a ring, clockwise about it. Where
-/// thousands begin at one point, the next one is found without a search through all of them.
+/// The sides that are not yet in a ring, clockwise around each point where sides begin. Even if thousands
+/// begin at one point, the next one is found without a search through all of them.
 class SidesAhead {
   public:
     /// `sides` are sorted by their beginnings and must outlive this object.
@@ -119,7 +119,7 @@ class SidesAhead {
     std::vector<std::size_t> left_;      ///< links to the next position of an unused side
 };
 
-/// Joins sides to rings. Where several meet, each ring keeps its own wedge of material.
+/// Joins sides to rings. Where several rings meet, each keeps its own wedge of material.
 std::vector<std::vector<Directed>> joined(std::vector<Directed> sides) {
     std::sort(sides.begin(), sides.end(), [](const Directed& a, const Directed& b) {
         return std::tie(a.from, a.second) < std::tie(b.from, b.second);
@@ -184,7 +184,8 @@ std::vector<Ring> boundary(const Arrangement& arrangement, const Material& mater
             in_run = !side.side->alone;
         }
     }
-    const bool crossed = std::move(runs).crossed(); // by corners that got their coordinates back
+    const bool crossed = std::move(runs).crossed(); // crossings can arise because corners get their original
+                                                    // coordinates
     std::vector<Ring> result;
     for (const std::vector<Corner>& corners_of_ring : found) {
         Ring& ring = result.emplace_back();

@@ -13,11 +13,12 @@ namespace lamella {
 
 /// Returns the boundary of the material in an arrangement on this grid: bodies counter-clockwise, holes
 /// clockwise. Rings that meet at a point are joined so that each keeps its own wedge of material. Points that
-/// were corners of the rings keep their coordinates, others lie on the grid. The rings do not cross.
+/// were corners of the given rings keep their coordinates; other points lie on the grid. The rings do not
+/// cross.
 [[nodiscard]] std::vector<Ring> boundary(const Arrangement& arrangement, const Material& material,
                                          const ClippingGrid& grid);
 
-/// Returns the boundary of the area where the winding number of the rings fulfils the rule; see `boundary`.
+/// Returns the boundary of the area where the winding number of the rings satisfies the rule; see `boundary`.
 [[nodiscard]] std::vector<Ring> filled(std::span<const std::span<const Point2>> rings, FillRule rule,
                                        const ClippingGrid& grid, const LayerBudget& budget = {});
 

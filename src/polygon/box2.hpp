@@ -38,7 +38,7 @@ struct Box2 {
     }
 };
 
-/// Returns the box of at least one point.
+/// Returns the bounding box of the points, of which there must be at least one.
 template <class Points>
 [[nodiscard]] Box2 box_of(const Points& points) noexcept {
     assert(points.begin() != points.end());

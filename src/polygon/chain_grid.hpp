@@ -1,6 +1,6 @@
 #pragma once
 
-// A grid over the chains of a layer: finds chains that can meet, and chains below a point.
+// A grid over the chains of a layer, which finds chains that can meet, and chains below a point.
 
 #include "polygon/grid.hpp"
 #include "polygon/monotone_chains.hpp"
@@ -13,13 +13,14 @@
 
 namespace lamella {
 
-/// The rings of a layer in pieces of about the size of a grid cell, and for each cell the pieces whose boxes
-/// overlap it. A small ring of few chains is one piece of all directions. Of other rings, each chain is a
-/// piece, cut only if it is long for the layer: else its box would be mostly empty.
+/// The rings of a layer, divided into pieces, and for each grid cell the pieces whose boxes overlap it. A
+/// small ring of few chains is one piece. In other rings each chain is a piece; long chains are cut, because
+/// their boxes would be mostly empty. So pieces are about as large as cells.
 class ChainGrid {
   public:
-    /// Returns no grid for layers without chains and for layers that defeat a grid: extents that overflow,
-    /// many long diagonal pieces. The chains must outlive the grid. Boxes are grown by `reach`. O(chains).
+    /// Returns nullopt for layers without chains and for layers for which a grid is useless, with extents
+    /// that overflow or many long diagonal pieces. The chains must outlive the grid. Boxes are grown by
+    /// `reach`. O(chains).
     [[nodiscard]] static std::optional<ChainGrid> of(const MonotoneChains& chains, double reach = 0);
 
     [[nodiscard]] std::span<const Chain> pieces() const noexcept { return pieces_; }
@@ -29,15 +30,15 @@ class ChainGrid {
         return whole_ring(piece) ? all_chains_->of_ring(piece.ring) : std::span(&piece, 1);
     }
     [[nodiscard]] const Box2& box(std::uint32_t piece) const noexcept { return boxes_[piece]; }
-    /// Returns the cells with the indices of their pieces, ascending.
+    /// Returns the cells with the indices of their pieces, in ascending order.
     [[nodiscard]] const Grid& cells() const noexcept { return *cells_; }
 
-    /// Returns whether many pieces lie in few cells, such as small rings within one another. A search through
-    /// the cells of each piece would then take too long.
+    /// Returns whether many pieces lie in few cells, such as small nested rings. A search through the cells
+    /// of each piece would then take too long.
     [[nodiscard]] bool full() const noexcept;
 
-    /// Returns whether p, a point of the ring, may lie in another ring: it is in the box of another ring, or
-    /// there are too many large rings to test. Searches one cell.
+    /// Returns whether p, a point of `ring`, may lie in another ring, because it is in the box of another
+    /// ring or because there are too many large rings to test. Searches one cell.
     [[nodiscard]] bool surrounded(const Point2& p, std::uint32_t ring) const noexcept;
 
   private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// A grid of integers over a layer, on which contours are cut at their crossings.
+// An integer grid over a layer, to which crossings of contours are rounded.
 
 #include "lamella/core/point.hpp"
 
@@ -11,8 +11,8 @@ namespace lamella {
 
 using Ring = std::vector<Point2>;
 
-/// A square grid. Its unit is a power of two, at most 2^-36 of the layer's extent (about 1e-9 mm for 100 mm)
-/// or, far from the origin, the last place of the largest coordinate.
+/// A square grid. Its unit is a power of two: at most 2^-36 of the layer's extent (about 1e-9 mm for 100 mm)
+/// or, far from the origin, one unit in the last place of the largest coordinate.
 class ClippingGrid {
   public:
     /// `margin` is the largest distance of results from the points. Throws Error{limit} if coordinates are
@@ -20,7 +20,7 @@ class ClippingGrid {
     explicit ClippingGrid(std::span<const Point2> points, double margin = 0);
 
     [[nodiscard]] double unit() const noexcept { return unit_; }
-    /// Returns the nearest grid position: integers of at most about 2^37.
+    /// Returns the nearest grid position, as integers of at most about 2^37.
     [[nodiscard]] Point2 position(const Point2& p) const noexcept;
     [[nodiscard]] Point2 point(const Point2& position) const noexcept {
         return {(origin_.x + position.x) * unit_ + 0.0, (origin_.y + position.y) * unit_ + 0.0};

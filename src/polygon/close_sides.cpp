@@ -15,7 +15,7 @@ namespace lamella {
 
 namespace {
 
-/// Returns whether t lies on one side of the line of s, farther from it than `reach`.
+/// Returns whether all of t lies on one side of the line of s, at a distance above `reach`.
 bool beside(const Segment& s, const Segment& t, double reach) noexcept {
     const double dx = s.hi.x - s.lo.x;
     const double dy = s.hi.y - s.lo.y;
@@ -45,8 +45,8 @@ class CloseSides {
     }
 
   private:
-    /// Non-consecutive sides of one chain are close only if the sides between them are short, and those are
-    /// found here.
+    /// Compares consecutive sides of a chain. Other sides of one chain are close to each other only if the
+    /// sides between them are short, and such sides are found here, too.
     void compare_neighbours(std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t i = begin; i < end; ++i) {
             const std::uint64_t next = i + 1 < end ? i + 1 : begin;
@@ -77,7 +77,7 @@ class CloseSides {
                 for (std::size_t b = a + 1; b < here.size(); ++b) {
                     const Box2& s = grid.box(here[a]);
                     const Box2& t = grid.box(here[b]);
-                    // Boxes may meet in many cells: the pair is compared in one of them.
+                    // Boxes may meet in many cells, but the pair is compared in only one of them.
                     if (s.meets(t) && i == cells.cell({std::max(s.x0, t.x0), std::max(s.y0, t.y0)}))
                         for (const Chain& chain : grid.chains(grid.pieces()[here[a]]))
                             for (const Chain& other : grid.chains(grid.pieces()[here[b]]))

@@ -40,7 +40,7 @@ class Way {
             return false;
         if (left_out_ && (cross(right_, w) < 0 || cross(w, left_) < 0))
             return false;
-        // Directions to the right and to the left in which the end would be too far away.
+        // Limits of direction, to the right and to the left, beyond which the end would be too far away.
         const double shift = tolerance / std::sqrt(square);
         const Point2 right{v.x + shift * v.y, v.y - shift * v.x};
         const Point2 left{v.x - shift * v.y, v.y + shift * v.x};
@@ -57,7 +57,7 @@ class Way {
     Point2 from_;
     Point2 to_;
     bool left_out_ = false;
-    Point2 right_; ///< limits of the direction for the points that were removed
+    Point2 right_; ///< limits of the direction, due to the points that were removed
     Point2 left_;
 };
 

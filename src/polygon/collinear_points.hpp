@@ -6,11 +6,11 @@
 
 namespace lamella {
 
-/// Returns the layer without collinear points of its rings, to within `tolerance` mm. Where a mesh has two
-/// triangles in one plane, a section through it has such a point on their common edge. No removed point is
-/// farther than `tolerance` from the new ring. The first points of rings remain. Unchanged are open chains,
-/// rings of which fewer than three points would remain, and layers so small or large that squares of their
-/// lengths could underflow or overflow. O(points).
+/// Returns the layer without those points of its rings that are collinear within `tolerance` mm. Sections of
+/// meshes have such points on the common edges of coplanar triangles. No removed point is farther than
+/// `tolerance` from the new ring. The first points of rings remain. Open chains, rings with fewer than three
+/// remaining points, and layers so small or large that squares of their lengths could underflow or overflow
+/// are not changed. O(points).
 [[nodiscard]] Layer remove_collinear_points(const Layer& layer, double tolerance);
 
 } // namespace lamella

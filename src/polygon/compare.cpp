@@ -34,7 +34,7 @@ double moved_points(const RoundedLayers& stack) {
     return most;
 }
 
-/// Pairs the layers of two stacks, which both ascend. `tolerance_mm` is added to the rounding of heights.
+/// Pairs the layers of two stacks in ascending z. `tolerance_mm` is added to the rounding of heights.
 std::vector<ComparedPlane> paired(const RoundedLayers& first, const RoundedLayers& second,
                                   double tolerance_mm) {
     const auto z = [](const RoundedLayers& stack, std::size_t i) {
@@ -79,11 +79,11 @@ void farthest(const Layer& from, const EdgeTree& to, double& largest, Point2& wh
     }
 }
 
-/// Does the same for all points of an edge, to a thousandth.
+/// Does the same for all points of an edge, with a relative accuracy of a thousandth.
 void farthest(const Point2& a, const Point2& b, const EdgeTree& to, double& largest, Point2& where) {
     const Point2 middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
     const auto [s, t] = to.nearest(middle);
-    // Along an edge, the distance to another edge is convex, so the ends are farthest.
+    // Along an edge, the distance from another edge is a convex function, so it is largest at the ends.
     if (std::max(distance_squared(a, s, t), distance_squared(b, s, t)) <= 1.002 * largest)
         return;
     const double squared = distance_squared(middle, s, t);
@@ -107,7 +107,8 @@ void farthest_between_corners(const Layer& from, const EdgeTree& to, double& lar
     }
 }
 
-/// Returns the area that has to move across the box of both layers to explain their first moments.
+/// Returns the area that would have to move across the box of both layers to cause their difference of first
+/// moments.
 double displaced(const Layer& first, const Layer& second, const Box2& box) {
     const Point2 middle{box.x0 + box.width() / 2, box.y0 + box.height() / 2};
     const AreaMoments one = area_moments(first, middle);
@@ -118,7 +119,7 @@ double displaced(const Layer& first, const Layer& second, const Box2& box) {
     return std::max(per(one.x_mm3 - other.x_mm3, box.width()), per(one.y_mm3 - other.y_mm3, box.height()));
 }
 
-/// Compares two layers. Distances up to the tolerance are those of corners.
+/// Compares two layers. Distances up to the tolerance are measured at corners only.
 LayerDifference compare_beyond(const Layer& first, const Layer& second, double tolerance_mm) {
     LayerDifference difference;
     difference.same = same_contours(first, second);
@@ -147,7 +148,7 @@ LayerDifference compare_beyond(const Layer& first, const Layer& second, double t
     return difference;
 }
 
-/// Returns whether the lowest layers lie between the same heights and are cut at different ones.
+/// Returns whether the lowest layers have the same bottom and top but are cut at different heights.
 bool lowest_cut_apart(const RoundedLayers& first, const RoundedLayers& second) {
     if (first.layers.empty() || second.layers.empty())
         return false;

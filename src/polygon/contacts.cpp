@@ -59,7 +59,7 @@ class Groups {
     std::uint64_t merges_ = 0;
 };
 
-/// Puts all rings in groups, connected by boxes that meet.
+/// Puts all rings into groups that are connected by boxes that meet.
 void group_by_boxes(const MonotoneChains& chains, Groups& groups) {
     std::vector<std::uint32_t> order;
     for (std::uint32_t ring = 0; ring < chains.rings(); ++ring)
@@ -68,8 +68,8 @@ void group_by_boxes(const MonotoneChains& chains, Groups& groups) {
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
         return std::tie(chains.box(a).x0, a) < std::tie(chains.box(b).x0, b);
     });
-    // Groups open at the x of the sweep, by their intervals of y. The intervals are disjoint; otherwise the
-    // groups would be one.
+    // Groups at the x of the sweep, by their intervals of y. The intervals are disjoint, because otherwise
+    // the groups would be joined.
     struct Open {
         double y0;
         double y1;
@@ -110,7 +110,7 @@ class ContactSearch {
   private:
     /// Returns false if the search would take too long.
     bool search(const ChainGrid& grid) {
-        // Long chains side by side, such as those of a ring and the same ring moved, are traversed once.
+        // Long adjacent chains, such as those of a ring and its offset, are traversed once.
         work_budget_ = 64 * (grid.pieces().size() + all_.all().size()) + 8 * layer_.points.size() + 4096;
         for (const Chain& piece : grid.pieces())
             if (ChainGrid::whole_ring(piece))
@@ -132,7 +132,7 @@ class ContactSearch {
                 for (std::size_t b = a + 1; b < here.size(); ++b) {
                     const Box2& s = grid.box(here[a]);
                     const Box2& t = grid.box(here[b]);
-                    // Boxes may meet in many cells: the pair is examined in one of them.
+                    // Boxes may meet in many cells, but the pair is examined in only one of them.
                     if (s.meets(t) && i == cells.cell({std::max(s.x0, t.x0), std::max(s.y0, t.y0)}))
                         look_into(grid, here[a], here[b]);
                 }
@@ -141,7 +141,7 @@ class ContactSearch {
         return work_budget_ > 0;
     }
 
-    /// Returns whether all pieces are in one marked group already, such as the spikes of one star.
+    /// Returns whether all pieces are already in one marked group, such as the spikes of a star.
     [[nodiscard]] bool no_merges_among(const ChainGrid& grid, std::span<const std::uint32_t> pieces) {
         return std::none_of(pieces.begin(), pieces.end(), [&](std::uint32_t i) {
             return groups_.open(grid.pieces()[i].ring, grid.pieces()[pieces.front()].ring) ||
@@ -157,7 +157,7 @@ class ContactSearch {
                 look_into(chains[a], chains[b]);
     }
 
-    /// Examines two pieces. Piece a comes before piece b.
+    /// Examines two pieces; a must come before b.
     void look_into(const ChainGrid& grid, std::uint32_t a, std::uint32_t b) {
         const std::span<const Chain> chains = grid.chains(grid.pieces()[a]);
         const std::span<const Chain> others = grid.chains(grid.pieces()[b]);
@@ -171,7 +171,7 @@ class ContactSearch {
         }
     }
 
-    /// Examines two chains. a comes before b in the layer.
+    /// Examines two chains; a must come before b in the layer.
     void look_into(const Chain& a, const Chain& b) {
         if (work_budget_ == 0 || !groups_.open(a.ring, b.ring) || !a.box().meets(b.box()))
             return;
@@ -185,7 +185,8 @@ class ContactSearch {
         if (continues(a, b)) {
             // One chain begins where the other ends. If both have the same directions, they meet nowhere
             // else. If only the x-direction changes, one lies above the common point and the other below it,
-            // unless level edges next to the point coincide: these fold. The same holds for y.
+            // except for horizontal edges next to the point, which may coincide (a fold). The same holds for
+            // y.
             const unsigned ways = a.ways | b.ways;
             if (!way::turns_in_y(ways))
                 return way::turns_in_x(ways) && last_but_one(a).y == a.back.y && second(b).y == b.front.y;
@@ -202,7 +203,7 @@ class ContactSearch {
                (end == layer_.offsets[a.ring + 1] ? layer_.offsets[a.ring] : end) == b.first;
     }
 
-    /// The second point of a chain, and the last but one, ignoring repeated points.
+    /// Return the second point of a chain, and the last but one, ignoring repeated points.
     [[nodiscard]] const Point2& second(const Chain& chain) const noexcept {
         std::uint32_t i = 1;
         while (i < chain.segments && all_.point(chain, i) == chain.front)
@@ -273,7 +274,8 @@ class ContactSearch {
         return orientation(a, b, c) == 0 && (a < b) == (c < b);
     }
 
-    /// If any two segments are in contact, two neighbours on the line of the sweep are found to be.
+    /// Returns whether no segments are in contact. Tests only neighbours on the sweep line, which suffices:
+    /// if any two segments are in contact, so are two neighbours.
     [[nodiscard]] bool free_of_contacts() const {
         std::vector<Segment> segments;
         struct Origin {
@@ -297,7 +299,7 @@ class ContactSearch {
                    in_contact(origins[lower].ring, origins[lower].first, origins[upper].ring,
                               origins[upper].first);
         };
-        // Beginnings come first: a segment that begins where another one ends is in contact with it.
+        // Beginnings come first, because a segment that begins where another one ends is in contact with it.
         for (const auto& [at, i, begins] : sweep_events(segments, SweepOrder::begins_first)) {
             budget_.check();
             if (begins) {

@@ -28,10 +28,10 @@ struct Contacts {
 /// than the vertex between them. Groups are connected by contacts, and numbered by the first of their rings.
 /// The decision is exact. Open chains and points that repeat the one before them are ignored.
 ///
-/// Meant for clean layers, most of which take O(chains): only chains whose boxes overlap, found by the grid,
-/// are examined. O(n log n) for layers that have no grid or defeat it, such as long diagonal walls side by
-/// side. If such a layer has contacts, rings whose boxes overlap form one group: groups may then be larger
-/// than the contacts require, never smaller.
+/// Fast for layers with few contacts, usually O(chains), because the grid finds the chains whose boxes
+/// overlap, and only these are examined. O(n log n) for layers without a useful grid, such as long parallel
+/// diagonal walls. If such a layer has contacts, rings whose boxes overlap form one group, so groups may be
+/// larger than the contacts require, but never smaller.
 ///
 /// `grid` is the grid of these chains, if there is one.
 [[nodiscard]] Contacts find_contacts(const Layer& layer, const MonotoneChains& chains,

@@ -29,9 +29,9 @@ namespace {
 
 using SegmentId = std::uint32_t; // index of its first point in the layer
 
-/// Local coordinates: relative to the lower left corner of the layer, in a unit that makes them at most 4, so
-/// that nothing overflows and a part far from the origin loses no digits. They only select the cells to
-/// search; whether segments cross is decided on the original points.
+/// Local coordinates, relative to the lower left corner of the layer, in a unit in which they are at most 4.
+/// So nothing overflows, and a part far from the origin loses no precision. They only select the cells to
+/// search; the original points decide whether segments cross.
 struct Frame {
     double unit = 1; ///< a power of two
     Point2 origin;   ///< in that unit
@@ -75,15 +75,15 @@ Point2 point_of_crossing(Segment s, Segment t) noexcept {
             within(s.lo.y + share * (s.hi.y - s.lo.y), s.lo.y, s.hi.y, t.lo.y, t.hi.y)};
 }
 
-/// Selects segments such that every crossing has at least one of them: if two neighbours on the line of a
-/// sweep cross, both are set aside. These are at most twice the smallest number of segments whose removal
-/// removes all crossings, so that one stray segment through a thousand walls costs two passes, not a
-/// thousand. Returns an empty vector if nothing crosses.
+/// Selects segments so that every crossing involves at least one of them: if two neighbours on the sweep line
+/// cross, both are set aside. Their number is at most twice the smallest number of segments whose removal
+/// removes all crossings. So one stray segment through a thousand walls costs two passes, not a thousand.
+/// Returns an empty vector if nothing crosses.
 std::vector<bool> one_of_each_crossing(std::span<const Segment> segments) {
     SweepStatus status(segments);
     std::vector<bool> set_aside(segments.size(), false);
     bool any_set_aside = false;
-    // Tests two neighbours, then the new neighbours at the gap that they leave.
+    // Tests two neighbours. If they cross and leave the line, tests the new neighbours at the gap.
     const auto test_neighbours = [&](std::uint32_t lower, std::uint32_t upper) {
         while (lower != SweepStatus::none && upper != SweepStatus::none &&
                cross(segments[lower], segments[upper])) {
@@ -118,9 +118,9 @@ std::vector<bool> one_of_each_crossing(std::span<const Segment> segments) {
 }
 
 /// All proper crossings of a layer. A grid divides the segments into cells with a few of them; cells with
-/// many are divided again. If most segments are long for their cell, such as many diagonal walls side by
-/// side, no grid separates them. A sweep then finds in O(m log m) that nothing crosses, or a few segments
-/// that have a part in every crossing. Those are tested against the segments beside them (`LineTree`).
+/// many are divided again. If most segments are long compared with their cell, such as many parallel diagonal
+/// walls, no grid separates them. A sweep then finds in O(m log m) that nothing crosses, or a few segments of
+/// which every crossing involves one. These are tested against segments close to them (`LineTree`).
 ///
 /// Two segments can meet in several cells: a crossing counts in the half-open cell that contains its computed
 /// location.
@@ -129,8 +129,8 @@ class CrossingSearch {
     using Pair = std::pair<SegmentId, SegmentId>;
 
     /// Searches the segments with these indices in a box. Counts all crossings, up to slightly more than
-    /// `enough`, and keeps the first `keep` of them. If `clear` is above 0, only pairs count in which each
-    /// end lies farther than this from the other segment's line.
+    /// `enough`, and keeps the first `keep` of them. If `clear` is above 0, a pair counts only if each end is
+    /// farther than this from the line of the other segment.
     CrossingSearch(std::span<const Segment> segments, std::span<const SegmentId> ids, const Box2& box,
                    std::size_t keep, std::uint64_t enough, const LayerBudget& budget, double clear = 0)
         : segments_(segments), keep_(keep), enough_(enough), budget_(budget), frame_(box), clear_(clear) {
@@ -143,7 +143,7 @@ class CrossingSearch {
     }
 
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
-    /// Returns the crossings that were kept, in no order.
+    /// Returns the crossings that were kept, in no particular order.
     [[nodiscard]] std::vector<Pair>& pairs() noexcept { return first_; }
     /// Returns the approximate location of a crossing.
     [[nodiscard]] Point2 crossing_at(const Pair& pair) const noexcept {
@@ -261,7 +261,7 @@ class CrossingSearch {
             search_side_by_side(cell, ids, set_aside);
     }
 
-    /// Tests the segments set aside against all others that may reach them.
+    /// Tests the segments that were set aside against all others that may cross them.
     void search_side_by_side(const Box2& cell, std::span<const SegmentId> ids,
                              const std::vector<bool>& set_aside) {
         const auto turned = [](const Segment& s) {
@@ -304,10 +304,10 @@ class CrossingSearch {
     Frame frame_;
     double clear_;
     std::uint64_t count_ = 0;
-    std::vector<Pair> first_; // up to twice as many as to be kept
+    std::vector<Pair> first_; // crossings found, up to twice as many as are kept
 };
 
-/// Searches the contours c for which chosen(c) is true. A segment has the index of its first point.
+/// Searches the contours c for which chosen(c) is true. The index of a segment is that of its first point.
 template <class Chosen>
 Crossings search(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough) {
     std::vector<Segment> segments(layer.points.size()); // by index; entries without a segment are unused
@@ -354,7 +354,7 @@ Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
     if (layer.points.size() > std::numeric_limits<SegmentId>::max())
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967295 points; crossings are found in smaller ones");
-    // Most rings touch nothing, which is found in a small fraction of the time.
+    // Most rings touch no others; finding these takes a small fraction of the time.
     if (layer.open_chains() == 0) {
         const MonotoneChains chains(layer);
         if (const std::optional<ChainGrid> grid = ChainGrid::of(chains)) {

@@ -55,7 +55,7 @@ EdgeBelow edge_below(const Point2& p, std::uint32_t own, const MonotoneChains& c
                 }
             }
         }
-        // Edges not yet seen lie entirely in lower rows.
+        // Edges that were not yet visited lie entirely in lower rows.
         if (found.ring != Nesting::none && cells.row(std::min(highest.lo.y, highest.hi.y)) >= row)
             break;
     }

@@ -19,7 +19,7 @@ double squared(double dx, double dy) noexcept {
     return dx * dx + dy * dy;
 }
 
-/// Returns the distance of boxes along an axis.
+/// Returns the distance between two boxes along an axis.
 double gap(double least, double most, double other_least, double other_most) noexcept {
     return std::max({other_least - most, 0.0, least - other_most});
 }
@@ -60,7 +60,7 @@ void EdgeTree::build(std::size_t begin, std::size_t end) {
     const auto position = [&](std::size_t i) {
         return edges_.begin() + static_cast<std::ptrdiff_t>(i);
     };
-    // The midpoints of long walls side by side lie on a line across the walls and spread along it.
+    // The midpoints of long parallel walls are spread along a line across the walls.
     const bool along_x = middles.width() >= middles.height();
     std::nth_element(position(begin), position(middle), position(end), [&](const Edge& s, const Edge& t) {
         return along_x ? s.middle().x < t.middle().x : s.middle().y < t.middle().y;

@@ -17,13 +17,13 @@ namespace lamella {
 /// A balanced tree of boxes, split along the axis on which the midpoints of edges spread most.
 class EdgeTree {
   public:
-    /// Holds all edges of a layer; a contour of one point is an edge of length 0. O(n log n).
+    /// Builds the tree of all edges of a layer; a contour of one point is an edge of length 0. O(n log n).
     explicit EdgeTree(const Layer& layer);
 
     [[nodiscard]] bool empty() const noexcept { return edges_.empty(); }
 
-    /// Returns the squared distance to the nearest edge; if it is below `enough`, possibly another value
-    /// below `enough`. Infinite if there are no edges.
+    /// Returns the squared distance from p to the nearest edge, or any value below `enough` if it is below
+    /// `enough`. Infinite if there are no edges.
     [[nodiscard]] double distance_squared(const Point2& p, double enough) const;
     /// Returns the same for the distance from a segment: 0 if it meets an edge.
     [[nodiscard]] double distance_squared(const Segment& s, double enough) const;
@@ -31,8 +31,9 @@ class EdgeTree {
     /// Returns the ends of the nearest edge. Requires at least one edge.
     [[nodiscard]] std::pair<Point2, Point2> nearest(const Point2& p) const;
 
-    /// Returns the winding number of the edges around p; requires rings only. Exact. For a point on a level
-    /// edge the side above counts, on others the right side. Examines the edges to the right of p at its y.
+    /// Returns the winding number of the edges around p; requires rings only. Exact. A point on a horizontal
+    /// edge counts as just above it, a point on any other edge as just to its right. Examines the edges to
+    /// the right of p at its y.
     [[nodiscard]] std::int64_t winding(const Point2& p) const;
 
   private:

@@ -64,7 +64,7 @@ void EdgeColumn::order(double x) {
     for (auto begin = ordered_.begin(), end = begin; begin != ordered_.end(); begin = end) {
         end = begin + 1;
         while (end != ordered_.end() && nowhere_above(end->line, begin->line))
-            ++end; // neither is above the other: they coincide
+            ++end; // neither is above the other, so they coincide
         std::sort(begin, end, [](const RingEdge& a, const RingEdge& b) { return a.order < b.order; });
     }
     assert(ordered_.size() + loose_.size() == edges.size());

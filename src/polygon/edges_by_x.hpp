@@ -16,9 +16,9 @@ struct RingEdge {
     Segment line;
     std::uint32_t ring = 0; ///< a representative, see `RingCopies`
     Windings step;          ///< change of the winding numbers from below to above
-    /// Orders coincident edges as if they were stacked: first rings that end at the edge, inner ones before
-    /// those around them, then rings that begin there, outer ones first. Not negative if the inside of the
-    /// ring is above.
+    /// Orders coincident edges from below to above: first those of rings whose inside is below, inner rings
+    /// before those around them; then those of rings whose inside is above, outer rings first. Negative if
+    /// the inside of the ring is below.
     std::int64_t order = 0;
 };
 
@@ -26,16 +26,16 @@ struct RingEdge {
 class EdgeColumn {
   public:
     void add(const RingEdge& edge) { ordered_.push_back(edge); }
-    /// Sorts the edges. Call it once, after the last edge. All edges span x.
+    /// Sorts the edges, all of which must span x. Must be called once, after the last edge is added.
     void order(double x);
 
     [[nodiscard]] bool empty() const noexcept { return ordered_.empty() && loose_.empty(); }
-    /// Returns the number of edges without an order; each query examines all of them.
+    /// Returns the number of edges that cross others and thus have no order. Each query examines all of them.
     [[nodiscard]] std::size_t loose() const noexcept { return loose_.size(); }
 
     /// Returns the contribution of this column to the winding numbers below the edge at x.
     [[nodiscard]] Windings winding_below(double x, const RingEdge& edge) const;
-    /// Raises `best` to the highest edge of this column below `edge`, if that is higher.
+    /// Sets `best` to the highest edge of this column below `edge`, if that is higher than `best`.
     void raise(double x, const RingEdge& edge, const RingEdge*& best) const;
     /// Returns the number of edges that coincide with `edge` to the right of x and have the same `order`.
     [[nodiscard]] std::int64_t count_equal(double x, const RingEdge& edge) const;
@@ -44,18 +44,18 @@ class EdgeColumn {
     [[nodiscard]] std::size_t first_not_below(double x, const RingEdge& edge) const;
 
     std::vector<RingEdge> ordered_; ///< from below to above
-    std::vector<Windings> winding_; ///< above the first i of them
-    std::vector<RingEdge> loose_;   ///< edges that cross others, in no order
+    std::vector<Windings> winding_; ///< winding numbers above the first i edges
+    std::vector<RingEdge> loose_;   ///< edges that cross others, in no particular order
 };
 
-/// A segment tree over values of x: each edge is kept in few nodes, and the nodes with the edges above and
-/// below a point at one of these values are the ancestors of one leaf.
+/// A segment tree over values of x. Each edge is stored in few nodes. The edges over one of these values are
+/// those in the ancestors of one leaf.
 ///
-/// Neither the status of a sweep nor a grid could replace it. A query asks for the sum of the steps of all
-/// edges below a point, where edges coincide and cross. A status knows the neighbours of an edge, and the sum
-/// below it only as long as no edge is inserted or erased below, which coincident edges do between two
-/// queries. A grid would add up edge by edge all the way down: for each of many nested rings, all rings
-/// around it.
+/// Neither a sweep status nor a grid could replace it. A query needs the sum of the steps of all edges below
+/// a point, where edges coincide and cross. A status provides the neighbours of an edge, but the sum below it
+/// only until an edge is inserted or erased below, which happens between two queries if edges coincide. With
+/// a grid, edges would be added one by one from the point downwards: for each of many nested rings, those of
+/// all rings around it.
 class EdgesByX {
   public:
     explicit EdgesByX(std::vector<double> abscissae);
@@ -65,7 +65,7 @@ class EdgesByX {
 
     /// Adds an edge that spans the leaves [first, end).
     void add(const RingEdge& edge, std::size_t first, std::size_t end);
-    /// Sorts all columns. Call it once, after the last edge.
+    /// Sorts all columns. Must be called once, after the last edge is added.
     void order();
 
     /// Calls visit(column) for the columns with edges over x.

@@ -1,6 +1,6 @@
 #pragma once
 
-// A grid of square cells that finds objects close to each other.
+// A grid of square cells, to find objects that are close to each other.
 
 #include "polygon/box2.hpp"
 #include "polygon/orientation.hpp"
@@ -17,7 +17,7 @@
 
 namespace lamella {
 
-/// The indices from 0 to size() - 1, if all objects go into a grid.
+/// The indices from 0 to size() - 1, for grids of all objects.
 struct NumbersBelow {
     std::uint32_t end = 0;
 
@@ -25,12 +25,13 @@ struct NumbersBelow {
     std::uint32_t operator[](std::size_t k) const noexcept { return static_cast<std::uint32_t>(k); }
 };
 
-/// Square cells over a box, and for each cell the indices of the objects that overlap it. Objects are boxes,
-/// segments or points: the caller of `sort` specifies the cells of each object.
+/// Square cells over a box, and for each cell the indices of the objects that overlap it. Objects can be
+/// boxes, segments or points, because the caller of `sort` specifies the cells of each object.
 class Grid {
   public:
-    /// Returns the size of cells for `count` objects, at least one, whose extents add up to `length`: about
-    /// as many cells as objects, but none shorter than half the mean object, so that each has few entries.
+    /// Returns the size of cells for `count` objects, at least one, whose extents add up to `length`. There
+    /// are about as many cells as objects, but their size is at least half the mean extent, so that each
+    /// object is in few cells.
     [[nodiscard]] static double cell_size(const Box2& whole, double count, double length) noexcept {
         const double width = whole.width();
         const double height = whole.height();
@@ -59,8 +60,8 @@ class Grid {
         return row * columns_ + column;
     }
 
-    /// Returns the box of a cell. Neighbours compute their common border from the same numbers: as half-open
-    /// boxes, cells have neither overlaps nor gaps.
+    /// Returns the box of a cell. Adjacent cells compute their common border from the same numbers, so cells,
+    /// as half-open boxes, have neither overlaps nor gaps.
     [[nodiscard]] Box2 box(std::size_t cell) const noexcept {
         const std::size_t column = cell % columns_;
         const std::size_t row = cell / columns_;
@@ -82,8 +83,8 @@ class Grid {
                 visit(cell_at(i, j));
     }
 
-    /// Calls visit(cell) once for every cell that the segment meets or approaches closer than `margin` of a
-    /// cell, which is far more than all rounding errors. The segment may reach beyond the grid.
+    /// Calls visit(cell) once for every cell whose distance from the segment is less than `margin` cells,
+    /// which is far more than all rounding errors. The segment may reach beyond the grid.
     template <class Visit>
     void for_cells_along(const Segment& s, const Visit& visit) const {
         double u0 = (s.lo.x - whole_.x0) * scale_;
@@ -101,7 +102,8 @@ class Grid {
         const double last_v = std::min(static_cast<double>(rows_ - 1), std::floor(v1 + margin));
         if (first_u > last_u || first_v > last_v)
             return;
-        // A flat segment meets at most two rows, and a slope computed from a small height is inaccurate.
+        // A nearly horizontal segment meets at most two rows, and a slope computed from a small height is
+        // inaccurate.
         const bool whole_rows = first_v == last_v || first_u == last_u || v1 - v0 < 0.25;
         const double slope = whole_rows ? 0 : (u1 - u0) / (v1 - v0);
         for (double v = first_v; v <= last_v; ++v) {
@@ -119,7 +121,7 @@ class Grid {
     }
 
     /// Sorts indices into the cells: for_cells_of(index, visit) calls visit(cell) for each cell of an object.
-    /// Returns false and sorts nothing if that makes more than `most` entries. O(cells + entries).
+    /// If there would be more than `most` entries, returns false and does nothing. O(cells + entries).
     template <class Numbers, class ForCellsOf>
     [[nodiscard]] bool sort(const Numbers& numbers, std::uint64_t most, const ForCellsOf& for_cells_of) {
         most = std::min<std::uint64_t>(most, std::numeric_limits<std::uint32_t>::max());

@@ -18,8 +18,8 @@ namespace lamella {
 
 namespace {
 
-/// Returns the direction of a ring by the corner at its smallest point, where it begins: 1 counter-clockwise,
-/// -1 clockwise, 0 unknown.
+/// Returns the direction of a ring, derived from the corner at its smallest point, where it begins: 1
+/// counter-clockwise, -1 clockwise, 0 unknown.
 int direction_at_begin(std::span<const Point2> ring) noexcept {
     std::size_t next = 1;
     while (next < ring.size() && ring[next] == ring.front())
@@ -36,7 +36,7 @@ std::size_t number_of_blocks(std::span<const Point2> ring) noexcept {
     return (ring.size() + block - 1) / block;
 }
 
-/// Finds the boxes of consecutive `block` edges of a ring. Returns the box of all.
+/// Finds the box of every `block` consecutive edges of a ring. Returns the box of all edges.
 LAMELLA_VECTOR_CLONES Box2 find_block_boxes(std::span<const Point2> ring, Box2* boxes) noexcept {
     using Four = Vector<4>::Doubles; // two points
     Box2 all = Box2::of(ring.front());
@@ -70,7 +70,7 @@ class Rows {
         : y0_(y0), per_mm_(y1 > y0 ? static_cast<double>(count) / (y1 - y0) : 0), last_(count - 1) {}
 
     [[nodiscard]] std::size_t count() const noexcept { return last_ + 1; }
-    /// Ascends with y. Heights beyond the ends belong to the first or the last row.
+    /// Returns the row of a height. Heights beyond the ends belong to the first or the last row.
     [[nodiscard]] std::size_t row(double y) const noexcept {
         const double row = (y - y0_) * per_mm_;
         return !(row > 0) ? 0 : row < static_cast<double>(last_) ? static_cast<std::size_t>(row) : last_;
@@ -82,7 +82,8 @@ class Rows {
     std::size_t last_;
 };
 
-/// Returns the contribution to the winding number of p of the segment a b, which is to the left of p.
+/// Returns the contribution of the segment from a to b, which must be to the left of p, to the winding number
+/// of p.
 int crossing(const Point2& a, const Point2& b, const Point2& p) noexcept {
     return (a.y > p.y) == (b.y > p.y) ? 0 : b.y < a.y ? 1 : -1;
 }
@@ -90,7 +91,7 @@ int crossing(const Point2& a, const Point2& b, const Point2& p) noexcept {
 /// The left end of a clockwise ring.
 struct Hole {
     std::uint32_t ring;
-    std::int32_t around = 0; ///< winding number just left of its left end
+    std::int32_t around = 0; ///< winding number just to the left of its left end
     bool contained = false;  ///< true if its box lies in the box of a counter-clockwise ring around it
 };
 
@@ -113,7 +114,8 @@ class HoleCheck {
     [[nodiscard]] const Point2& left_end(const Hole& hole) const noexcept {
         return layer_.contour(hole.ring).front();
     }
-    /// Returns whether the remaining budget suffices. More expensive layers need another method.
+    /// Takes the cost of some work from the budget. Returns false if that is exhausted; the layer then needs
+    /// another method.
     [[nodiscard]] bool spend(std::size_t work) noexcept {
         const bool enough = work <= work_left_;
         work_left_ -= enough ? work : work_left_;
@@ -150,8 +152,9 @@ class HoleCheck {
         return all;
     }
 
-    /// Visits rings from left to right, the order of the normal form. Visited rings are kept in rows, high
-    /// ones in a list of their own. A search for the rings around a hole removes those that end to its left.
+    /// Visits rings from left to right, the order of the normal form. Visited rings are stored in rows of y,
+    /// those that span many rows in a separate list. A search for the rings around a hole removes rings that
+    /// end to its left.
     bool find_candidates() {
         constexpr std::size_t few = 4; // rows
         const Box2 all = find_boxes();
@@ -205,7 +208,7 @@ class HoleCheck {
         return true;
     }
 
-    /// Adds the contributions of its candidates to the winding number of each hole.
+    /// Computes the winding number of each hole as the sum of the contributions of its candidates.
     bool wind() {
         std::vector<std::uint32_t> ends(layer_.rings + 1, 0);
         for (const Candidate& candidate : candidates_)
@@ -223,8 +226,8 @@ class HoleCheck {
         return true;
     }
 
-    /// Adds the winding of one ring around the left ends of these holes. For each `block` of edges, only
-    /// holes in its rows are examined.
+    /// Adds the winding number of one ring around the left ends of these holes. For each `block` of edges,
+    /// only holes in its rows are examined.
     bool wind(std::uint32_t number, std::span<const std::uint32_t> holes) {
         double y0 = left_end(holes_[holes.front()]).y;
         double y1 = y0;
@@ -265,7 +268,7 @@ class HoleCheck {
                 if (position.at.y < box.y0 || position.at.y > box.y1 || position.at.x < box.x0)
                     continue;
                 const std::size_t last = std::min((i + 1) * block, ring.size());
-                if (position.at.x > box.x1) // all these edges are to the left of it
+                if (position.at.x > box.x1) // all these edges are to the left of the hole
                     position.around +=
                         crossing(ring[i * block], ring[last == ring.size() ? 0 : last], position.at);
                 else if (!spend(block) || !wind(ring, i * block, last, position.at, position.around))
@@ -283,7 +286,8 @@ class HoleCheck {
         return true;
     }
 
-    /// Adds the winding of the edges [begin, end) of a ring around p. Returns false if p lies on one of them.
+    /// Adds the contribution of the edges [begin, end) of a ring to the winding number of p. Returns false if
+    /// p lies on one of them.
     static bool wind(std::span<const Point2> ring, std::size_t begin, std::size_t end, const Point2& p,
                      std::int32_t& around) {
         for (std::size_t i = begin; i < end; ++i) {
@@ -296,7 +300,7 @@ class HoleCheck {
                 if (side == 0)
                     return false;
                 if ((side > 0) != (b.y < a.y))
-                    continue; // it is to the right
+                    continue; // the edge is to the right of p
             }
             around += crossing(a, b, p);
         }

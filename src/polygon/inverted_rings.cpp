@@ -27,7 +27,7 @@ Layer with_rings_reversed(const Layer& layer) {
 
 } // namespace
 
-// Rings with a negative winding number, when reversed, bound material there.
+// Reversed rings bound material where the winding number is negative.
 InvertedRings inverted_rings(const Layer& layer, const Rounding& rounding, InversionSearch search,
                              const LayerLimits& limits) {
     const Rounding at_least{.step_mm = rounding.step_mm, .single_precision = true};

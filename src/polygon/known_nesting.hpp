@@ -1,6 +1,6 @@
 #pragma once
 
-// Nesting with intermediate results that the caller already has, also for the rings of two operands.
+// Nesting for callers that already have its intermediate results, also for the rings of two operands.
 
 #include "lamella/polygon/nesting.hpp"
 
@@ -14,8 +14,9 @@
 
 namespace lamella {
 
-/// The nesting of the rings of both operands together, and for each ring both winding numbers just outside of
-/// its left end, just inside, and below it, regardless of other rings that share its lowest edge there.
+/// The nesting of the rings of both operands together. For each ring it has the winding numbers of both
+/// operands just outside of its left end, just inside, and below, where `below` is below all rings that share
+/// its lowest edge there.
 struct NestingWithWindings {
     Nesting nesting;
     std::vector<Windings> outside;
@@ -23,11 +24,12 @@ struct NestingWithWindings {
     std::vector<Windings> below;
 };
 
-/// Returns the same as `nesting(layer)`, given its first results: the chains of the layer, their grid (if
-/// there is one), and its contacts, with a group or `none` for each ring. A ring without contacts, and not
-/// above rings with contacts, costs O(log c) for c rings and a short search down the grid.
+/// Returns the result of `nesting(layer)`, given the chains of the layer, their grid (if there is one), and
+/// its contacts, with a group or `none` for each ring. A ring without contacts that is not above rings with
+/// contacts costs O(log c) for c rings and a short search down the grid.
 ///
-/// `turns` is each ring's contribution to the winding numbers; for one operand, 1 to the first.
+/// `turns` is each ring's contribution to the winding numbers; for one operand, it is 1 for the first and 0
+/// for the second.
 [[nodiscard]] NestingWithWindings nesting(const Layer& layer, const MonotoneChains& chains,
                                           const std::optional<ChainGrid>& grid, const Contacts& contacts,
                                           std::span<const Windings> turns, const LayerBudget& budget = {});

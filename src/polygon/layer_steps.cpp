@@ -53,7 +53,7 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes, co
     changes = {};
     if (!steps.any())
         return layer;
-    const Layer before = layer; // shares its points
+    const Layer before = layer; // a copy that shares the points
     bool changed = false;
     if (steps.fill != FillRule::none) {
         Filled filled = fill(layer, steps.fill, limits);

@@ -46,7 +46,7 @@ LeftEnd left_end(const Layer& layer, const MonotoneChains& chains, std::size_t n
         const bool rightwards = chain.front.x == left;
         if (!rightwards && chain.back.x != left)
             continue;
-        // From the left end along vertical edges to the first point beyond.
+        // Follow vertical edges from the left end to the first point to the right of them.
         for (std::uint32_t k = 0; k <= chain.segments; ++k) {
             const Point2& p = chains.point(chain, rightwards ? k : chain.segments - k);
             if (p.x > left) {

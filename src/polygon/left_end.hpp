@@ -11,16 +11,17 @@
 
 namespace lamella {
 
-/// The left end of a ring: the lowest of its edges there.
+/// The left end of a ring, with the lowest of its edges there.
 struct LeftEnd {
-    Segment line;           ///< if all points lie on a vertical: level and unbounded
+    Segment line;           ///< that edge; horizontal and unbounded if all points of the ring lie on a
+                            ///< vertical line
     bool rightwards = true; ///< direction of that edge; true for counter-clockwise rings
     bool flat = false;      ///< all points of the ring are collinear
     Point2 smallest;        ///< smallest point of the ring
 };
 
-/// Returns the left end of a ring that has points. O(chains of the ring + points at its left end), unless its
-/// lowest edge there is folded: then O(points).
+/// Returns the left end of a ring that has points. O(chains of the ring + points at its left end); O(points)
+/// if its lowest edge there is folded.
 [[nodiscard]] LeftEnd left_end(const Layer& layer, const MonotoneChains& chains, std::size_t ring);
 
 } // namespace lamella

@@ -43,8 +43,9 @@ LineTree::Probe LineTree::probe(const Segment& s) const noexcept {
     return {true, {}, {share(s.lo.x), s.lo.y}, {share(s.hi.x), s.hi.y}};
 }
 
-/// Returns whether no line within the bounds comes close to the probe: all of them are outside of its
-/// x-interval, or above both ends of the common interval, or below both. Rounding keeps the order of x.
+/// Returns whether no line within the bounds comes close to the probe, because all of them are outside of its
+/// x-interval, or above it at both ends of the common interval, or below it at both. Rounding does not change
+/// the order of x.
 bool LineTree::apart(const Bounds& bounds, const Probe& probe) noexcept {
     const auto above = [&](const Point2& p) {
         const double lowest =

@@ -1,6 +1,6 @@
 #pragma once
 
-// A tree of long segments by their lines: finds segments that a given one may cross.
+// A tree of long segments, sorted by their lines, to find segments that a given segment may cross.
 
 #include "polygon/orientation.hpp"
 
@@ -11,12 +11,12 @@
 
 namespace lamella {
 
-/// A tree of segments of slopes up to 1, by the heights of their lines at both borders of an interval of x.
-/// Segments side by side are neighbours in it, both parallel ones and those that fan out.
+/// A tree of segments with slopes up to 1, sorted by the heights of their lines at both borders of an
+/// interval of x. Adjacent segments are neighbours in it, whether they are parallel or fan out.
 ///
-/// A grid could not replace it: long segments side by side are in the same cells of every grid. For 20,000
-/// lines that fan out, each across its neighbour, crossings are found in 8 ms; without the tree, by a test of
-/// all pairs, in 1,570 ms.
+/// A grid could not replace it, because long adjacent segments are in the same cells of every grid. For
+/// 20,000 lines that fan out and cross their neighbours, crossings are found in 8 ms; without the tree, a
+/// test of all pairs takes 1,570 ms.
 class LineTree {
   public:
     struct Item {
@@ -24,12 +24,12 @@ class LineTree {
         std::uint32_t number;
     };
 
-    /// Only the interval from x0 to x1 counts. O(n log n).
+    /// Builds a tree that considers only the interval from x0 to x1. O(n log n).
     LineTree(double x0, double x1, std::span<const Item> items);
 
-    /// Calls visit(number) for every segment that comes closer to `s` between x0 and x1 than rounding errors,
-    /// and for some others. O(log n) and a small number of steps for each segment beside it; in the worst
-    /// case O(sqrt(n)), and as much for each.
+    /// Calls visit(number) for every segment that may meet `s` between x0 and x1, considering rounding
+    /// errors, and for some others. Usually O(log n) plus a few steps for each adjacent segment; at worst
+    /// O(sqrt(n)) plus O(sqrt(n)) for each of them.
     template <class Visit>
     void for_close_to(const Segment& s, Visit visit) const {
         if (!nodes_.empty())
@@ -55,11 +55,11 @@ class LineTree {
         std::uint32_t last;
         std::uint32_t above; ///< node of the second half, 0 for a leaf; the first half is the next node
     };
-    /// The segment of a query: a flat one as a line, a steep one by its ends.
+    /// The segment of a query: a line if its slope is at most 1, otherwise its two ends.
     struct Probe {
         bool steep;
         Line line;
-        Point2 low; ///< ends of a steep one, x as a fraction
+        Point2 low; ///< ends of a steep segment, with x as a fraction of the interval
         Point2 high;
     };
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Defines material by winding numbers: of one layer by a rule, of two layers by an operation.
+// Defines material by winding numbers: those of one layer and a rule, or those of two layers and an
+// operation.
 
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/fill.hpp"
@@ -11,7 +12,7 @@ namespace lamella {
 
 class Material {
   public:
-    /// For one operand.
+    /// Defines the material of one operand.
     explicit Material(FillRule rule) noexcept : rule_(rule) {}
     /// `least` is the smallest winding number of the second operand that counts as its material.
     explicit Material(BooleanOperation operation, std::int64_t least = 1) noexcept
@@ -20,7 +21,8 @@ class Material {
     [[nodiscard]] bool operator()(const Windings& w) const noexcept {
         return made_of(of_rule(w.first), of_rule(w.second - least_ + 1));
     }
-    /// Returns whether all winding numbers that differ from `around` by at most `rings` have the same answer.
+    /// Returns whether all winding numbers that differ from `around` by at most `rings` have material, or
+    /// none has.
     [[nodiscard]] bool alike(const Windings& around, const Windings& rings) const noexcept;
 
   private:

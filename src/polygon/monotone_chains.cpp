@@ -27,7 +27,8 @@ struct Ways {
         return ((right & first) != 0 ? way::right : 0) | ((left & first) != 0 ? way::left : 0) |
                ((up & first) != 0 ? way::up : 0) | ((down & first) != 0 ? way::down : 0);
     }
-    /// Returns how many segments a chain of directions `ways` can be extended by; 64 if it never reverses.
+    /// Returns the number of segments by which a chain with the directions `ways` can be extended; 64 if it
+    /// never reverses.
     [[nodiscard]] unsigned before_turn(unsigned ways) const noexcept {
         const auto first = [ways](std::uint64_t bits, unsigned way) {
             return (ways & way) != 0 ? 0 : std::countl_zero(bits);
@@ -94,7 +95,7 @@ void MonotoneChains::cut(std::uint32_t ring) {
         assert(chain.segments > 0 && !way::turns(chain.ways));
         chains_.push_back(chain);
         chain = {first, ring, 0, 0, points[first], {}};
-        box.add(Box2::of(points[first])); // every end of a chain is a beginning
+        box.add(Box2::of(points[first])); // every end of a chain is also the beginning of a chain
     };
     std::uint64_t i = begin;
     while (i + 1 < end) {

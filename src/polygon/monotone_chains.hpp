@@ -1,6 +1,6 @@
 #pragma once
 
-// Rings cut into monotone chains: searches for intersections or for an x skip whole chains.
+// Divides rings into monotone chains, so that searches for intersections or for an x can skip whole chains.
 
 #include "lamella/contour/layer.hpp"
 
@@ -33,27 +33,27 @@ constexpr unsigned all = right | left | up | down;
 }
 } // namespace way
 
-/// A monotone part of a ring: it has one direction in x and one in y. Its box is that of its ends, and it
-/// does not meet itself.
+/// A monotone part of a ring, with one direction in x and one in y. Its box is that of its ends, and it does
+/// not intersect itself.
 struct Chain {
     std::uint64_t first; ///< index of its first point in the layer
     std::uint32_t ring;
     std::uint32_t segments; ///< at least one; its last point may be the first point of the ring
     unsigned ways;
-    Point2 front; ///< its first and last point, stored here so that searches need not access the layer
+    Point2 front; ///< its first and last point, so that searches need not access the layer
     Point2 back;
 
     [[nodiscard]] Box2 box() const noexcept { return Box2::of(front, back); }
 };
 
 /// The chains of a layer's rings, in the order of the rings. Open chains of the layer and rings of one point
-/// are ignored. A chain ends where its ring reverses, or soon after `longest` segments.
+/// are ignored. A chain ends where its ring reverses in x or y, or soon after `longest` segments.
 class MonotoneChains {
   public:
     static constexpr std::uint32_t longest = 64;
 
-    /// The layer must have less than 2^32 rings and outlive the chains. O(points), at about memory speed for
-    /// long rings.
+    /// The layer must have less than 2^32 rings and outlive the chains. O(points), for long rings about as
+    /// fast as memory.
     explicit MonotoneChains(const Layer& layer);
 
     [[nodiscard]] std::span<const Chain> all() const noexcept { return chains_; }
@@ -75,7 +75,7 @@ class MonotoneChains {
 
     const Layer* layer_;
     std::vector<Chain> chains_;
-    std::vector<std::uint32_t> starts_; ///< for each ring, and the end
+    std::vector<std::uint32_t> starts_; ///< index of the first chain of each ring, and the number of chains
     std::vector<Box2> boxes_;           ///< for each ring
 };
 

@@ -51,8 +51,8 @@ class NestingSearch {
         std::optional<SurroundingsSearch> surroundings;
         if (!open.empty())
             surroundings.emplace(chains_, ends_, copies_, turns_, order_, by_area_, open);
-        // Edges that cross have no order, so such a search is quadratic. Layers whose contours cross too
-        // often are refused.
+        // Edges that cross have no order, so the search among them is quadratic. Layers whose contours cross
+        // too often are refused.
         constexpr std::uint64_t half_a_second = std::uint64_t{1} << 22;
         std::uint64_t crossing = 0;
         for (const std::uint32_t ring : open)
@@ -77,26 +77,27 @@ class NestingSearch {
                ends_[ring].flat; // a flat ring may be a single point
     }
 
-    /// Returns the next edge below the left end of a ring without contacts. It determines the nesting, unless
-    /// a ring in contact may have it.
+    /// Returns the next edge below the left end of a ring without contacts. This edge determines the nesting,
+    /// unless it may belong to a ring in contact.
     [[nodiscard]] EdgeBelow edge_below_end(std::uint32_t ring, const ChainGrid& grid) const {
         if (in_contact(ring))
             return {.sure = false};
         const Point2& left = ends_[ring].line.lo;
-        // If rings cross, the parent is the first one on the way down, even if its box lies below.
+        // If rings cross, the parent is the first one in the downward direction, even if its box lies below.
         if (contacts_.groups == 0 && !grid.surrounded(left, ring))
             return {};
         return edge_below(left, ring, chains_, grid, contacts_);
     }
 
-    /// Places a ring inside of the edge's ring, or beside it.
+    /// Places a ring inside of the edge's ring, or next to it.
     void place_over(const EdgeBelow& edge, std::uint32_t ring) {
         std::uint32_t parent = Nesting::none;
         Windings winding;
         if (edge.ring != Nesting::none) {
             const bool inside = edge.rightwards == ends_[edge.ring].rightwards;
             parent = inside ? edge.ring : placement_.outside(edge.ring);
-            // Not the winding number inside of its parent, which varies if that ring crosses itself.
+            // The winding number inside of the parent is not used, because it is not constant if that ring
+            // crosses itself.
             winding = inside ? placement_.winding_inside(edge.ring) : placement_.winding(edge.ring);
         }
         placement_.place(ring, parent, winding);
@@ -124,7 +125,7 @@ class NestingSearch {
         return ends;
     }
 
-    /// Areas matter only where edges coincide.
+    /// Ranks rings in contact by area, because areas matter only where edges coincide.
     void order_by_area() {
         std::vector<double> area(ends_.size());
         std::vector<std::uint32_t> largest_first;
@@ -141,7 +142,7 @@ class NestingSearch {
             by_area_[largest_first[i]] = i + 1;
     }
 
-    /// Puts the edges below a left end before it.
+    /// Orders rings so that the edges below a left end come before it.
     void order_from_left_to_right() {
         const auto before = [&](std::uint32_t a, std::uint32_t b) {
             const Segment& s = ends_[a].line;

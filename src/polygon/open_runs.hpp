@@ -10,7 +10,7 @@
 
 namespace lamella {
 
-/// Consecutive sides as open chains; crossings are found without the sides between the chains.
+/// Chains of consecutive sides; only crossings between sides of these chains are found.
 class OpenRuns {
   public:
     void begin(const Point2& p) {

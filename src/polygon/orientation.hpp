@@ -10,7 +10,7 @@
 
 namespace lamella {
 
-/// Segments in the order of a sweep from left to right: lo < hi, lexicographically.
+/// A segment for a sweep from left to right: lo < hi, lexicographically.
 struct Segment {
     Point2 lo;
     Point2 hi;
@@ -34,7 +34,7 @@ struct Segment {
 /// Returns whether each segment has its ends strictly on both sides of the other. Exact.
 [[nodiscard]] inline bool cross(const Segment& s, const Segment& t) noexcept {
     if (s.lo.x >= t.hi.x || t.lo.x >= s.hi.x)
-        return false; // they meet at most in a common vertical, where one of them ends
+        return false; // they meet at most on a vertical line where one of them ends
     const auto [s_min, s_max] = std::minmax(s.lo.y, s.hi.y);
     const auto [t_min, t_max] = std::minmax(t.lo.y, t.hi.y);
     const bool share_an_end = s.lo == t.lo || s.hi == t.hi || s.lo == t.hi || s.hi == t.lo;
@@ -43,15 +43,17 @@ struct Segment {
     return side(s, t.lo) * side(s, t.hi) < 0 && side(t, s.lo) * side(t, s.hi) < 0;
 }
 
-/// Does the same as compare_heights by integer arithmetic; slow, for the rare cases that it cannot decide.
+/// Does the same as compare_heights in integer arithmetic, which is slow, for the rare cases that
+/// compare_heights cannot decide.
 [[nodiscard]] int exact_compare_heights(double x, const Segment& s, const Segment& t) noexcept;
 
-/// Returns the sign of the height of s above t at x. Both must span x and neither may be vertical. Exact.
+/// Returns the sign of the height of s minus that of t at x. Both must span x and neither may be vertical.
+/// Exact.
 ///
-/// The filter: with u = 2^-53, the fraction of s passed at x carries three roundings, its rise three more and
-/// the height another one. The height is off by less than 8u (|lo.y| + |hi.y|) if nothing overflows, and the
-/// difference of two heights by less than 10u of the sum of sizes. A fraction that underflows is off by less
-/// than 2^-1074.
+/// The filter: with u = 2^-53, the fraction of s to the left of x has three roundings, its rise three more
+/// and the height another one. The height is off by less than 8u (|lo.y| + |hi.y|) if nothing overflows, and
+/// the difference of two heights by less than 10u of the sum of sizes. A fraction that underflows is off by
+/// less than 2^-1074.
 [[nodiscard]] inline int compare_heights(double x, const Segment& s, const Segment& t) noexcept {
     constexpr double u = 0x1p-53;
     const double s_width = s.hi.x - s.lo.x;
@@ -65,8 +67,8 @@ struct Segment {
     return exact_compare_heights(x, s, t);
 }
 
-/// Returns how s lies relative to t just to the right of x: -1 below, 0 on it, 1 above. Both must span x.
-/// Exact.
+/// Returns the position of s relative to t just to the right of x: -1 below, 0 coincident, 1 above. Both must
+/// span x. Exact.
 [[nodiscard]] inline int compare_right_of(double x, const Segment& s, const Segment& t) noexcept {
     const int left = s.lo.x > t.lo.x ? side(t, s.lo) : -side(s, t.lo);
     const int right = s.hi.x < t.hi.x ? side(t, s.hi) : -side(s, t.hi);

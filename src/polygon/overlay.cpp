@@ -19,7 +19,7 @@ namespace lamella {
 
 namespace {
 
-/// Returns the fate of a ring by whether there is material outside and inside of it.
+/// Returns the fate of a ring, given whether there is material just outside and just inside of it.
 Fate fate(bool outside, bool inside, bool counter_clockwise) noexcept {
     if (outside == inside)
         return Fate::dropped;
@@ -51,8 +51,8 @@ class Filler {
     Overlaid run() && {
         for (const std::vector<std::uint32_t>& group : groups_)
             fill_group(group);
-        // Rounding can draw the boundary of a united group over rings of others that are closer to it than a
-        // unit of the grid.
+        // Rounding can move the boundary of a united group across rings of other groups that are closer to it
+        // than a unit of the grid.
         const bool others = result_.groups_united > 1 || count(Fate::kept) + count(Fate::reversed) > 0;
         if (!united_.empty() && others && has_crossings(put_together()))
             unite_all();
@@ -77,7 +77,7 @@ class Filler {
                     nest_.inside[ring].sum() > nest_.outside[ring].sum());
     }
 
-    /// Processes a group in contact from left to right; none of its rings may be flat.
+    /// Processes a group of rings in contact, ordered from left to right; none of them may be flat.
     void fill_group(const std::vector<std::uint32_t>& group) {
         if (group.empty())
             return;
@@ -132,13 +132,14 @@ class Filler {
         unite(all, arranged(wound(all), {}, *grid_, budget_));
     }
 
-    /// Returns whether rings that do not cross can be kept or dropped as a whole, and sets their fates.
+    /// Returns whether all rings of the group can stay whole, because they do not cross, and sets their
+    /// fates.
     bool stay(const std::vector<std::uint32_t>& group, const Arrangement& arrangement, const Windings& most) {
         if (walls_ == Walls::dissolved || (most.first > 0 && most.second > 0))
             return !arrangement.walls && arrangement.bounded_by_rest(material_);
         if (!arrangement.bounded_by_all(material_))
             return arrangement.bounded_by_rest(material_);
-        // Overlaps of the size of rounding errors may be at the left end of a ring.
+        // An overlap of the size of rounding errors may be at the left end of a ring.
         for (const std::uint32_t ring : group)
             fates_[ring] = Fate::kept;
         return true;

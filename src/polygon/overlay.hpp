@@ -1,6 +1,6 @@
 #pragma once
 
-// Overlaid rings of one layer or of two: finds rings that bound the material unchanged, and corrects the
+// Overlays the rings of one layer or of two. Finds rings that already bound the material, and corrects the
 // others.
 
 #include "lamella/contour/layer.hpp"
@@ -23,7 +23,7 @@ namespace lamella {
 /// it.
 enum class Fate : std::uint8_t { kept, reversed, dropped, united };
 
-/// Treatment of walls: boundaries of material that run along one another with nothing between them.
+/// Treatment of walls, where boundaries of material run along one another with nothing between them.
 enum class Walls : std::uint8_t {
     left,      ///< walls of rings of one operand stay
     dissolved, ///< no walls stay
@@ -41,17 +41,19 @@ class Overlay {
     /// Examines the rings of one operand.
     explicit Overlay(const Layer& layer, const LayerLimits& limits = {})
         : Overlay(layer, std::vector<Windings>(layer.rings, {1, 0}), limits) {}
-    /// `turns` is each ring's contribution to the winding numbers of its inside. The layer must outlive this.
+    /// `turns` is each ring's contribution to the winding numbers of its inside. The layer must outlive this
+    /// object.
     Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits);
 
-    /// Returns whether no rings are in contact and all bound material of one operand, with none around it.
+    /// Returns whether no rings are in contact and every ring bounds material, so that no winding number
+    /// exceeds 1.
     [[nodiscard]] bool clean() const noexcept;
     /// Returns the box of all rings. Requires at least one ring.
     [[nodiscard]] Box2 box() const noexcept;
 
     /// Returns the boundary of the material, with the open chains of the layer; see `fill`.
     [[nodiscard]] Overlaid filled(const Material& material, Walls walls = Walls::left) const;
-    /// Returns the nesting by both operands together.
+    /// Returns the nesting of the rings of both operands together.
     [[nodiscard]] const Nesting& nest() const noexcept { return nest_.nesting; }
 
   private:
@@ -64,8 +66,8 @@ class Overlay {
     NestingWithWindings nest_;
 };
 
-/// Returns the material of a layer (FillRule::positive) without walls. Passes through a layer that already is
-/// that.
+/// Returns the boundary of the material of a layer (FillRule::positive) without walls. If the layer already
+/// has this form, returns it unchanged.
 [[nodiscard]] Layer united(const Layer& layer, const LayerLimits& limits = {});
 /// Returns the same, given the overlay of the layer.
 [[nodiscard]] Layer united(const Layer& layer, const Overlay& overlay);

@@ -13,8 +13,8 @@
 
 namespace lamella {
 
-/// Rings that bound the same area, in either direction; the first of them represents all. Collinear points
-/// are ignored.
+/// Groups of rings that bound the same area, in either direction; the first ring of a group represents all.
+/// Collinear points are ignored.
 class RingCopies {
   public:
     /// O(n log n) for n points in rings in contact that begin at one point.
@@ -23,7 +23,7 @@ class RingCopies {
     [[nodiscard]] std::uint32_t representative(std::uint32_t ring) const noexcept {
         return representative_[ring];
     }
-    /// Returns the next copy of a ring, in ascending order, or Nesting::none.
+    /// Returns the next copy of a ring, in ascending order; Nesting::none after the last one.
     [[nodiscard]] std::uint32_t next(std::uint32_t ring) const noexcept { return next_[ring]; }
 
   private:

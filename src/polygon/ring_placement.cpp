@@ -96,7 +96,8 @@ void RingPlacement::place_one(std::uint32_t ring, std::uint32_t parent, const Wi
     assert(kind != RingKind::overlapping || (winding.sum() >= 1 && ends_[ring].rightwards));
 }
 
-/// `inside` describes the outside of the ring at first, and its inside at the end.
+/// Finds the body of a ring. `inside` must describe the area just outside of the ring; afterwards it
+/// describes that just inside.
 void RingPlacement::find_body(std::uint32_t ring, Inside& inside) {
     if (ends_[ring].rightwards) {
         if (inside.missing > 0) {

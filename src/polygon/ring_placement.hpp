@@ -21,11 +21,11 @@ class RingPlacement {
 
     /// Places a ring without points.
     void place_empty(std::uint32_t ring) { result_.nesting.order.push_back(ring); }
-    /// Places a ring and its copies, one within the other. `ring` represents them, `parent` was placed before
-    /// or is Nesting::none, and `winding` holds the winding numbers just outside of their left end.
+    /// Places a ring and its copies, one within the other. `ring` represents them. `parent` was placed
+    /// before, or is Nesting::none. `winding` has the winding numbers just outside of their left end.
     void place(std::uint32_t ring, std::uint32_t parent, Windings winding);
 
-    /// Return the ring around all copies of a placed ring, and the innermost one of its copies.
+    /// Return the ring around all copies of a placed ring, and the innermost of its copies.
     [[nodiscard]] std::uint32_t outside(std::uint32_t ring) const noexcept { return outside_[ring]; }
     [[nodiscard]] std::uint32_t innermost(std::uint32_t ring) const noexcept { return innermost_[ring]; }
     [[nodiscard]] const Windings& winding(std::uint32_t ring) const noexcept { return result_.outside[ring]; }
@@ -40,7 +40,7 @@ class RingPlacement {
     /// The bodies around a point within a ring.
     struct Inside {
         std::uint32_t body = Nesting::none; ///< the innermost one
-        std::uint32_t missing = 0;          ///< number of clockwise rings in excess
+        std::uint32_t missing = 0;          ///< number of clockwise rings that remove no body
     };
 
     void place_one(std::uint32_t ring, std::uint32_t parent, const Windings& winding, RingKind kind);

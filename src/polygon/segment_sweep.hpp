@@ -1,6 +1,6 @@
 #pragma once
 
-// A line that sweeps over segments from left to right: its events, and the order of the segments on it.
+// A sweep line that moves over segments from left to right: its events, and the order of the segments on it.
 
 #include "polygon/orientation.hpp"
 
@@ -12,30 +12,31 @@
 
 namespace lamella {
 
-/// Segment `segment` begins or ends at a point.
+/// The begin or the end of a segment.
 struct SweepEvent {
     Point2 at;
     std::uint32_t segment;
     bool begins;
 };
 
-/// The order of events at one point: with ends first, segments that touch there are never on the line
-/// together; with beginnings first they are.
+/// The order of events at one point. With ends first, segments that touch there are never on the line at the
+/// same time; with beginnings first they are.
 enum class SweepOrder : std::uint8_t { ends_first, begins_first };
 
-/// Returns the ends of the segments from left to right, at the same x from below to above. O(n log n).
+/// Returns the ends of all segments, ordered from left to right, and at the same x from below to above. O(n
+/// log n).
 [[nodiscard]] std::vector<SweepEvent> sweep_events(std::span<const Segment> segments, SweepOrder order);
 
 /// The segments on the sweep line, from below to above. They must not cross on the line or to its left: as
-/// soon as two neighbours are found to cross, one of them must be erased. (Shamos and Hoey: as long as no
-/// neighbours cross, no segments cross.) Of coincident segments, the one of the smaller index is below.
+/// soon as two neighbours are found to cross, one of them must be erased. (As long as no neighbours cross, no
+/// segments cross; Shamos and Hoey.) Of two coincident segments, the one with the smaller index is below.
 /// Exact. Every operation takes O(log n).
 class SweepStatus {
   public:
     static constexpr std::uint32_t none = 0xffffffff;
 
-    /// Returns the part of a segment over a point of the line, if the segment stands for several consecutive
-    /// ones, from left to right.
+    /// Returns the part of a segment at a point of the line, for segments that stand for a sequence of
+    /// segments from left to right.
     using Piece = std::function<Segment(std::uint32_t segment, const Point2& at)>;
 
     /// The segments must outlive the status.
@@ -44,7 +45,7 @@ class SweepStatus {
     void insert(std::uint32_t segment);
     void erase(std::uint32_t segment);
     [[nodiscard]] bool empty() const noexcept { return order_.empty(); }
-    /// Return the next segment below or above a segment on the line, or none.
+    /// Return the next segment below or above a segment on the line; none if there is no such segment.
     [[nodiscard]] std::uint32_t below(std::uint32_t segment) const noexcept;
     [[nodiscard]] std::uint32_t above(std::uint32_t segment) const noexcept;
 

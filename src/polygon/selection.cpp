@@ -16,7 +16,8 @@ namespace lamella {
 
 namespace {
 
-/// Returns the chains and the rings for which wanted(ring) is true, in normal form if the layer was.
+/// Returns a layer of the open chains and of the rings for which wanted(ring) is true, in normal form if the
+/// given layer was.
 template <class Wanted>
 Layer selected(const Layer& layer, const Wanted& wanted) {
     std::vector<bool> keep(layer.contours(), true);

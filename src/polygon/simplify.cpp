@@ -61,7 +61,7 @@ class Thinned {
             return false;
         const auto [farthest, square] = farthest_between(contour, begin, end);
         kept_[wrapped(contour, farthest)] = true;
-        // Points close to the longer segment need not be close to its two replacements.
+        // Points close to the old segment need not be close to the two segments that replace it.
         thin(contour, begin, farthest);
         thin(contour, farthest, end);
         return true;
@@ -121,8 +121,9 @@ class Thinned {
         kept_[begin] = true;
     }
 
-    /// Where the farthest points repeatedly split off little, as along spikes and spirals, the middle ones
-    /// are kept instead: no point is examined more than O(log n) times.
+    /// Keeps the points that the tolerance requires. Where the farthest points repeatedly split very
+    /// unevenly, as along spikes and spirals, middle points are kept instead, so that no point is examined
+    /// more than O(log n) times.
     void thin(std::size_t contour, std::uint64_t first, std::uint64_t last) {
         struct Span {
             std::uint64_t begin;
@@ -181,7 +182,7 @@ bool refine_crossings(Thinned& thinned, const Layer& layer) {
     if (refine(some))
         return true;
     return some.count > at_once &&
-           refine(find_crossings(layer, some.count)); // the first ones may all be old ones
+           refine(find_crossings(layer, some.count)); // the first crossings may all be old ones
 }
 
 /// Restores points of rings that were inverted, vanished or moved past others, and of the rings around them.
@@ -239,7 +240,7 @@ Layer simplify(const Layer& layer, double tolerance) {
     if (result.points.size() == layer.points.size())
         return layer;
     const Nesting before = nesting(layer);
-    // Every pass restores at least one point, so this ends, with the original layer in the worst case.
+    // Every pass restores at least one point, so the loop ends, in the worst case with the original layer.
     while (refine_crossings(thinned, result) || refine_nesting(thinned, result, before))
         result = thinned.layer();
     return normal_form(std::move(result));

@@ -40,7 +40,7 @@ SurroundingsSearch::SurroundingsSearch(const MonotoneChains& chains, std::span<c
         for (const Chain& chain : chains_.of_ring(ring)) {
             const std::size_t from = edges_.leaf(chain.front.x, near);
             near = edges_.leaf(chain.back.x, from);
-            if (from != near) // others span no left end
+            if (from != near) // other edges span no left end
                 add_edges(chain, net, from);
         }
     }
@@ -92,7 +92,7 @@ std::uint64_t SurroundingsSearch::crossing_edges_at(std::uint32_t ring) const {
     return n;
 }
 
-/// A folded edge bounds no area on its own: it is skipped on the way down.
+/// Folded edges, which bound no area, are skipped in the search downwards.
 Surroundings SurroundingsSearch::find(std::uint32_t ring) const {
     assert(copies_.representative(ring) == ring);
     const RingEdge left_edge{ends_[ring].line, ring, ends_[ring].flat ? Windings{} : net_winding(ring),
@@ -105,7 +105,7 @@ Surroundings SurroundingsSearch::find(std::uint32_t ring) const {
         result.winding += column.winding_below(x, left_edge);
         result.below_all += column.winding_below(x, lowest);
     });
-    // Edges of the ring itself that run back along its lowest one precede it in the order.
+    // Edges of the ring itself that run back along its lowest edge precede that in the order.
     result.winding += count_equal(x, opposite(left_edge)) * left_edge.step;
     RingEdge from = left_edge;
     while (true) {

@@ -16,12 +16,13 @@ namespace lamella {
 /// The surroundings of the left end of a ring.
 struct Surroundings {
     Windings winding;
-    Windings below_all;              ///< below all edges that coincide with the ring's lowest edge there
-    const RingEdge* below = nullptr; ///< next edge below that bounds an area, of another ring
+    Windings below_all;              ///< winding numbers below all edges that coincide with the ring's lowest
+                                     ///< edge there
+    const RingEdge* below = nullptr; ///< the next lower edge of another ring that bounds an area
 };
 
-/// Finds the surroundings of rings that are given by their representatives. Edges that span no left end of
-/// these are skipped, chain by chain. Exact except for `below` where edges cross.
+/// Finds the surroundings of rings, each of which represents its copies. Edges that span no left end of these
+/// rings are skipped, chain by chain. Exact except for `below` where edges cross.
 class SurroundingsSearch {
   public:
     /// `turns` is the contribution of each ring; `by_area` the ranks of representatives in contact, the

@@ -11,8 +11,9 @@ namespace lamella {
 
 namespace {
 
-// Why loops can be cut off. Each side and each corner of a moved ring adds a piece, its strip or wedge, to
-// the winding number. No piece counts less than 0 anywhere, and only whether their sum is above 0 matters.
+// Loops can be cut off for the following reason. Each side and each corner of a moved ring adds a piece, its
+// strip or wedge, to the winding number. No piece contributes less than 0 anywhere, and it only matters
+// whether their sum is above 0.
 //
 // Let A and B be points of the moved ring, A' and B' the corners that they come from, S the section of the
 // moved ring from A to B, and T that section with loops cut off at their crossings. Let Q be the polygon from
@@ -22,11 +23,11 @@ namespace {
 // 2. If Q is simple and has the orientation of the pieces, its winding number is 1 inside and 0 outside.
 // 3. If all loops lie inside of Q and have the same orientation, the pieces add 1 inside of Q, once more for
 //    each loop around the point, and 0 outside.
-// So with T in place of S the sum is above 0 at the same points, whatever other sides, corners and rings add.
-// (Crossings are rounded, as all points of moved rings are.)
+// So with T in place of S the sum is above 0 at the same points, no matter what other sides, corners and
+// rings add. (Crossings are rounded, as all points of moved rings are.)
 //
-// A and B may also lie within a moved side: it counts as two sides with a collinear corner between them. So
-// in a ring with a loop at each corner, each loop is examined by itself.
+// A and B may also lie within a moved side, which then counts as two sides with a collinear corner between
+// them. So in a ring with a loop at each corner, each loop is examined separately.
 
 /// Returns the location of the line through c and d on the segment from a to b, as a fraction of the segment.
 double share_to_line(const Point2& a, const Point2& b, const Point2& c, const Point2& d) noexcept {
@@ -109,8 +110,8 @@ class SwallowtailCutter {
         }
     }
 
-    /// Cuts off the first loop that the segment from the last kept point to point i closes. At any other
-    /// intersection with the kept points from `begin_` on, the search begins anew.
+    /// Cuts off the first loop that the segment from the last kept point to point i closes. If it intersects
+    /// the kept points from `begin_` on in any other way, the search restarts.
     bool cut_loop_before(std::size_t i) {
         const Point2 from = left_.back().at;
         const Point2& to = ring_[i].at;
@@ -141,7 +142,7 @@ class SwallowtailCutter {
     }
 
     /// Cuts off the loop where the segment to a point, on a side of the ring, crosses the segment that
-    /// follows kept point k. Returns false if the loop has not the orientation of the pieces.
+    /// follows kept point k. Returns false if the orientation of the loop is not that of the pieces.
     bool cut_off(std::size_t k, const Point2& to, std::size_t side) {
         const Point2& a = left_[k].at;
         const Point2& b = left_[k + 1].at;
@@ -273,13 +274,13 @@ class SwallowtailCutter {
     }
 
     static constexpr std::size_t window = 16;  ///< number of sides among which loops are searched for
-    static constexpr std::size_t longest = 64; ///< section with its corners
+    static constexpr std::size_t longest = 64; ///< largest number of points of a section with its corners
 
     std::span<const MovedPoint> ring_;
     std::span<const Point2> corners_;
     double distance_;
     std::vector<Left> left_;
-    std::size_t begin_ = 0; ///< from here on the kept points do not intersect
+    std::size_t begin_ = 0; ///< segments between kept points do not intersect from here on
     std::size_t taken_ = 0; ///< end of the last section with cuts; sections have no pieces in common
     std::vector<Point2> polygon_;
 };

@@ -1,6 +1,6 @@
 #pragma once
 
-// Cuts small loops out of moved rings.
+// Removes small loops (swallowtails) from moved rings.
 
 #include "lamella/core/point.hpp"
 
@@ -17,8 +17,8 @@ struct MovedPoint {
 };
 
 /// Appends a moved ring, whose points are in the order of its corners, without those loops that can be cut
-/// off without changing the material. `distance` is the offset of the sides to the right. The segment from
-/// the last point to the first is not examined. O(points).
+/// off without changing the material. `distance` is the distance by which sides were moved to the right. The
+/// segment from the last point to the first is not examined. O(points).
 void add_without_swallowtails(std::span<const MovedPoint> ring, std::span<const Point2> corners,
                               double distance, std::vector<Point2>& out);
 
