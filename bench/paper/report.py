@@ -26,7 +26,7 @@ def build_page(measured, figures, machine, timeout):
              "and those of all may not) or from the next smaller sheet (**≈**). A time counts only if the layers "
              "equal those of the sweep engine; see **Correctness** below.")
     page.heading("The parts")
-    page.say("The sheets equal the paper's to the triangle. The other parts of the paper are not published; ours have "
+    page.say("The sheets equal the paper's, triangle by triangle. The other parts of the paper are not published; ours have "
              "the same kind, size and number of triangles. Each image shows the stack of layers up to one layer, and "
              "that layer from above.")
     for part in measured.parts:
@@ -49,7 +49,7 @@ def build_page(measured, figures, machine, timeout):
     page.show(tables.searches(measured.cells, titles, figures["table2_searches"]))
     page.heading("Table 3: cases under edge matching")
     page.show(tables.cases(measured.cells, titles, figures["table3_cases"]))
-    page.say("The sheets equal the paper's to the triangle; the other parts only have the same kind and size, so their "
+    page.say("The sheets equal the paper's, triangle by triangle; the other parts only have the same kind and size, so their "
              "counts can only be similar. The counts of front and back depend on the order of the triangles in the "
              "paper's files, which it does not give.")
     page.heading("Table 4: how often each case occurs")
@@ -86,7 +86,7 @@ def build_page(measured, figures, machine, timeout):
              "triangles of the walls, then all upper ones); and shuffled. The order decides how many lists are open at "
              "a time.")
     page.show(tables.orders(measured.order_cells, measured.order_parts))
-    page.say("**Which order did the paper's sheets have?** The paper does not say. According to Table 3, half of the "
+    page.say("**Which order did the paper's sheets have?** The paper does not state it. According to Table 3, half of the "
              "intersections begin a list, half link two, and hardly any are put at the front or the back. All lower "
              "triangles must therefore come before the upper ones, either in each hole or in the whole sheet. Table 5 "
              "decides between the two. Without the time of everything else, EECC needs 118, 174, 180, 181 and 196 "
