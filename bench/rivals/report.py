@@ -17,7 +17,7 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
     part_titles = {part.name: part.title for part in parts}
     page.say(
         "All slicers cut the same parts at the same heights (layers of 0.1 mm, cut in the middle), one process after "
-        "the other on one machine. A rival's time counts only if its layers equal Lamella's; the column *same layers* "
+        "the other on one machine. A rival's time counts only if its layers agree with Lamella's; the column *same layers* "
         "gives the result of this check. Times that do not count are in brackets.".replace("*", "**"),
         f"{machine['processor']}, {machine['threads']} threads, {machine['memory']}; {machine['system']}; "
         f"{machine['program']}; {machine['date']}. Limit for one run: {timeout:g} s.")
