@@ -40,13 +40,13 @@ using Clock = std::chrono::steady_clock;
 // Bytes of a mesh file per thread: for smaller files, a second thread costs more than it gains.
 constexpr std::uint64_t bytes_per_thread = 16'000'000;
 constexpr std::size_t most_warnings = 8;
-// Small files are sent to a worker together, since a message costs as much as slicing one of them. Their
-// number and time are limited so that results are not delayed noticeably.
+// Several small files form one task, because a message costs as much as slicing one of them. Their number and
+// time are limited, so that results are not delayed noticeably.
 constexpr std::uint64_t small_file = 100'000; // bytes
 constexpr std::size_t most_together = 32;
 constexpr double longest_together = 0.05; // seconds
-// A batch that is stopped waits this long for answers. The limit is well below that of Interrupt, which would
-// end the program before the answers are printed.
+// Time that a stopped batch waits for answers. It is well below that after which Interrupt ends the program,
+// so that the answers can be printed.
 constexpr double longest_stop = 0.3; // seconds
 
 double seconds_since(Clock::time_point start) {
@@ -57,7 +57,7 @@ Json name_or_null(const std::string& name) {
     return name.empty() ? Json() : Json(name);
 }
 
-/// Returns one line of the results.
+/// Returns the JSON object of one result.
 Json record_of(const BatchItem& item, const BatchResult& result) {
     const FileResult& file = result.file;
     std::vector<std::uint64_t> hashes;
@@ -111,8 +111,8 @@ std::string as_line(const Json& record) {
     return compact_json(record) + '\n';
 }
 
-/// Returns a line that fits into a message despite long names and texts: escapes take up to six bytes for
-/// one.
+/// Returns the line of a result, with names and texts truncated if necessary so that it fits into a message.
+/// (An escape takes up to six bytes per byte.)
 std::string short_line(Json record) {
     constexpr std::size_t most_text = 1000;
     std::string line = as_line(record);
@@ -125,8 +125,8 @@ std::string short_line(Json record) {
     return as_line(record);
 }
 
-/// Returns a line for each of a task's files, or for the first ones only, so that the caller does not wait
-/// long.
+/// Returns the lines for the files of a task, or only for the first ones if the others would delay the
+/// answer.
 std::string lines_of(const WorkerTask& task, const std::vector<BatchItem>& items, const SliceItem& slice,
                      const CancelFlag& cancel) {
     const Clock::time_point start = Clock::now();
@@ -158,7 +158,7 @@ void make_folders(const std::vector<BatchItem>& items) {
     }
 }
 
-/// Slices the files in order, as many at once as there are threads for.
+/// Slices the files in order, several at the same time as far as there are threads.
 class Batch {
   public:
     Batch(const std::vector<BatchItem>& items, unsigned threads, const SliceItem& slice,
@@ -179,7 +179,7 @@ class Batch {
         }
         if (reported_ == items_.size())
             return true;
-        // Completed results are still printed. Workers that are stuck are ended with the team.
+        // Completed results are still printed. The destructor of the team ends stuck workers.
         stopping_ = true;
         team_.stop();
         const Clock::time_point stop = Clock::now();
@@ -238,11 +238,11 @@ class Batch {
         }
     }
 
-    /// Returns a task of one file, or of several small ones. The fewer files remain, the smaller the task, so
-    /// that all workers stay busy.
+    /// Returns a task of one file, or of several small ones. If few files remain, tasks are smaller, so that
+    /// all workers stay busy.
     WorkerTask take_next() {
         const auto bytes_of = [this](std::size_t i) {
-            std::error_code error; // of a pipe, for example, whose size is unknown
+            std::error_code error; // set for a pipe, for example, whose size is unknown
             const std::uintmax_t bytes = fs::file_size(items_[i].input, error);
             return error ? std::nullopt : std::optional(bytes);
         };
@@ -318,7 +318,7 @@ class Batch {
     unsigned free_;
     Messages& messages_;
     const std::function<void(const Progress&)>& progress_;
-    std::vector<Clock::time_point> starts_; ///< by the first file of each task
+    std::vector<Clock::time_point> starts_; ///< start times, by the first file of each task
     std::deque<WorkerTask> tasks_;          ///< waiting for threads
     std::map<std::size_t, std::string> waiting_;
     std::map<std::string, std::size_t> failures_; ///< by kind

@@ -37,9 +37,9 @@ struct BatchResult {
     std::string stats; ///< content of BatchItem::stats
 };
 
-/// Returns all items of a batch, in order. `output` and `stats` are patterns for OutputNames, or "";
-/// `extension` is that of outputs; `read` are other files that the command reads, which no result may
-/// overwrite. Throws the errors of batch_inputs, OutputNames and check_distinct.
+/// Returns all items of a batch, in order. `output` and `stats` are patterns for OutputNames, or "".
+/// `extension` is the extension of outputs. `read` are other files that the command reads; no result may
+/// overwrite them. Throws the errors of batch_inputs, OutputNames and check_distinct.
 [[nodiscard]] std::vector<BatchItem> batch_items(const BatchArguments& arguments, const std::string& output,
                                                  std::string_view extension, const std::string& stats,
                                                  std::span<const NamedFile> read);

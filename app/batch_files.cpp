@@ -37,8 +37,8 @@ fs::path stem_of(const fs::path& path) {
     throw Error(ErrorKind::input, fmt::format("{}: {}", source, what));
 }
 
-/// Returns whether a path is a pipe, socket or device. Their data may never end, and the user did not name
-/// them.
+/// Returns whether a path is a pipe, socket or device. These are skipped, because their data may never end
+/// and the user did not name them.
 bool is_stream(const fs::path& path) {
     std::error_code ignored;
     const fs::file_status status = fs::status(path, ignored);
@@ -79,7 +79,7 @@ std::vector<std::string> files_in(const std::string& folder, const std::string& 
     find_meshes(folder, apart, found, [&](const fs::path& at, const std::error_code& why) {
         if (at == folder)
             refuse(folder, fmt::format("the folder cannot be listed: {}", why.message()));
-        // The folder is added to the files that fail: opening it gives the same error.
+        // The folder is added to the files; opening it will give the same error.
         found.push_back(at.string());
     });
     if (found.empty())

@@ -36,9 +36,9 @@ enum class ValueKind {
 
 struct Option {
     std::string name; ///< without hyphens
-    char letter = 0;  ///< of the short form, or 0
+    char letter = 0;  ///< letter of the short form; 0 if there is none
     ValueKind kind = ValueKind::flag;
-    std::string placeholder = {}; ///< of the value in help texts, such as "MM"
+    std::string placeholder = {}; ///< name of the value in help texts, such as "MM"
     std::string help;
     std::vector<std::string> choices = {}; ///< for ValueKind::choice
     std::string preset = {};               ///< default value, as text; may be empty
@@ -49,12 +49,12 @@ struct Option {
     bool configurable = true;
     /// Name of an option without which this one has no effect; "" for none.
     std::string goes_with = {};
-    /// Given after a file, the option applies to that file; before the first file, to all
-    /// (Operand::own_options).
+    /// True if the option, given after a file, applies to that file only; before the first file it applies to
+    /// all files (Operand::own_options).
     bool of_each_file = false;
-    /// Value of the command line or the configuration file, once parsed: the last of several values.
+    /// The last value in the command line or the configuration file; set by the parser.
     std::optional<std::string> given = {};
-    /// The same for values given for all files.
+    /// The last value that was given for all files.
     std::optional<std::string> given_for_all = {};
 };
 
@@ -72,20 +72,21 @@ struct OptionGroup {
 /// Value of an operand.
 struct GivenOperand {
     std::string text;
-    std::vector<Setting> settings = {}; ///< options for it alone
+    std::vector<Setting> settings = {}; ///< options that apply to it alone
 };
 
 /// An argument without a name, such as the file to slice.
 struct Operand {
     std::string placeholder; ///< such as "FILE"
     std::string help;
-    std::vector<std::string> choices = {}; ///< empty: the operand is a file; "-" is a standard stream
+    std::vector<std::string> choices = {}; ///< the permitted words; if empty, the operand is a file, and "-"
+                                           ///< is a standard stream
     bool written = false;                  ///< the file is written, not read
     bool required = true;
     bool repeated = false;    ///< may be repeated; only the last operand can be
     bool own_options = false; ///< options after it may apply to it alone (Option::of_each_file)
     std::function<void(const std::string& text)> set;
-    std::vector<GivenOperand> given = {}; ///< once parsed
+    std::vector<GivenOperand> given = {}; ///< the values, set by the parser
 };
 
 struct Example {
@@ -110,7 +111,7 @@ struct Command {
     std::function<int(const Context&)> run;
 };
 
-/// Returns nullptr if there is none.
+/// Returns the option of this name; nullptr if there is none.
 [[nodiscard]] Option* find_option(Command& command, std::string_view name);
 [[nodiscard]] const Option* find_option(const Command& command, std::string_view name);
 

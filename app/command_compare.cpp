@@ -37,13 +37,13 @@ struct CompareArguments {
     RunOptions run;
 };
 
-/// A plane that differs, with the details of its layers besides contours.
+/// A plane that differs, with the details of its layers other than contours.
 struct Differing {
     const ComparedPlane* plane;
     const PlaneDetails* details;
 };
 
-/// Returns the size of a difference, for sorting: that of a missing layer is the largest.
+/// Returns the size of a difference, for sorting. A missing layer has the largest size.
 double size_of(const Differing& one) {
     if (!one.plane->first || !one.plane->second)
         return std::numeric_limits<double>::infinity();
@@ -151,7 +151,7 @@ struct AreaDifference {
     double mm2 = 0;
 };
 
-/// Returns those of all planes where it is not 0.
+/// Returns the area differences of all planes where they are not 0.
 std::vector<AreaDifference> area_differences(const StackComparison& found, const LayerStack& first,
                                              const LayerStack& second) {
     std::vector<AreaDifference> differences;

@@ -41,7 +41,7 @@ struct InfoArguments {
     bool strict = false;
     bool self_intersections = false;
     std::string report;
-    PlacementOptions placement; ///< the unit only
+    PlacementOptions placement; ///< only the unit is used
     ReadLimits limits;
     RunOptions run;
 };
@@ -143,7 +143,8 @@ Figures figures_of(const LayerFile& file, const std::vector<ExposureResult>& exp
         figures.push_back(
             {"hatches", other_hatches, "hatched", counted(other_hatches, "line") + " of no exposure"});
     if (holds_vectors(file)) {
-        // Contours of an exposure lie within those of others, so they do not bound a volume together.
+        // Contours of some exposures lie within those of others, so all contours together do not bound a
+        // volume.
         std::erase_if(figures, [](const Figure& figure) { return figure.key == "volume_mm3"; });
         for (Figure& figure : vector_figures(exposures))
             figures.push_back(std::move(figure));

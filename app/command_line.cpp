@@ -30,8 +30,8 @@ constexpr std::string_view timeout = "timeout"; // of commands with this option
     throw Error(ErrorKind::usage, text);
 }
 
-/// A parsed command line in its order, before anything is applied: options of a configuration file come
-/// first.
+/// A parsed command line, in its order. Nothing of it is applied yet, because options of a configuration file
+/// are applied first.
 struct Words {
     struct Word {
         Option* option;       ///< null for an operand
@@ -69,7 +69,7 @@ class Splitter {
     }
 
   private:
-    /// Returns a hint for commands that write to an argument.
+    /// Returns a hint for commands whose output is an operand.
     [[nodiscard]] std::string instead_of_output(std::string_view name) const {
         if (name != "output" && name != "o")
             return {};
@@ -118,8 +118,8 @@ class Splitter {
         out_.words.push_back({&option, typed, words_[next_++]});
     }
 
-    /// Returns whether a word is an option. Negative numbers and "-" are values; a value that looks like an
-    /// option can be given with "=".
+    /// Returns whether a word is an option. Negative numbers and "-" are values. (A value that looks like an
+    /// option can be given with "=".)
     [[nodiscard]] bool is_option(const std::string& word) const {
         return word.starts_with("--") || (word.size() > 1 && word[0] == '-' && by_letter(word[1]) != nullptr);
     }
@@ -151,8 +151,9 @@ void check_path(const std::string& path) {
         refuse("the name of a file is empty");
 }
 
-/// Returns "-" for the system's names of standard input or output. So only one file is read from standard
-/// input, and nothing else is written between the bytes on standard output.
+/// Returns the file name, but "-" for the system's names of standard input or output. So checks detect if
+/// standard input would be read twice, or if something else would be written to standard output together with
+/// the data.
 std::string file_name(const std::string& text, bool written) {
     const std::string_view name = written ? "stdout" : "stdin";
     const std::string_view number = written ? "1" : "0";
@@ -231,7 +232,7 @@ class Assignment {
   private:
     Command& command_;
     std::size_t taken_ = 0;
-    GivenOperand* file_ = nullptr; ///< the last one with its own options
+    GivenOperand* file_ = nullptr; ///< the last operand with its own options
 };
 
 template <class AnyOption, class AnyCommand>
@@ -247,7 +248,7 @@ bool is_on(const std::optional<std::string>& given) {
     return given && *given != "false";
 }
 
-/// Throws for options that have no effect without another one.
+/// Throws for an option that has no effect without another one that is missing.
 void check_company(const Command& command) {
     const auto says = [](const GivenOperand& file, const Option& option) {
         return std::any_of(file.settings.begin(), file.settings.end(),

@@ -9,13 +9,13 @@
 
 namespace lamella::app {
 
-/// Request made by the common options of every command.
+/// Action that the common options of every command select.
 enum class Wish { run, help, dump_config };
 
 /// Sets the options and operands of a command: first those of its configuration file (--config), then those
 /// of the command line. Files in the configuration file are used only if the command line names none. Throws
-/// Error{usage}, with a suggestion if there is one, also for options without the one that they require, and
-/// if two files are to be read from standard input.
+/// Error{usage}, with a suggestion if there is one; also for an option that requires another one that is
+/// missing, and if standard input would be read twice.
 ///
 /// A --timeout on the command line also applies to reading the configuration file, which may be a pipe.
 [[nodiscard]] Wish parse(Command& command, std::span<const std::string> words, const Messages& messages);

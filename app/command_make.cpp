@@ -127,7 +127,7 @@ TriangleSoup cylinder(const MakeArguments& arguments) {
 
 struct Body {
     std::string_view name;
-    std::string_view options; ///< supported options, besides the common ones
+    std::string_view options; ///< supported options in addition to the common ones
     TriangleSoup (*make)(const MakeArguments& arguments);
 };
 constexpr std::array<Body, 11> bodies{{{"sheet", "holes segments size thickness order", sheet},
@@ -202,7 +202,7 @@ struct Made {
     Box3 box;
 };
 
-/// Writes a lattice while it is generated: it may be larger than memory.
+/// Writes a lattice while it is generated, because it may be larger than memory.
 Made stream_lattice(const std::string& output, const MakeArguments& arguments, const Transform& pose) {
     const LatticeShape shape = lattice_shape(arguments);
     Made made{.triangles = lattice_triangles(shape), .box = {}};

@@ -60,7 +60,8 @@ OptionGroup output_options(ScanCommandArguments& target) {
     return group;
 }
 
-/// Rejects scan vectors, which are not material: hatches have no contours, and each contour would be hatched.
+/// Rejects scan vectors, because they do not describe material: hatches have no contours, and each contour
+/// would be hatched again.
 void check_layers(const LayerFile& file) {
     for (const LayerPart& part : file.parts)
         if (part.exposure)

@@ -54,7 +54,7 @@ struct InputOptions {
 
 struct SliceArguments {
     std::vector<PlateInput> inputs;
-    /// Options of the file named last; before the first file, options of all files.
+    /// Options of the last file so far; before the first file, options of all files.
     InputOptions of_input;
     InputOptions of_all;
     std::optional<std::array<double, 3>> build_volume;
@@ -82,7 +82,7 @@ struct SliceArguments {
     Communicator* team = nullptr; ///< see slice_command
 };
 
-/// Returns options for writing the slice file, which have no effect without one.
+/// Returns options for writing the slice file, which have no effect without an output.
 std::vector<Option> with_output(std::vector<Option> options) {
     for (Option& option : options)
         option.goes_with = "output";
@@ -212,7 +212,8 @@ std::optional<ScanStrategy> strategy_of(const SliceArguments& arguments) {
     return scans ? std::optional(arguments.scanning.strategy()) : std::nullopt;
 }
 
-/// Checks the inputs and the output of a shard, whose contents its stamp records.
+/// Checks that a shard reads and writes files, not standard streams, because its stamp records their
+/// contents; and that its output can be merged.
 void check_shard(const SliceArguments& arguments) {
     if (!arguments.shard)
         return;
@@ -233,7 +234,7 @@ void check_shard(const SliceArguments& arguments) {
             fmt::format("--shard goes with files that lamella merge can read; {} is none", format.name));
 }
 
-/// Checks that no result lies in an output folder, which is created anew.
+/// Checks that no other result lies in the output folder, which is replaced as a whole.
 void check_folder(const SliceArguments& arguments) {
     if (arguments.output.empty() || !layer_format(arguments.writing.format, arguments.output).directory)
         return;
@@ -361,13 +362,13 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
     arguments.output = items.front().output;
     arguments.stats = items.front().stats;
     const Execution execution = arguments.run.execution(context);
-    // Lists and strategies may come from pipes.
+    // Lists and strategies are read once, because they may come from pipes.
     FileJob model =
         Deadline(arguments.timeout, one_line(input_name(arguments.batch.source)), context.messages, execution)
             .run([&](const Execution&) { return make_job(arguments); });
     check_conflict(model.shard.has_value(), true, "--batch and --shard", "share out the list instead");
     model.layer_statistics = true; // needed for the hashes
-    Messages unheard;              // the records of the files contain the messages
+    Messages unheard;              // not printed; the results of the files contain the messages
     unheard.set_style(ProgressStyle::silent);
     const SliceItem slice = [&](const BatchItem& item, const Execution& given) {
         FileJob job = model;
@@ -384,7 +385,7 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
     return run_batch(items, arguments.batch, slice, execution, context.messages);
 }
 
-/// Returns the path of the stamp if a shard has one; else "".
+/// Returns the path of the stamp for a shard with an output file; else "".
 std::string stamp_of(const SliceArguments& arguments) {
     return arguments.shard && !arguments.output.empty() && arguments.output != "-"
                ? stamp_path(arguments.output)
@@ -410,8 +411,8 @@ void check_job_of_team(const Command& command, const FileJob& job, Communicator&
                         fmt::format("the processes were not given one job: {}", difference));
 }
 
-/// Checks early that statistics and stamp can be written, since they are written after hours of slicing. All
-/// processes fail together.
+/// Checks that statistics and stamp can be written, because this would otherwise fail only after hours of
+/// slicing. All processes fail together.
 void check_positions(const SliceArguments& arguments, Communicator& processes) {
     std::string refusal;
     if (processes.process() == 0) {
@@ -486,13 +487,13 @@ int run_slice(SliceArguments& arguments, const Context& context) {
             else
                 write_text_file(arguments.stats, text);
         }
-        // The stamp is written last: it marks a shard as finished, with all requested results.
+        // The stamp is written last, because it marks the shard as finished, with all requested results.
         if (!origin.is_null())
             stamp_shard(job, arguments.stats, result, origin, execution);
     });
     const bool to_output = arguments.output == "-" || arguments.stats == "-" || arguments.report == "-";
     context.messages.written(summary(job, result), to_output ? "-" : arguments.output);
-    finish_printing(); // still within the deadline
+    finish_printing(); // while the deadline still applies
     return 0;
 }
 

@@ -162,8 +162,8 @@ std::string vectors_text(const std::string& mesh, bool strategy, const VectorVer
     return text;
 }
 
-/// Returns a hint about a possible cause if layers differ from a mesh: the format does not keep the heights
-/// of cuts, and the layers were not cut at mid-height. `agree(file, rule)` checks them again.
+/// Returns a hint if layers differ from a mesh probably because the format does not store the heights of cuts
+/// and the layers were not cut at mid-height. `agree(file, rule)` checks them again.
 template <class Agree>
 std::string cut_hint(const LayerFile& file, const Agree& agree) {
     const std::string guess =
@@ -180,7 +180,7 @@ std::string cut_hint(const LayerFile& file, const Agree& agree) {
            "cuts, such as json; where they were rounded before, say by how much with --tolerance MM";
 }
 
-/// Moves the parts with scan vectors, or those without, out of the file.
+/// Moves the parts with scan vectors (or, if `vectors` is false, the others) out of the file.
 LayerFile taken_parts(LayerFile& file, bool vectors) {
     LayerFile some{.path = file.path, .format = file.format, .rounding = file.rounding, .rule = file.rule};
     for (LayerPart& part : file.parts)
@@ -219,7 +219,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
             PlateInput{.path = arguments.mesh, .unit_mm = arguments.placement.unit_mm(), .placement = pose}};
         plate = load_plate(inputs, arguments.limits.of_meshes(), execution);
         context.messages.warn_of(input_name(arguments.mesh), plate->files.front().warnings);
-        constexpr std::uint64_t bytes_per_triangle = 64; // for parts that become one mesh
+        constexpr std::uint64_t bytes_per_triangle = 64; // for joining all parts into one mesh
         if (plate->parts.size() > 1)
             check_memory(*plate, bytes_per_triangle, arguments.limits.max_memory.value_or(0));
         mesh = joined(*plate, execution);

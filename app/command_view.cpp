@@ -113,8 +113,8 @@ std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const 
     return info.layers;
 }
 
-/// Returns the path of the page, in the working folder rather than that of the file: "parts/rook.stl" becomes
-/// rook.html.
+/// Returns the default path of the page, which is in the working folder, not in that of the file:
+/// "parts/rook.stl" gives rook.html.
 std::string output_of(const ViewArguments& arguments) {
     if (!arguments.output.empty())
         return arguments.output;

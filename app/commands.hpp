@@ -8,8 +8,8 @@
 
 namespace lamella::app {
 
-/// `team` are processes that slice one plate together, of which the first reports the results; nullptr is
-/// this process alone.
+/// `team` connects processes that slice one plate together; the first of them reports the results. nullptr
+/// stands for this process alone.
 [[nodiscard]] Command slice_command(Communicator* team = nullptr);
 [[nodiscard]] Command info_command();
 [[nodiscard]] Command compare_command();

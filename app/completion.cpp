@@ -55,7 +55,7 @@ std::string bash_operands(const Command& command) {
         fmt::join(choices, " "));
 }
 
-/// Returns the case of one command: values after options that take one, option names, operands.
+/// Returns the branch of the case statement for one command: values of options, option names, operands.
 std::string bash_case(const Command& command) {
     std::string text = fmt::format("    {})\n        case \"$previous\" in\n", command.name);
     std::vector<std::string> names;
@@ -122,8 +122,8 @@ std::string fish_option(const Command& command, const Option& option) {
     return text + fmt::format(" -d '{}'\n", with_prefixes(option.help, "'\\", "\\"));
 }
 
-/// Returns the completion of operands. Choices are offered until one of them is present, files after it;
-/// without choices, files.
+/// Returns the completion of operands. If there are choices, they are offered until one of them is present.
+/// In all other cases files are offered.
 std::string fish_operands(const Command& command) {
     const std::string here =
         fmt::format("complete -c lamella -n '__fish_seen_subcommand_from {}", command.name);
@@ -133,7 +133,7 @@ std::string fish_operands(const Command& command) {
         if (operand.choices.empty()) {
             text += fmt::format("{}{}' -F\n", here, choices.empty() ? "" : "; and " + choices);
         } else {
-            std::vector<std::string> others = operand.choices; // all except the command itself, such as help
+            std::vector<std::string> others = operand.choices; // the choices except the command itself (help)
             std::erase(others, command.name);
             choices = fmt::format("__fish_seen_subcommand_from {}", fmt::join(others, " "));
             text += fmt::format("{}; and not {}' -a '{}'\n", here, choices, fmt::join(operand.choices, " "));

@@ -193,7 +193,7 @@ std::string config_text(const Command& command) {
             if (!option.configurable)
                 continue;
             const std::string text = text_for_all(command, option);
-            // A mere default must not conflict with other options, so it is a comment.
+            // A default is written as a comment, so that it does not conflict with other options.
             if (!text.empty())
                 set += (option.given || option.given_for_all ? "" : "# ") + toml_line(option, text);
             else

@@ -26,16 +26,16 @@ struct Configuration {
     std::vector<ConfiguredInput> inputs;
 };
 
-/// Reads a TOML file for that command; sets nothing. Throws Error{usage} with the line for invalid TOML and
-/// for an unknown key, and Error{input} if the file cannot be read.
+/// Reads a TOML file for the command. Does not set options. Throws Error{usage} with the line for invalid
+/// TOML and for an unknown key, and Error{input} if the file cannot be read.
 [[nodiscard]] Configuration read_config(const std::string& path, Command& command);
 
-/// Returns the given options in effect as a TOML file that `read_config` accepts, with the input files if
-/// these can have their own options.
+/// Returns the options that were given and have an effect, as a TOML file that `read_config` accepts.
+/// Includes the input files if these can have their own options.
 [[nodiscard]] std::string config_text(const Command& command);
 
-/// Returns the options in effect as an object: given values and defaults. If there are several files, those
-/// for all of them.
+/// Returns the options in effect as an object, with given values and defaults. If there are several files, it
+/// has the options that apply to all of them.
 [[nodiscard]] Json options_in_effect(const Command& command);
 
 } // namespace lamella::app

@@ -14,10 +14,10 @@
 namespace lamella::app {
 namespace {
 
-// A signal handler takes no arguments of ours, and must not allocate memory.
+// Global, because a signal handler has no parameter for it; atomic, because it runs at any time.
 std::atomic<ProgressStyle> told_as = ProgressStyle::none;
 
-// Begins with a line break: a progress bar may be on the current line.
+// Begins with a line break, because a progress bar may be on the current line.
 constexpr std::string_view time_is_up =
     "\nlamella: error: the processor time that a process may take is used up (see ulimit -t)\n";
 constexpr std::string_view time_is_up_json =

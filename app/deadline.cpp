@@ -14,8 +14,8 @@
 namespace lamella::app {
 namespace {
 
-// Waiting for standard input, or for a reader of the results, may take for ever, so the program is ended soon
-// then. In between, releasing gigabytes and a temporary file takes longer.
+// While the program waits for standard input, or for a reader of its results, it may never end, so it is
+// ended soon. Otherwise it has more time, because releasing gigabytes and a temporary file takes a while.
 constexpr std::chrono::milliseconds short_work_budget{700};
 constexpr std::chrono::seconds patience{20};
 constexpr double longest_seconds = 1e9; // some thirty years, within the range of clocks
@@ -84,7 +84,7 @@ void Deadline::watch() {
         return;
     expired_ = true;
     done_.notify_all();
-    lock.unlock(); // a thread that waits for the stop may report progress
+    lock.unlock(); // a thread that must stop first may report progress
     stop_.request();
     lock.lock();
     const bool reading = !started_ || (last_.stage == Stage::read && last_.done < last_.total);

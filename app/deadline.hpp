@@ -1,6 +1,6 @@
 #pragma once
 
-// --timeout: a time limit of a computation.
+// The time limit of a computation (--timeout).
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/execution.hpp"
@@ -15,8 +15,8 @@
 
 namespace lamella::app {
 
-/// Stops a computation when its time is up. If the program is stuck then (for example waiting for standard
-/// input), it is ended a short while later with exit code 5.
+/// Stops a computation when its time is up. If the program does not stop, for example because it waits for
+/// standard input, it is ended a short while later with exit code 5.
 class Deadline {
   public:
     /// Without `seconds` there is no limit. `what` is the beginning of the message: the file that is being
@@ -27,8 +27,8 @@ class Deadline {
     Deadline(const Deadline&) = delete;
     Deadline& operator=(const Deadline&) = delete;
 
-    /// Returns `work(execution)`, with the given execution, which it or the deadline stops. If the deadline
-    /// did, Error{limit} describes how far the computation had come.
+    /// Returns the result of `work(execution)` with an execution that the caller's flag or the deadline
+    /// cancels. If the deadline does, throws Error{limit} that reports how far the computation had come.
     template <class Work>
     auto run(const Work& work) {
         try {
@@ -40,8 +40,8 @@ class Deadline {
         }
     }
 
-    /// Notes that the output is complete: only reporting remains. If the time is up before that is done, the
-    /// program is ended as if it were stuck.
+    /// Must be called when the output is complete and only reporting remains. If the time is up before that
+    /// ends, the program is ended as if it were stuck.
     void note_output(std::string output);
 
   private:
@@ -58,8 +58,8 @@ class Deadline {
     mutable std::mutex mutex_;
     mutable std::condition_variable done_; ///< notified when done or expired
     Progress last_;
-    bool started_ = false;  ///< `last_` is valid
-    bool reported_ = false; ///< only reporting remains
+    bool started_ = false;  ///< true if `last_` is valid
+    bool reported_ = false; ///< true if only reporting remains
     std::string output_;    ///< the complete output; "" or "-" if it is not a file
     bool ending_ = false;
     bool expired_ = false;

@@ -36,7 +36,7 @@ std::string parts_text(const MeshFile& file, const Plate& plate) {
                        labels_text(plate.parts));
 }
 
-/// Returns whether the objects of a file are listed: some are not parts.
+/// Returns whether the objects of a file must be listed, because some are not parts.
 bool has_roles(const MeshFile& file) {
     return std::any_of(file.bodies.begin(), file.bodies.end(),
                        [](const MeshBody& body) { return body.role != MeshRole::part; });

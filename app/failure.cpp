@@ -39,8 +39,8 @@ constexpr std::array field_options{
     FieldOption{"`strict`", "--strict"},
     FieldOption{"`threads`", "--threads"},
     FieldOption{"`weld_tolerance_mm`", "--weld-tolerance"},
-    // Fields of a strategy, which options change in all rules at once: errors name the first field that is
-    // checked. The cell must suit the overlap of each rule separately.
+    // Fields of a strategy. An option changes the field in all rules at once, but an error names the first
+    // field that was checked. The cell must suit the overlap of each rule separately.
     FieldOption{"`contours.beam_offset`", "--beam-offset"},
     FieldOption{"`contours.count`", "--contours"},
     FieldOption{"`contours.distance`", "--contour-distance"},

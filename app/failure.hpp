@@ -20,7 +20,7 @@ constexpr std::string_view out_of_memory =
     "memory ran out; free some, or work on less at once: fewer parts, copies, layers or files";
 
 struct Failure {
-    std::string_view kind; ///< the name of the ErrorKind, such as "input"; or "crash"
+    std::string_view kind; ///< the name of the ErrorKind, such as "input", or "crash"
     int exit_code = 1;
     std::string text; ///< for people
 };
@@ -30,12 +30,12 @@ struct Failure {
 
 [[nodiscard]] Failure failure_of(const std::exception_ptr& error);
 
-/// Converts the end of a process that could not report itself; `status` is that of waitpid, `path` the file
-/// that it worked on.
+/// Returns the failure of a process that ended without a report. `status` is that of waitpid, `path` the file
+/// that the process was working on.
 [[nodiscard]] Failure failure_of_process(int status, const std::string& path);
 
-/// Does the work that remains once `output` is complete. An Error then adds that the output is complete,
-/// unless it is standard output or there is none.
+/// Does the work that remains after `output` is complete. If the work throws an Error, adds to its text that
+/// the output is complete, unless this is standard output or there is no output.
 template <class Work>
 void after_output(const std::string& output, const Work& work) {
     try {

@@ -50,7 +50,7 @@ std::string typeset(std::string text) {
     return text;
 }
 
-/// Returns the peak of this program: that of getrusage includes the process that started it.
+/// Returns the peak memory of this program. (The value of getrusage includes the process that started it.)
 std::uint64_t peak_rss_bytes() {
     std::ifstream status("/proc/self/status");
     for (std::string line; std::getline(status, line);) {
@@ -108,7 +108,7 @@ Json layers_json(const FileResult& result) {
                           {"area_mm2", layer.measure.area_mm2},
                           {"perimeter_mm", layer.measure.perimeter_mm},
                           {"open_chains", layer.measure.open_chains},
-                          // Text, since a JSON number loses digits beyond 2^53.
+                          // Written as text, because a JSON number loses digits beyond 2^53.
                           {"hash", fmt::format("{:016x}", layer.hash)}});
         if (layer.open_gaps.count > 0)
             layers.back().update(open_gaps_json(layer.open_gaps));
@@ -151,7 +151,7 @@ Json parts_json(const FileResult& result) {
     return parts;
 }
 
-/// Returns the figures of all files with such layers.
+/// Returns the figures of all files with layers near horizontal faces.
 Json near_faces_json(const FileResult& result) {
     Json files = Json::array();
     for (std::size_t file = 0; file < result.files.size(); ++file)
@@ -164,7 +164,8 @@ Json near_faces_json(const FileResult& result) {
     return files;
 }
 
-/// Objects and lists of plain values take one line each: a layer, a point, a row of a matrix.
+/// Appends a value. Objects and lists that contain plain values only, such as a layer, a point or a row of a
+/// matrix, take one line each.
 void append_json(std::string& text, const Json& value, std::size_t depth) {
     if (std::none_of(value.begin(), value.end(), [](const Json& item) { return item.is_structured(); })) {
         text += compact_json(value);

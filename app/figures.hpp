@@ -1,7 +1,7 @@
 #pragma once
 
-// Figures of meshes, layers and runs. Each is described once, and printed from that as JSON, in lines for
-// people, and on pages.
+// Figures of meshes, layers and runs. Each figure is defined once; JSON, lines for people and pages are made
+// from this definition.
 
 #include "lamella/mesh/self_intersections.hpp"
 #include "lamella/pipeline/slice_file.hpp"
@@ -22,7 +22,7 @@ struct Figure {
     std::string_view key; ///< in JSON
     Json value;
     std::string_view name = {}; ///< for people
-    std::string text = {};      ///< value for people; "" if they do not see it
+    std::string text = {};      ///< value for people; "" if it is shown in JSON only
     Tone tone = Tone::plain;    ///< on pages
 };
 using Figures = std::vector<Figure>;
@@ -31,7 +31,7 @@ using Figures = std::vector<Figure>;
 [[nodiscard]] Figures defect_figures(const Inspection& found);
 [[nodiscard]] Figures intersection_figures(const SelfIntersections& found);
 [[nodiscard]] Figures layer_figures(std::uint64_t layers, const LayerMeasure& all, double volume_mm3);
-/// Returns the number in all files, usable or not.
+/// Returns the number of triangles in all files, usable or not.
 [[nodiscard]] std::uint64_t triangles_read(const FileResult& result);
 [[nodiscard]] Figures run_figures(const FileResult& result);
 
@@ -42,7 +42,7 @@ using Figures = std::vector<Figure>;
 [[nodiscard]] std::vector<PageFact> as_facts(const Figures& figures);
 
 [[nodiscard]] Json point_json(const Point3& p);
-/// Returns the JSON that `describe` makes of the first few locations.
+/// Returns a JSON list of the results of `describe` for the first few locations.
 template <class Places, class Describe>
 [[nodiscard]] Json list_json(const Places& places, const Describe& describe) {
     Json list = Json::array();
@@ -63,10 +63,11 @@ template <class Places, class Describe>
 /// Returns the output of `lamella slice --stats`; docs/program.md lists the keys.
 [[nodiscard]] Json stats_json(const Command& command, const FileJob& job, const FileResult& result);
 [[nodiscard]] Json processes_json(const std::vector<ProcessFigures>& figures);
-/// Returns the text with a line end; names that are not UTF-8 get replacement characters.
+/// Returns the JSON as text with a line end; in names that are not UTF-8, invalid bytes become replacement
+/// characters.
 [[nodiscard]] std::string json_text(const Json& object);
 
-/// Returns the labels of the first few: "rook, rook 2, axle".
+/// Returns the labels of the first few parts: "rook, rook 2, axle".
 template <class Parts>
 [[nodiscard]] std::string labels_text(const Parts& parts) {
     std::string text;

@@ -1,5 +1,5 @@
-// The formatting library, compiled into the program: distributions have it as a shared library only, which
-// would load a shared standard library besides the one that is linked in (CMakeLists.txt).
+// The formatting library, compiled into the program. Distributions have it only as a shared library, which
+// would load a shared standard library in addition to the one that is linked in (CMakeLists.txt).
 
 #include <fmt/format-inl.h>
 

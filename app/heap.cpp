@@ -6,9 +6,9 @@ namespace lamella::app {
 
 namespace {
 
-/// Allocations of at least `own_pages` bytes are returned to the system when they are freed, smaller ones if
-/// more than `kept` bytes are free. By default the allocator adapts both thresholds to the sizes that it
-/// encounters, and never lowers them again.
+/// Sets two thresholds of the allocator. Freed memory of at least `own_pages` bytes is returned to the system
+/// at once, smaller amounts if more than `kept` bytes are free. By default the allocator adapts both
+/// thresholds to the sizes that it encounters, and never lowers them again.
 void set_heap(int own_pages, int kept) noexcept {
     mallopt(M_MMAP_THRESHOLD, own_pages);
     mallopt(M_TRIM_THRESHOLD, kept);

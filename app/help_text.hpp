@@ -14,7 +14,7 @@ namespace lamella::app {
 
 /// Returns the text after the command's name: "FILE [options]".
 [[nodiscard]] std::string synopsis(const Command& command);
-/// The text is "-o, --output FILE", and the help with its default.
+/// Return the option as in "-o, --output FILE", and its help text with the default.
 [[nodiscard]] std::string option_header(const Option& option);
 [[nodiscard]] std::string option_body(const Option& option);
 

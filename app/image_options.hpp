@@ -25,7 +25,8 @@ struct ImageArguments {
     std::optional<double> first_exposure_s = {};
     std::optional<std::uint32_t> fade_layers = {};
 
-    /// Throws Error{usage} if options do not apply to the format, and if SOURCE_DATE_EPOCH is not a time.
+    /// Applies the options. Throws Error{usage} if some do not apply to the format, or if SOURCE_DATE_EPOCH
+    /// is not a time.
     void apply(const LayerFormat& format, LayerWriteOptions& options) const;
 };
 

@@ -21,7 +21,8 @@ namespace {
 
 constexpr int cancelled_exit_code = 130;
 constexpr int patience_ms = 700;
-constexpr int together_ms = 200; // ending a process and then its group sends two signals that mean one
+constexpr int together_ms = 200; // some programs signal a process and then its group; both signals count as
+                                 // one
 
 int checked(int descriptor) {
     if (descriptor < 0)
@@ -29,14 +30,14 @@ int checked(int descriptor) {
     return descriptor;
 }
 
-/// Returns whether the parent set the signal to be ignored so that the program goes on, as nohup does.
+/// Returns whether the parent process, such as nohup, made this program ignore the signal.
 bool is_ignored(int number) {
     struct sigaction action {};
     return sigaction(number, nullptr, &action) == 0 && (action.sa_flags & SA_SIGINFO) == 0 &&
            action.sa_handler == SIG_IGN;
 }
 
-/// Waits for any of the descriptors; returns the number that are ready, 0 after the time is up.
+/// Waits for any of the descriptors. Returns the number of ready ones; 0 after the time is up.
 int wait_for(std::span<pollfd> awaited, int milliseconds) {
     int ready = 0;
     do {
@@ -67,8 +68,8 @@ Interrupt::Interrupt(const Messages& messages, const sigset_t& signals) : messag
     signals_ = checked(signalfd(-1, &signals, SFD_CLOEXEC));
     ending_ = checked(eventfd(0, EFD_CLOEXEC));
     watcher_ = std::thread([this] { watch(); });
-    // A starting thread may hold locks of the allocator; a fork of the process would copy them locked for
-    // ever.
+    // Wait until the thread has started. While it starts, it may hold locks of the allocator, and a fork of
+    // the process would copy these in the locked state.
     watching_.wait();
 }
 
@@ -90,11 +91,11 @@ void Interrupt::watch() {
     std::string words;
     try {
         words = messages_.last_words("cancelled", cancelled_exit_code);
-    } catch (const std::bad_alloc&) { // without last words then
+    } catch (const std::bad_alloc&) { // there is then no message
     }
     wait_for(std::span(awaited).last(1), together_ms);
     std::array<signalfd_siginfo, 8> first{};
-    static_cast<void>(!read(signals_, first.data(), sizeof first)); // makes a second signal visible
+    static_cast<void>(!read(signals_, first.data(), sizeof first)); // so that a second signal can be detected
     if (awaited[1].revents == 0)
         wait_for(awaited, patience_ms - together_ms);
     if (awaited[1].revents == 0)

@@ -12,19 +12,19 @@
 
 namespace lamella::app {
 
-/// Returns SIGINT, SIGTERM and SIGHUP, except those that the program was started to ignore.
+/// Returns SIGINT, SIGTERM and SIGHUP, except those that were ignored when the program started.
 [[nodiscard]] sigset_t interrupts() noexcept;
 
-/// Blocks these for this thread and all that it starts: earlier signals stay pending until there is an
-/// Interrupt.
+/// Blocks these signals for this thread and all threads that it starts. Signals stay pending until an
+/// Interrupt exists.
 void block_interrupts();
 
-/// During its lifetime these signals request cancelling instead of ending the program, so that temporary
-/// files are removed. Must be created before any other thread. If the program is stuck (for example waiting
-/// for standard input) a short while after the signal, or if another signal arrives, its temporary files are
-/// removed and it is ended at once with exit code 130.
+/// While this object exists, these signals request cancellation instead of ending the program, so that
+/// temporary files are removed. Must be created before any other thread. If the program has not ended a short
+/// while after the signal (for example because it waits for standard input), or if another signal arrives,
+/// its temporary files are removed and it is ended at once with exit code 130.
 ///
-/// Between the end of the constructor and a signal, its thread only waits, so the process may be forked.
+/// Its thread only waits between the end of the constructor and a signal, so the process may be forked.
 class Interrupt {
   public:
     explicit Interrupt(const Messages& messages, const sigset_t& signals = interrupts());

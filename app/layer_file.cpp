@@ -30,7 +30,8 @@ Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
     return box;
 }
 
-/// Reports inverted rings. Steps drop them as non-material, unless a fill rule defines the material.
+/// Reports inverted rings. Steps drop them because they have no material, unless a fill rule defines the
+/// material.
 void warn_about_inverted(const LayerSteps& steps, const LayerFile& file, bool strict, Messages& messages,
                          const Execution& execution, std::uint64_t max_memory) {
     if (steps.fill != FillRule::none)

@@ -38,7 +38,7 @@ std::vector<HeightRange> parse_height_ranges(std::string_view text) {
 
 namespace {
 
-/// Throws if two options define the heights of cuts, or one has no effect beside another.
+/// Throws if two options define the heights of cuts, or if one option has no effect because of another.
 void check_ways(const LayeringOptions& options) {
     struct Given {
         std::string_view name;

@@ -25,7 +25,8 @@ struct LayeringOptions {
     std::optional<double> cusp;
     std::optional<double> snap;
 
-    /// Reads the list of z. Throws Error{usage} for options that contradict each other, and as read_z_list.
+    /// Returns the layering that the options define; reads the list of z if there is one. Throws Error{usage}
+    /// for options that contradict each other, and the errors of read_z_list.
     [[nodiscard]] Layering layering() const;
 };
 
@@ -33,7 +34,8 @@ struct LayeringOptions {
 
 [[nodiscard]] OptionGroup layering_options(LayeringOptions& target);
 
-/// Parses "0:5=0.1,5:20=0.2". Throws Error{usage}; overlaps of ranges are checked by the plan.
+/// Parses "0:5=0.1,5:20=0.2". Throws Error{usage}. Does not check whether ranges overlap, which
+/// plan_by_ranges does.
 [[nodiscard]] std::vector<HeightRange> parse_height_ranges(std::string_view text);
 
 } // namespace lamella::app

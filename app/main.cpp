@@ -8,7 +8,7 @@
 #include <vector>
 
 int main(int argc, char** argv) {
-    lamella::app::block_interrupts(); // from here on they end the program in order
+    lamella::app::block_interrupts(); // from here on, interrupts end the program in an orderly manner
     lamella::app::reserve_standard_streams();
     lamella::app::prepare_for_crashes();
     return lamella::app::run_program(lamella::app::all_commands(),

@@ -14,14 +14,15 @@
 using namespace lamella::app;
 
 int main(int argc, char** argv) {
-    block_interrupts(); // from here on they end the program in order, also by threads of MPI
+    block_interrupts(); // from here on, interrupts end the program in an orderly manner, even if threads of
+                        // MPI receive them
     reserve_standard_streams();
     prepare_for_crashes();
     MpiProcesses processes;
     const int code = run_program({slice_command(&processes)}, std::vector<std::string>(argv + 1, argv + argc),
                                  processes.process() == 0);
-    // All processes fail together, except for unforeseen errors: then the others would wait for this one in
-    // vain.
+    // All processes fail together, except for unforeseen errors, after which the others would wait for this
+    // one in vain.
     constexpr std::chrono::seconds patience{10};
     constexpr std::chrono::hours for_ever{24 * 365};
     if (!processes.meet(code == 0 ? for_ever : patience))

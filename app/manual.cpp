@@ -25,7 +25,7 @@ std::string plain(std::string_view text) {
         else
             out += c;
     }
-    // A line must not begin like a request.
+    // A line must not begin like a troff request.
     if (out.starts_with('.') || out.starts_with('\''))
         out.insert(0, "\\&");
     return out;

@@ -18,8 +18,8 @@ namespace lamella::app {
 namespace {
 
 void put(const std::string& text) {
-    // A single write, so that lines of several programs on one terminal do not mix. A failure of standard
-    // error cannot be reported anywhere.
+    // A single call, so that lines of several programs on one terminal do not mix. A failure of standard
+    // error is ignored, because there is no other place to report it.
     static_cast<void>(std::fwrite(text.data(), 1, text.size(), stderr));
     static_cast<void>(std::fflush(stderr));
 }
@@ -28,8 +28,8 @@ void put_json(const Json& object) {
     put(compact_json(object) + "\n");
 }
 
-/// Returns whether a terminal may interpret a byte as something else than a character, or a part of one. Tabs
-/// are allowed.
+/// Returns whether a terminal may interpret a byte as anything other than a character or a part of one. Tabs
+/// are permitted.
 bool may_be_unfit(char c) {
     return (c >= 0 && c < ' ' && c != '\t') || c == '\x7f' || c < 0;
 }
@@ -70,7 +70,8 @@ std::string one_line(std::string_view text) {
 std::string compact_json(const Json& value) {
     // Names of files need not be UTF-8.
     const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-    // JSON requires escapes only for control characters below the space; outside of strings there are none.
+    // JSON requires escapes only for control characters below the space. Other ones occur in strings only,
+    // and are escaped here.
     std::string result;
     for (std::size_t i = 0; i < text.size(); ++i) {
         const auto code = static_cast<unsigned char>(text[i]);
@@ -90,7 +91,7 @@ void Messages::progress(const Progress& progress) {
         return;
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
     if (style_ == ProgressStyle::json) {
-        // A process that waits for others repeats the same report again and again.
+        // A process that waits for others sends the same report repeatedly.
         if (last_ && last_->stage == progress.stage && last_->done == progress.done &&
             last_->total == progress.total)
             return;

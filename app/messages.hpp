@@ -23,14 +23,14 @@ using Json = nlohmann::ordered_json;
 /// Returns a line of a result for people: a name, and in the next column its value.
 [[nodiscard]] std::string result_line(std::string_view name, std::string_view value);
 
-/// Returns the activity of a stage: "reading".
+/// Returns a word for the activity of a stage, such as "reading".
 [[nodiscard]] std::string_view deed(Stage stage);
 
 enum class ProgressStyle {
-    bar,  ///< a bar, but only where standard error is a terminal
-    json, ///< everything on standard error is one JSON object a line
+    bar,  ///< a bar, but only if standard error is a terminal
+    json, ///< every line on standard error is a JSON object
     none,
-    silent, ///< no output, not even results and errors: another process speaks for this one
+    silent, ///< no output, not even results and errors, because another process reports for this one
 };
 
 class Messages {
@@ -46,27 +46,27 @@ class Messages {
             style_ = style;
     }
 
-    /// Reports progress. Must be called from one thread at a time, as Execution::progress is.
+    /// Prints progress. Must be called from one thread at a time, like Execution::progress.
     void progress(const Progress& progress);
 
-    /// Throws Error{output}.
+    /// Prints a result on standard output. Throws Error{output}.
     void result(std::string_view text);
     /// Prints "lamella: warning: ..." on one line, with options in place of fields (`with_options`).
     void warn(const std::string& text);
-    /// Prints the warnings of a file, each with its name as input_name or output_name give it.
+    /// Prints the warnings of a file, each with the name of the file (see input_name and output_name).
     void warn_of(const std::string& name, const std::vector<std::string>& warnings);
     /// Prints "lamella: error: ...", on one line.
     void error(const std::string& text, int exit_code);
-    /// Prints a text for people that cannot be a result because standard output carries data. Not printed for
-    /// programs.
+    /// Prints a text for people that cannot be a result because standard output carries data. Does nothing in
+    /// the style for programs.
     void note(const std::string& text);
-    /// Prints a summary of the writing of `output`: a result, or a note if the output itself is standard
-    /// output. A closed standard output is not an error here.
+    /// Prints a summary after `output` was written: as a result, or as a note if `output` is standard output.
+    /// A closed standard output is not an error here.
     void written(const std::string& text, std::string_view output);
-    /// Prints a summary of many files: for people, or as a JSON object for programs.
+    /// Prints a summary of many files: `text` for people, or `json` for programs.
     void sum_up(const std::string& text, const std::string& json);
-    /// Returns the line of an error, for a run that is ended at once, in any state: its writer must not hold
-    /// a lock. Returns "" if nothing is to be printed.
+    /// Returns the line of an error for a run that is ended at once, in any state, so that a caller can write
+    /// it without a lock. Returns "" if nothing must be printed.
     [[nodiscard]] std::string last_words(const std::string& text, int exit_code) const;
 
   private:
@@ -79,7 +79,7 @@ class Messages {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
     const bool on_terminal_ = isatty(STDERR_FILENO) != 0;
     bool bar_drawn_ = false;
-    std::optional<Progress> last_; ///< the last report to programs
+    std::optional<Progress> last_; ///< the last report in the style for programs
 };
 
 /// Returns the text on one line of valid UTF-8 with control characters escaped, which is safe for a terminal.

@@ -48,7 +48,7 @@ MpiProcesses::~MpiProcesses() {
     MPI_Finalize();
 }
 
-// Uses a separate communicator, since the others may be in use.
+// Uses a separate communicator, because others may be in use.
 bool MpiProcesses::meet(std::chrono::seconds patience) {
     MPI_Request everybody = MPI_REQUEST_NULL;
     MPI_Ibarrier(last_words, &everybody);
@@ -100,9 +100,9 @@ std::vector<std::uint64_t> MpiProcesses::exchange(std::span<const std::uint64_t>
     return incoming;
 }
 
-// MPI_Alltoallv is not used because its counts and offsets are limited to 2^31. In step s every process sends
-// to the one with the number s higher and receives from the one s lower, so no two send to the same process
-// at a time.
+// MPI_Alltoallv is not used because its counts and offsets are limited to 2^31. In step s, process p sends to
+// process p + s and receives from process p - s (modulo their number). So no two processes send to the same
+// process at the same time.
 void MpiProcesses::exchange(std::span<const std::span<const std::byte>> outgoing,
                             std::span<const std::span<std::byte>> incoming) {
     std::copy(outgoing[process_].begin(), outgoing[process_].end(), incoming[process_].begin());

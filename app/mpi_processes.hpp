@@ -1,6 +1,6 @@
 #pragma once
 
-// Processes of an MPI job. MPI is visible only in this header's source.
+// Processes of an MPI job. Only the source of this header includes MPI.
 
 #include "lamella/pipeline/processes.hpp"
 
@@ -32,9 +32,9 @@ class MpiProcesses final : public Communicator {
     void send(std::size_t to, std::string_view bytes) override;
     [[nodiscard]] std::string receive(std::size_t from) override;
 
-    /// Waits for the others to call this, too; returns false if they have not after that time.
+    /// Waits until all processes have called it. Returns false if some have not after `patience`.
     [[nodiscard]] bool meet(std::chrono::seconds patience);
-    /// Ends all processes, if this one cannot go on and the others may be waiting for it.
+    /// Ends all processes. Must be called if this process cannot continue and others may be waiting for it.
     [[noreturn]] static void abort(int exit_code);
 
   private:

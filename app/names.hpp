@@ -7,7 +7,7 @@
 
 namespace lamella::app {
 
-/// Returns the names of commands, formats, engines, ...: of any objects with a member `name`.
+/// Returns the names of objects that have a member `name`, such as commands, formats or engines.
 template <class Range>
 [[nodiscard]] std::vector<std::string> names_of(const Range& things) {
     std::vector<std::string> names;
@@ -25,7 +25,7 @@ template <class Range>
     return extension;
 }
 
-/// Returns the canonical path of a file, which need not exist: the target of any links. If the system cannot
+/// Returns the canonical path of a file, which need not exist, with all links resolved. If the system cannot
 /// determine it, for example in a folder without search permission, returns the path without "." and "..".
 [[nodiscard]] std::filesystem::path place_of(const std::string& name);
 

@@ -26,7 +26,7 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-/// Parses the whole of `text` as a number; returns whether it is one. Numbers too large for a double become
+/// Parses all of `text` as a number. Returns whether it is one. Numbers too large for a double become
 /// infinite.
 template <class Number>
 bool read(std::string_view text, Number& value) {

@@ -11,16 +11,16 @@
 
 namespace lamella::app {
 
-/// These throw Error{usage} that quotes the text and shows an example of what was expected. They accept
-/// decimal notation and exponents, and finite numbers only.
+/// These functions accept finite numbers in decimal notation, with or without an exponent. They throw
+/// Error{usage} that quotes the text and shows an example of the expected form.
 [[nodiscard]] double parse_number(std::string_view text);
 [[nodiscard]] double parse_positive(std::string_view text);
 [[nodiscard]] double parse_not_negative(std::string_view text);
 [[nodiscard]] std::uint64_t parse_count(std::string_view text);
-/// Includes both ends.
+/// Parses a whole number in [least, most].
 [[nodiscard]] std::uint32_t parse_count_within(std::string_view text, std::uint32_t least,
                                                std::uint32_t most);
-/// Parses "2G", "500M", "64k" (powers of 1000), "1GiB" (of 1024), or plain bytes.
+/// Parses "2G", "500M", "64k" (powers of 1000), "1GiB" (powers of 1024), or a number of bytes.
 [[nodiscard]] std::uint64_t parse_byte_size(std::string_view text);
 /// Parse "1,2,3" or "1 2 3".
 [[nodiscard]] std::vector<double> parse_numbers(std::string_view text);
@@ -35,7 +35,8 @@ namespace lamella::app {
 [[nodiscard]] std::string exact(double value);
 /// Returns a text for people: "31.75", "115,343", "1.2e-07".
 [[nodiscard]] std::string brief(double value);
-/// Returns the same for a height in mm; rounding errors of 0 in single precision become 0.
+/// Returns the same for a height in mm; values that differ from 0 only by rounding in single precision become
+/// "0".
 [[nodiscard]] std::string height(double mm);
 /// Returns "102,812".
 [[nodiscard]] std::string grouped(std::uint64_t value);

@@ -43,7 +43,7 @@ Option scale_option(std::optional<std::vector<double>>& target) {
                });
 }
 
-/// Returns whether both are one file: a file can have several names.
+/// Returns whether both names refer to the same file.
 bool are_same(const std::string& first, const std::string& second) {
     std::error_code ignored;
     return place_of(first) == place_of(second) || std::filesystem::equivalent(first, second, ignored);
@@ -295,8 +295,8 @@ void check_format(const LayerFormat& chosen, bool given, std::string_view option
 }
 
 std::vector<Option> layer_output_options(LayerOutputOptions& target) {
-    // Options of some formats have no default: a configuration file that lists all defaults must suit any
-    // format.
+    // Options of some formats have no default, because a configuration file with all defaults must be valid
+    // for any format.
     return {
         choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
                names_of(layer_formats()), target.format),

@@ -1,6 +1,6 @@
 #pragma once
 
-// Rows for the tables of options, and groups of options that several commands share.
+// Functions that make options, and groups of options that several commands share.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/transform.hpp"
@@ -23,7 +23,7 @@
 
 namespace lamella::app {
 
-// Each row refers to its target, which must outlive the command; the target's value is the default.
+// Each option refers to its target, which must outlive the command; the target's value is the default.
 
 [[nodiscard]] Option row(std::string name, ValueKind kind, std::string placeholder, std::string help,
                          std::function<void(const std::string&)> set);
@@ -39,8 +39,9 @@ namespace lamella::app {
                             std::vector<std::string> choices, std::string& target);
 [[nodiscard]] Option text(std::string name, std::string placeholder, std::string help, std::string& target);
 [[nodiscard]] Option input_file(std::string name, std::string help, std::string& target);
-/// `extensions`, such as ".html", are those that the name may have, besides none at all: any other would
-/// suggest another format. Help texts mention the first one. If empty, any name is allowed.
+/// `extensions`, such as ".html", are those that the file name may have; it may also have none. Any other
+/// extension would suggest another format. Help texts mention the first one. If `extensions` is empty, any
+/// name is allowed.
 [[nodiscard]] Option output_file(std::string name, std::string help, std::string& target,
                                  std::vector<std::string_view> extensions = {});
 /// A limit in bytes, such as 500M.
@@ -57,7 +58,7 @@ struct PlacementOptions {
 
     /// Returns the millimetres per unit, if a unit is given.
     [[nodiscard]] std::optional<double> unit_mm() const;
-    /// Returns everything but the unit. Throws Error{usage}.
+    /// Returns the placement without the unit. Throws Error{usage}.
     [[nodiscard]] Transform pose() const;
     [[nodiscard]] bool given() const;
 };
@@ -65,10 +66,10 @@ struct PlacementOptions {
 [[nodiscard]] std::string unit_name(double mm);
 [[nodiscard]] Option unit_option(std::string& target);
 [[nodiscard]] OptionGroup placement_options(PlacementOptions& target);
-/// Returns the same without unit and direction, for generated bodies.
+/// Returns the placement options for generated bodies, without unit and direction.
 [[nodiscard]] OptionGroup pose_options(PlacementOptions& target);
 
-/// Execution of the computation, and the style of its messages.
+/// Options for the execution of the computation and for the style of its messages.
 struct RunOptions {
     std::optional<std::uint64_t> threads;
     std::string progress = "bar";
@@ -81,7 +82,7 @@ struct RunOptions {
 
 /// Content to read from a file, and its limits.
 struct ReadLimits {
-    MeshRoles include; ///< besides parts
+    MeshRoles include; ///< roles that are read in addition to parts
     std::optional<std::uint64_t> max_triangles;
     std::optional<std::uint64_t> max_memory; ///< bytes
 
@@ -90,7 +91,7 @@ struct ReadLimits {
 };
 [[nodiscard]] Option include_option(ReadLimits& target);
 [[nodiscard]] Option max_triangles_option(ReadLimits& target);
-/// For commands that hold their input in memory; `what` describes the input in their help.
+/// Returns the option for commands that hold their input in memory; `what` describes the input in the help.
 [[nodiscard]] Option max_memory_option(ReadLimits& target, std::string_view what);
 
 struct LayerOutputOptions {
@@ -108,7 +109,8 @@ struct LayerOutputOptions {
 
 /// Returns the names of the formats that take an option, for its help.
 [[nodiscard]] std::string formats_with(bool LayerFormat::*takes);
-/// Throws Error{usage} that lists these formats, if the option is given and the format is none of them.
+/// Throws Error{usage} that lists these formats if the option is given and the chosen format is not one of
+/// them.
 void check_format(const LayerFormat& chosen, bool given, std::string_view option, bool LayerFormat::*takes);
 
 struct LayerStepOptions {
@@ -122,9 +124,10 @@ struct LayerStepOptions {
     [[nodiscard]] LayerSteps steps() const;
 };
 [[nodiscard]] OptionGroup layer_step_options(LayerStepOptions& target);
-/// Returns "3 layers other than sliced: 2 rings united, ..."; `than` describes the layers before the steps.
+/// Returns a text such as "3 layers other than sliced: 2 rings united, ..."; `than` describes the layers
+/// before the steps.
 [[nodiscard]] std::string changes_text(const LayerSteps& steps, const LayerChanges& changes);
-/// Returns a warning if steps left none of the contours; else "".
+/// Returns a warning if no contour is left after the steps; else "".
 [[nodiscard]] std::string nothing_left(std::uint64_t layers, std::uint64_t contours,
                                        const LayerChanges& changes);
 
@@ -133,8 +136,8 @@ struct LayerStepOptions {
 /// Throws Error{usage} that names two options, if both are given and cannot be combined.
 void check_conflict(bool first, bool second, std::string_view names, std::string_view reason);
 
-/// Throws Error{usage} if a result would overwrite one of its inputs, or another result. `more` are results
-/// that no option names.
+/// Throws Error{usage} if a result would overwrite an input or another result. `more` are results that are
+/// not named by options.
 void check_outputs(const Command& command, const std::vector<NamedFile>& more = {});
 
 } // namespace lamella::app

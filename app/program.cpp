@@ -49,8 +49,8 @@ namespace {
                 fmt::format("there is no command \"{}\"; lamella --help lists them", excerpt(word)));
 }
 
-/// Runs a command. If neither the library nor the command has named a file in an error about data, the inputs
-/// are prepended.
+/// Runs a command. If an error about data does not name a file, adds the names of the inputs at its
+/// beginning.
 int run_command(const Command& command, const Context& context) {
     const auto inputs = [&] {
         const std::vector<NamedFile> files = files_of(command, ValueKind::input);
@@ -131,8 +131,8 @@ int run_program(std::vector<Command> commands, const std::vector<std::string>& w
     Messages messages;
     if (!speaks)
         messages.set_style(ProgressStyle::silent);
-    // Covers the time from opening the first file to the last message: a pipe may block the program at any
-    // point.
+    // Exists from before the first file is opened until after the last message, because a pipe may block the
+    // program at any time.
     std::optional<Interrupt> interrupt;
     int code = 0;
     try {

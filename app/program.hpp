@@ -9,8 +9,8 @@
 
 namespace lamella::app {
 
-/// Runs the command line with these commands, prints its results, and returns the exit code. Prints nothing
-/// if another process `speaks` for this one.
+/// Runs the command line with these commands, prints the results, and returns the exit code. Prints nothing
+/// if `speaks` is false, because another process reports for this one.
 [[nodiscard]] int run_program(std::vector<Command> commands, const std::vector<std::string>& words,
                               bool speaks = true);
 

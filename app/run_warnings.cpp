@@ -33,7 +33,7 @@ std::vector<std::string> run_warnings(const FileJob& job, const FileResult& resu
     for (std::size_t file = 0; file < result.files.size(); ++file)
         if (const std::string text = result.near_faces[file].text(result.report.layers); !text.empty())
             add(input_name(result.files[file].path), text);
-    if (!job.shard && result.changes) // other shards may have some
+    if (!job.shard && result.changes) // other shards may have contours
         if (const std::string nothing =
                 nothing_left(result.report.layers, result.report.contours, *result.changes);
             !nothing.empty())

@@ -14,11 +14,11 @@ namespace lamella::app {
 /// read again.
 [[nodiscard]] std::string ask_info(const std::string& path);
 
-/// Returns the name of all files of a plate: "a.stl", "a.stl and 2 more files".
+/// Returns a name for the files of a plate: "a.stl", "a.stl and 2 more files".
 [[nodiscard]] std::string inputs_name(std::span<const PlateInput> inputs);
 
-/// Returns the warnings of reading the files, of the mesh as its layers show it, and of content that the
-/// format cannot hold. Each names its file.
+/// Returns the warnings about reading the files, about defects of meshes that show in layers, and about
+/// content that the format cannot represent. Each begins with its file.
 [[nodiscard]] std::vector<std::string> run_warnings(const FileJob& job, const FileResult& result);
 
 } // namespace lamella::app

@@ -17,10 +17,10 @@ namespace lamella::app {
 /// unreached_mm2.
 [[nodiscard]] Figures scan_figures(std::span<const ExposureResult> exposures);
 
-/// Returns the same figures as an object; with `regions` by their names, if there are several.
+/// Returns the same figures as an object; if there are several regions, also the figures by region, under the
+/// key `regions`.
 [[nodiscard]] Json scan_json(std::span<const ExposureResult> exposures);
-/// Figures of each region, by their names in the order of the table: contour_vectors, hatch_vectors,
-/// marked_mm.
+/// Figures of each region, ordered as in the table of regions: contour_vectors, hatch_vectors, marked_mm.
 struct RegionFigures {
     std::string name;
     Json json;
@@ -28,16 +28,17 @@ struct RegionFigures {
 };
 [[nodiscard]] std::vector<RegionFigures> region_figures(std::span<const ExposureResult> exposures);
 
-/// Returns the figures of one layer, which are in the order of the exposures.
+/// Returns the figures of one layer. `layer` must be in the order of `exposures`.
 [[nodiscard]] Json scan_json(std::span<const ExposureResult> exposures, std::span<const ScanFigures> layer);
 
-/// Adds `energy_j_mm3`: the volumetric energy density; null without volume.
+/// Adds the key `energy_j_mm3`, the volumetric energy density; null if the volume is 0.
 [[nodiscard]] Json with_density(Json scan, double volume_mm3);
 
-/// Adds `unreached_layers`: those with more unreached material than is accepted.
+/// Adds the key `unreached_layers`, the number of layers with more unreached material than the strategy
+/// accepts.
 [[nodiscard]] Json with_unreached(Json scan, const UnreachedMaterial& unreached);
 
-/// Adds `hash`: that of the vectors of a layer.
+/// Adds the key `hash`, the hash of the vectors of a layer.
 [[nodiscard]] Json with_hash(Json scan, std::uint64_t hash);
 
 /// Returns "1,234,567 vectors, 12.3 m marked, 1.2 m jumped, 1 h 02 min, 45.0 kJ".

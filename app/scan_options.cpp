@@ -62,8 +62,8 @@ std::string preset_text(Choice value) {
     return std::string(named_values(value).name(value));
 }
 
-/// Returns an option that sets a field of one or several rules. It has no default: without it the strategy
-/// applies.
+/// Returns an option that sets a field of one or several rules. It has no default, because the strategy has
+/// one.
 template <class Rule, class Value>
 Option field_option(ScanArguments& target, const std::string& name,
                     std::span<const StrategyField<Rule>> fields, Value Rule::*member,

@@ -14,7 +14,7 @@
 namespace lamella::app {
 
 struct ScanArguments {
-    std::string file; ///< of the strategy; "" takes the defaults
+    std::string file; ///< file of the strategy; "" means the defaults
     /// Changes by options, with their names, in the order in which they were given.
     std::vector<std::pair<std::string, std::function<void(ScanStrategy&)>>> changes = {};
 

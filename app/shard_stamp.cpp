@@ -62,8 +62,8 @@ Json output_json(const std::string& path, const Execution& execution) {
     return {{"bytes", std::filesystem::file_size(path, ignored)}, {"hash", std::move(hash)}};
 }
 
-/// Does the same for a file beside it; null if it was not requested, and for pipes and devices, which keep no
-/// data.
+/// Does the same for a further result file. Returns null if it was not requested, and for pipes and devices,
+/// which keep no data.
 Json file_json(const std::string& path, const Execution& execution) {
     std::error_code ignored;
     return std::filesystem::is_regular_file(path, ignored) ? output_json(path, execution) : Json();
@@ -197,7 +197,7 @@ void stamp_shard(const FileJob& job, const std::string& stats, const FileResult&
 
 void check_stamps(const std::vector<std::string>& paths, const Execution& execution) {
     const auto has_stamp = [](const std::string& path) {
-        std::error_code ignored; // if the path cannot be examined, or is too long, there is no stamp
+        std::error_code ignored; // if the path cannot be examined or is too long, there is no stamp
         return std::filesystem::exists(stamp_path(path), ignored);
     };
     if (std::none_of(paths.begin(), paths.end(), has_stamp))

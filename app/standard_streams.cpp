@@ -6,8 +6,8 @@
 namespace lamella::app {
 
 void reserve_standard_streams() noexcept {
-    // O_PATH descriptors can be neither read nor written, and "/" exists on every system. Each open takes the
-    // lowest free number.
+    // O_PATH descriptors can be neither read nor written, and "/" exists on every system. Each call of open
+    // returns the lowest free number.
     for (const int number : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
         if (fcntl(number, F_GETFD) < 0)
             static_cast<void>(open("/", O_PATH | O_DIRECTORY));

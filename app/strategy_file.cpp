@@ -78,7 +78,7 @@ std::string meant(std::string_view word, const std::vector<std::string>& candida
 
 void take(const TomlValue& value, const std::string& name, double& into) {
     if (const auto* number = value.as<double>())
-        into = *number + 0.0; // turns -0 into 0, as files have it
+        into = *number + 0.0; // turns -0 into 0, as it is written in files
     else if (const auto* whole = value.as<std::int64_t>())
         into = static_cast<double>(*whole);
     else
@@ -258,7 +258,7 @@ class StrategyReading {
     void read_support(const TomlValue& value) {
         SupportRule& rule = strategy.support;
         read_fields("support.", table_of(value, "support"), rule,
-                    std::span<const StrategyField<SupportRule>>(), // has tables only
+                    std::span<const StrategyField<SupportRule>>(), // it has only tables
                     {{std::string(contours_key),
                       [&](const TomlValue& inner) {
                           read_contours("support.contours", inner, rule.contours);
@@ -311,7 +311,8 @@ class StrategyReading {
             origins_[fmt::format("{}.{}", rule, key)] = origin;
     }
 
-    /// Throws for an unused parameter set, whose name may be mistyped: its powers would have no effect.
+    /// Throws for an unused parameter set, because its name is probably mistyped and its values would have no
+    /// effect.
     void check_use() const {
         std::vector<std::string> used;
         for (const auto& [name, set] : sets_)
@@ -323,7 +324,8 @@ class StrategyReading {
                                                              excerpt(set.origin.name), meant(name, used)));
     }
 
-    /// Adds the location to the library's error, which names the field; else the location of its table.
+    /// Checks the strategy. Adds to the library's error the location of the field that it names or, if the
+    /// file does not have the field, that of its table.
     void check_ranges() const {
         try {
             check_strategy(strategy);
@@ -344,7 +346,7 @@ class StrategyReading {
     }
 
     std::map<std::string, Set> sets_ = preset_sets();
-    std::map<std::string, Origin> origins_; ///< by the library's path of the field
+    std::map<std::string, Origin> origins_; ///< by the path by which the library names the field
 };
 
 // ----------------------------------------------------------------------------------------------- write
@@ -371,7 +373,7 @@ std::string value_text(double value) {
 }
 template <class Value>
 std::string value_text(Value value) {
-    return value_json(value).dump(); // TOML has the same form
+    return value_json(value).dump(); // TOML and JSON have the same form here
 }
 
 template <class Choice>

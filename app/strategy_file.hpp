@@ -10,15 +10,15 @@
 
 namespace lamella::app {
 
-/// Reads a strategy; fields absent from the file have their defaults. Throws Error{usage} with file, line,
-/// found and expected text: for invalid TOML, unknown keys, values out of range, and missing or unused
-/// parameter sets; Error{input} if the file cannot be read.
+/// Reads a strategy. Fields that are absent from the file have their defaults. Throws Error{usage}, with
+/// file, line, found and expected text, for invalid TOML, unknown keys, values out of range, and missing or
+/// unused parameter sets; and Error{input} if the file cannot be read.
 [[nodiscard]] ScanStrategy read_strategy(const std::string& path);
 
-/// Returns the whole strategy as such a file, with comments about units and meanings.
+/// Returns the whole strategy as such a file, with comments that explain units and meanings.
 [[nodiscard]] std::string strategy_text(const ScanStrategy& strategy);
 
-/// Returns the same as JSON, under the same names.
+/// Returns the whole strategy as JSON with the same names.
 [[nodiscard]] Json strategy_json(const ScanStrategy& strategy);
 
 } // namespace lamella::app

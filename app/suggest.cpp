@@ -32,14 +32,15 @@ std::size_t distance(std::string_view a, std::string_view b) {
 } // namespace
 
 std::string nearest(std::string_view word, std::span<const std::string> candidates) {
-    // Longer words are not mistyped names, and the table grows with the square of the length.
+    // Longer words are not mistyped names, and the size of the table is proportional to the square of the
+    // length.
     constexpr std::size_t longest = 64;
     if (word.size() > longest)
         return {};
     std::string best;
     std::size_t least = std::max<std::size_t>(word.size() / 3, 1) + 1;
     for (const std::string& candidate : candidates) {
-        // The beginning of a name suggests that name.
+        // A word that is the beginning of a name suggests that name.
         const bool begun = word.size() >= 3 && candidate.starts_with(word);
         const std::size_t d = begun ? 1 : distance(word, candidate);
         if (d < least) {

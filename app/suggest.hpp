@@ -8,7 +8,7 @@
 
 namespace lamella::app {
 
-/// Returns the candidate that a typing error could turn into `word`, or "" if none is near.
+/// Returns the candidate of which `word` could be a mistyped form; "" if none is similar enough.
 [[nodiscard]] std::string nearest(std::string_view word, std::span<const std::string> candidates);
 
 } // namespace lamella::app

@@ -62,7 +62,8 @@ std::string read_text_file(const std::string& path) {
             throw Error(ErrorKind::input, fmt::format("{}: there is no such file", name));
         throw Error(ErrorKind::input, fmt::format("{}: cannot be read: {}", name, reason(error)));
     };
-    // Standard input is read by its descriptor: a socket, for example, cannot be opened again by its name.
+    // Standard input is read by its descriptor, because some files, such as a socket, cannot be opened by
+    // name.
     const Descriptor file(path == "-" ? dup(STDIN_FILENO) : open(path.c_str(), O_RDONLY | O_CLOEXEC));
     if (file.number < 0)
         refuse(errno);

@@ -11,7 +11,7 @@ namespace lamella::app {
 /// Error{input}.
 [[nodiscard]] std::string read_text_file(const std::string& path);
 
-/// Writes as write_whole_file, except that "-" is printed. Throws Error{output}.
+/// Writes the file like write_whole_file, except that "-" is printed. Throws Error{output}.
 void write_text_file(const std::string& path, std::string_view text);
 
 /// Prints a result on standard output. Throws Error{output}.

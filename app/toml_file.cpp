@@ -1,6 +1,6 @@
-// The TOML library is visible in this source only.
+// Only this source includes the TOML library.
 #define TOML_HEADER_ONLY 1
-// Its assertions fail on some files that its parser rejects a few lines later, such as one of "[" and a
+// Its assertions fail on some files that its parser would reject a few lines later, such as "[" followed by a
 // control character.
 #define TOML_ASSERT(condition) static_cast<void>(0)
 
@@ -15,8 +15,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-// If a letter beyond ASCII begins a key, it reaches a branch marked as unreachable, but still returns the
-// correct answer.
+// If a key begins with a non-ASCII letter, the library reaches a branch that is marked as unreachable, but
+// returns the correct result.
 #ifdef __clang__
 #pragma clang diagnostic push
 #pragma clang diagnostic ignored "-Wignored-attributes" // of templates that were included before
@@ -85,7 +85,7 @@ TomlTable read_toml(const std::string& path) {
     }
 }
 
-// TOML's basic strings need the same escapes as those of JSON, and one more.
+// Basic strings of TOML need the escapes of JSON strings, and one more.
 std::string toml_quoted(const std::string& text) {
     std::string escaped;
     try {

@@ -1,6 +1,6 @@
 #pragma once
 
-// TOML files, as values that know their locations.
+// Reads TOML files as values with their locations in the file.
 
 #include <cstdint>
 #include <string>
@@ -17,7 +17,7 @@ using TomlTable = std::vector<TomlEntry>;
 using TomlList = std::vector<TomlValue>;
 
 struct TomlValue {
-    std::string location; ///< file and line of its key, or in a list of the value itself: "job.toml:3"
+    std::string location; ///< file and line of its key or, in a list, of the value itself: "job.toml:3"
     /// Empty for dates and times.
     std::variant<std::monostate, std::string, bool, std::int64_t, double, TomlList, TomlTable> value;
 

@@ -25,7 +25,7 @@
 namespace lamella::app {
 namespace {
 
-// Packets preserve message boundaries, and the end of the other side appears as an empty one.
+// Packets preserve message boundaries; an empty packet means that the other side has ended.
 constexpr int packets = SOCK_SEQPACKET | SOCK_CLOEXEC;
 constexpr int moment_ms = 20;
 // Asks a worker to stop. No other program sends this signal.
@@ -98,7 +98,7 @@ void WorkerTeam::start(const WorkerTask& task) {
         worker = first_of([](const Worker& w) { return !w.task; });
     if (worker == workers_.end())
         throw Error(ErrorKind::internal, "all workers have a task");
-    // A worker may have died since its last answer: then a new one replaces it.
+    // A worker may have died since its last answer. A new one then replaces it.
     while (worker->process < 0 || !send_packet(worker->socket, &task, sizeof task)) {
         if (worker->process > 0)
             static_cast<void>(answer_of(*worker));
@@ -162,7 +162,7 @@ void WorkerTeam::serve(int socket) const {
 }
 
 std::vector<WorkerAnswer> WorkerTeam::wait() {
-    // Only busy workers: poll accepts at most as many as this process may have open.
+    // Only busy workers are polled, because poll limits the number of descriptors.
     std::vector<pollfd> awaited;
     std::vector<Worker*> at_work;
     for (Worker& worker : workers_)

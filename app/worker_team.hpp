@@ -15,7 +15,7 @@
 
 namespace lamella::app {
 
-/// A request to a worker; only its work interprets the numbers.
+/// A request to a worker, whose work interprets the numbers.
 struct WorkerTask {
     std::size_t first = 0;
     std::size_t count = 1;
@@ -26,20 +26,20 @@ struct WorkerAnswer {
     WorkerTask task;
     std::optional<std::string> text; ///< result of the work; unset if the process ended before
     int status = 0;                  ///< exit status, as of waitpid
-    bool begun = true; ///< false if the process ended before it was a worker: others may do the task
+    bool begun = true; ///< false if the process ended before it could work; others may do the task
 };
 
-/// Worker processes: copies of this process by fork, each of which does one task after the other. A worker is
-/// started when the first task needs it, and restarted for a later task if it has died; so a task costs two
+/// Worker processes, which are forks of this process, each of which does one task after the other. A worker
+/// is started when a task needs it, and restarted for a later task if it has died. So a task costs two
 /// messages, not a process.
 ///
 /// Workers stop on request, and when this process dies for any reason. They do not receive the signals that
-/// its Interrupt waits for: a terminal sends these to all processes at once, and a worker that was stopped
-/// twice would leave without an answer. For one thread; its process may have other threads that wait.
+/// Interrupt handles, because a terminal sends these to all processes at once, and a worker that is stopped
+/// twice ends without an answer. To be used by one thread; other threads of its process must only wait.
 class WorkerTeam {
   public:
-    /// Runs in a worker. Must not throw. The flag requests the worker to stop. At most `longest_answer` bytes
-    /// of the result arrive.
+    /// The work, which runs in a worker. Must not throw. A request on the flag means that it should stop. The
+    /// result is truncated to `longest_answer` bytes.
     using Work = std::function<std::string(const WorkerTask&, const CancelFlag&)>;
     static constexpr std::size_t longest_answer = std::size_t{1} << 16; ///< well below the limit of a socket
 
@@ -49,16 +49,16 @@ class WorkerTeam {
     WorkerTeam(const WorkerTeam&) = delete;
     WorkerTeam& operator=(const WorkerTeam&) = delete;
 
-    /// Passes a task to an idle worker: there must be fewer tasks in progress than workers. Throws
-    /// Error{limit} if no started worker is idle and no further process can be started.
+    /// Passes a task to an idle worker. Requires that fewer tasks are in progress than there are workers.
+    /// Throws Error{limit} if no started worker is idle and no further process can be started.
     void start(const WorkerTask& task);
 
     /// Asks busy workers to stop soon; they still answer.
     void stop() noexcept;
     [[nodiscard]] bool is_busy() const noexcept;
 
-    /// Waits for answers; returns none after a moment without any. Throws Error{limit} if no started process
-    /// could become a worker.
+    /// Waits for answers. Returns an empty list if none arrives for a moment. Throws Error{limit} if no
+    /// process could be started as a worker.
     [[nodiscard]] std::vector<WorkerAnswer> wait();
 
   private:

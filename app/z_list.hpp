@@ -7,9 +7,9 @@
 
 namespace lamella::app {
 
-/// Reads the numbers of a text file, one a line with # comments, or of a JSON array. Throws Error{usage} with
-/// the line of an entry that is not a number or not above the one before it, Error{input} if the file cannot
-/// be read or is empty.
+/// Reads the numbers of a text file, one per line and with # comments, or those of a JSON array. Throws
+/// Error{usage} with the line of an entry that is not a number or not above the one before it, Error{input}
+/// if the file cannot be read or is empty.
 [[nodiscard]] std::vector<double> read_z_list(const std::string& path);
 
 } // namespace lamella::app
