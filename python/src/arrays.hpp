@@ -10,8 +10,8 @@
 
 namespace lamella::python {
 
-/// Returns contiguous numbers, row by row, as an array of this shape, without a copy. The array keeps
-/// `owner`, which owns the memory, alive, and is read-only.
+/// Returns contiguous numbers, row by row, as a read-only array of this shape, without a copy. The array
+/// keeps `owner`, the owner of the memory, alive.
 template <class T>
 [[nodiscard]] pybind11::array_t<T> view(const T* first, std::vector<pybind11::ssize_t> shape,
                                         const pybind11::handle& owner) {
@@ -20,7 +20,7 @@ template <class T>
     return array;
 }
 
-/// Returns a new array with a value for each element of the range.
+/// Returns a new array with the result of `value` for each element of the range.
 template <class T, class Range, class Value>
 [[nodiscard]] pybind11::array_t<T> array_of(const Range& range, const Value& value) {
     pybind11::array_t<T> array(static_cast<pybind11::ssize_t>(std::size(range)));

@@ -33,7 +33,8 @@ const char* class_name(ErrorKind kind) {
     return "InternalError";
 }
 
-/// Texts contain paths, which are bytes: those that are not UTF-8 are escaped, as in the program.
+/// Raises the exception. The text may contain paths, of which bytes that are not UTF-8 are escaped, as in the
+/// program.
 void raise(ErrorKind kind, const char* text) {
     const py::object type = py::module_::import("lamella._errors").attr(class_name(kind));
     PyErr_SetObject(type.ptr(), py::str(printable(text)).ptr());

@@ -106,7 +106,7 @@ read_either(const std::string& path, std::optional<double> unit_mm, bool strict,
     return {read, message_texts(warnings)};
 }
 
-/// A slice file under construction. If it is closed or destroyed before `finish`, it leaves nothing behind.
+/// A slice file under construction. If it is closed or destroyed before `finish`, no file is left behind.
 class StackWriter {
   public:
     StackWriter(const std::string& path, const std::string& format, const LayerFileInfo& info,
@@ -149,7 +149,7 @@ class StackWriter {
     std::unique_ptr<LayerWriter> writer_;
 };
 
-/// Returns an option by its keyword, if it is given.
+/// Returns the value of an option by its keyword, if it is given.
 template <class T>
 std::optional<T> option(const py::dict& given, const char* keyword) {
     return given.contains(keyword) ? std::optional(given[keyword].cast<T>()) : std::nullopt;
@@ -321,8 +321,8 @@ std::pair<py::dict, py::list> vectors_verified(const std::string& path, const Me
     return {fields, message_texts(warnings)};
 }
 
-/// Returns the tolerance; for each plane the indices of its layers in the stacks, or None, same, agree,
-/// distance and its location; and whether the stacks are cut at different heights.
+/// Returns the tolerance, a list of planes, and whether the stacks are cut at different heights. A plane has
+/// the indices of its layers in the stacks, or None, and `same`, `agree`, the distance and its location.
 py::tuple compared(const Stack& first, const Stack& second, std::optional<double> tolerance, unsigned threads,
                    const py::object& progress) {
     const StackComparison found = result_of(threads, progress, [&](const Execution& execution) {

@@ -4,7 +4,7 @@
 
 namespace lamella::python {
 
-/// Reading, writing, checking and comparing layers.
+/// Binds functions and classes that read, write, check and compare layers.
 void bind_files(pybind11::module_& module);
 
 } // namespace lamella::python

@@ -1,6 +1,6 @@
 #pragma once
 
-// Work without the interpreter lock, safe even if the interpreter ends meanwhile.
+// Runs work without the interpreter lock; safe even if the interpreter ends in the meantime.
 
 #include <pybind11/pybind11.h>
 
@@ -13,9 +13,9 @@
 
 namespace lamella::python {
 
-/// Calls a function that may wait for the interpreter lock. While the interpreter ends, Python before 3.14
-/// ends daemon threads that request the lock by unwinding their stacks. Unwinding through a destructor would
-/// abort the process, so the thread waits here for the end of the process, as in Python 3.14.
+/// Calls a function that may wait for the interpreter lock. When the interpreter ends, Python before 3.14
+/// unwinds the stacks of daemon threads that request the lock. Unwinding through a destructor would abort the
+/// process, so the thread instead waits here for the end of the process, as in Python 3.14.
 template <class Call>
 void or_wait_for_the_end(const Call& call) {
 #ifdef __GLIBCXX__

@@ -15,7 +15,7 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-// Enough for the threads not to wait for each other, and little memory: 16 MB.
+// 16 MB, so that threads need not wait for each other.
 constexpr std::size_t most_points = (std::size_t{16} << 20) / sizeof(Point2);
 
 } // namespace
@@ -111,7 +111,7 @@ LayerPointer LayerStream::next() {
                 const GilRelease released;
                 found = queue_.take(layer);
             }
-            // A copy, since the listener may close the stream, which releases its listener.
+            // A copy, because the listener may close the stream, which releases the listener.
             report(progress_, py::object(listener_));
             check_signals();
             if (found == LayerQueue::Found::end)
@@ -126,7 +126,7 @@ LayerPointer LayerStream::next() {
         close();
         throw;
     } catch (...) {
-        if (closed_) // by another thread in the meantime
+        if (closed_) // closed by another thread in the meantime
             throw py::stop_iteration();
         close();
         throw;
@@ -136,7 +136,7 @@ LayerPointer LayerStream::next() {
 
 void LayerStream::close() {
     closed_ = true;
-    // If several threads close it, one gets the worker.
+    // If several threads close the stream, only one gets the worker.
     std::thread worker = std::move(worker_);
     {
         const GilRelease released;
@@ -161,7 +161,8 @@ LayerStream::Beside LayerStream::beside(std::uint64_t below, std::uint64_t above
     const std::uint64_t last = plan().layers.back().index;
     const std::uint64_t lowest = first - std::min(first, below);
     return result_of(threads_, py::none(), [&](const Execution& execution) {
-        // Includes layers already taken: the remaining ones may miss the part, and a plan must not.
+        // Includes layers that were already taken, because all remaining layers may miss the part, which is
+        // an error for a plan.
         const Plan wider =
             cuts_.only(std::min(lowest, plan().layers.front().index), last + 1 + above, *mesh_, execution);
         const auto sliced = [&](const auto& wanted) {

@@ -24,20 +24,20 @@
 
 namespace lamella::python {
 
-/// A bounded queue of layers between the threads that make them and the one that takes them.
+/// A bounded queue of layers between the threads that slice them and the thread that takes them.
 class LayerQueue {
   public:
     /// Adds a layer, and waits until there is space for it. Throws Error{cancelled} once the queue is closed.
     void put(Layer&& layer);
-    /// Marks the end of the layers; `failure` is the reason if it is an error.
+    /// Marks the end of the layers. If an error is the reason, `failure` is this error.
     void end(std::exception_ptr failure);
 
-    /// Closes the queue: no more layers will be taken.
+    /// Closes the queue. Must be called when no more layers will be taken.
     void close();
     [[nodiscard]] const CancelFlag& closed() const noexcept { return closed_; }
 
     enum class Found { layer, nothing_yet, end };
-    /// Takes a layer, and waits a moment for it. At the end throws the failure if there was one.
+    /// Takes a layer; waits a moment if there is none. At the end, throws the failure if there was one.
     Found take(Layer& layer);
 
   private:
@@ -51,17 +51,17 @@ class LayerQueue {
     std::exception_ptr failure_;
 };
 
-/// A plan, and the layering that it was made with.
+/// A plan, and the layering from which it was made.
 struct CutPlan {
     Plan plan;
     Layering layering;
 
-    /// Returns the same plan restricted to these layers, as far as they exist.
+    /// Returns the plan restricted to the layers [begin, end) that exist.
     [[nodiscard]] Plan only(std::uint64_t begin, std::uint64_t end, const SourceMesh& mesh,
                             const Execution& execution) const;
 };
 
-/// Slices while the caller takes the layers, one by one and in ascending z.
+/// Slices in the background, while the caller takes the layers one by one, in ascending z.
 class LayerStream {
   public:
     LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, unsigned threads,
@@ -83,8 +83,8 @@ class LayerStream {
     /// Returns the bottom of the next layer. Throws Error{usage} if none is left.
     [[nodiscard]] double bottom() const;
 
-    /// Returns this many layers directly below the next one, and directly above the last one, neither of
-    /// which the stream yields: in ascending z, fewer at the ends of the part.
+    /// Returns layers that the stream does not yield: those directly below its next layer, and those directly
+    /// above its last one, in ascending z. There are fewer than requested at the ends of the part.
     using Beside = std::pair<std::vector<LayerPointer>, std::vector<LayerPointer>>;
     [[nodiscard]] Beside beside(std::uint64_t below, std::uint64_t above) const;
 

@@ -54,7 +54,7 @@ py::array_t<double> view_of(std::span<const Point2> points, const py::object& ow
 }
 
 py::array_t<std::int64_t> offsets_of(const py::object& self) {
-    // Signed, since in NumPy sums of signed and unsigned numbers are floating-point.
+    // Signed, because in NumPy the sum of signed and unsigned numbers is floating-point.
     const std::vector<std::uint64_t>& offsets = layer_of(self).offsets;
     const auto* first = reinterpret_cast<const std::int64_t*>(offsets.data());
     return view(first, {static_cast<py::ssize_t>(offsets.size())}, self);
@@ -76,7 +76,7 @@ std::string hash_text(const SharedLayer& layer) {
     return text.data();
 }
 
-/// Returns the position that an index denotes among `size` items; negative ones count from the end.
+/// Returns the position among `size` items that an index denotes; negative indices count from the end.
 std::size_t place_in(const py::object& index, std::size_t size, const char* what) {
     if (PyIndex_Check(index.ptr()) == 0)
         throw py::type_error(std::string("the number of a ") + what + ": expected a whole number, found " +
@@ -152,12 +152,12 @@ LayerPointer layer_of_arrays(const LayerHeader& header, const Doubles& points, c
     layer.rings = rings;
     if (rings > layer.contours())
         throw Error(ErrorKind::input, "there are more closed contours than contours");
-    // Not normalised: the order of scan vectors is significant.
+    // Not converted to normal form, because the order of scan vectors is significant.
     return std::make_shared<SharedLayer>(std::move(layer), rule);
 }
 
-/// Adds a contour without what docs/conventions.md drops: points equal to the one before them, and contours
-/// with too few remaining points.
+/// Adds a contour by the rules of docs/conventions.md: drops points equal to the one before them, and the
+/// contour if too few points remain.
 void add_contour(const PointArray& points, bool closed, LayerBuilder& builder) {
     std::vector<Point2> kept;
     std::unique_copy(points.begin(), points.end(), std::back_inserter(kept));
@@ -210,7 +210,7 @@ std::string layer_text(const SharedLayer& layer) {
     return text.data();
 }
 
-/// Returns the layer after the steps that are set.
+/// Returns the layer after the steps.
 LayerPointer after(const LayerPointer& layer, const LayerSteps& steps) {
     return result_of_points(layer->get().points.size(), [layer, steps](const Execution& execution) {
         LayerChanges changes;
@@ -278,7 +278,8 @@ auto numbers_of(const Value& value) {
     };
 }
 
-/// Does the same for numbers that are expensive to compute.
+/// Returns a function that measures all layers without the interpreter lock, and then returns one number
+/// each.
 template <class T, class Value>
 auto measures_of(const Value& value) {
     return [value](const Stack& stack) {
@@ -370,7 +371,7 @@ py::tuple pickled(const Stack& stack) {
                           stack.exposure, stack.support, stack.of_mesh, stack.planned);
 }
 
-/// Converts a list; throws for None, which pybind11 takes for a null pointer.
+/// Converts a list. Throws for None, which pybind11 would convert to a null pointer.
 template <class Pointer>
 std::vector<Pointer> pointers_of(const py::object& list) {
     auto pointers = list.cast<std::vector<Pointer>>();
@@ -401,7 +402,7 @@ StackPointer unpickled(const py::tuple& state) {
     return stack;
 }
 
-/// Returns an iterator that uses __getitem__ and the error that ends it.
+/// Returns an iterator that calls __getitem__ until it raises IndexError.
 py::object each_of(const py::object& sequence) {
     return py::reinterpret_steal<py::object>(PySeqIter_New(sequence.ptr()));
 }
@@ -582,7 +583,7 @@ void bind_stack(py::module_& module) {
         .def_property_readonly(
             "support", [](const Stack& self) { return self.support; },
             "Whether that file marks the part as a support.")
-        // If there are no layers it is empty, from inf to -inf, while `bounds` is the origin.
+        // If there are no layers, it is the empty box, from inf to -inf, while `bounds` is the origin.
         .def_property_readonly("_box", [](const Stack& self) { return bounds_of(self.box); })
         .def_property_readonly("_planned", [](const Stack& self) { return self.planned; })
         .def_property_readonly(

@@ -9,7 +9,8 @@
 
 namespace lamella::python {
 
-/// Returns a path, or a text that may contain one, as a Python string: bytes that are not UTF-8 are kept.
+/// Returns a path, or a text that may contain one, as a Python string in which bytes that are not UTF-8 are
+/// kept (as surrogate escapes).
 [[nodiscard]] pybind11::str path_text(const std::string& path);
 /// Returns warnings as the program prints them (see printable).
 [[nodiscard]] pybind11::list message_texts(const std::vector<std::string>& texts);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Objects that are not yet constructed: a derived class may use itself before it calls __init__ of its base,
-// and __new__ does not call it at all. pybind11 would pass uninitialised memory to functions.
+// Detects objects that are not constructed, because a derived class uses itself before it calls __init__ of
+// its base, or because only __new__ was called. pybind11 would pass uninitialised memory to functions.
 
 #include "lamella/contour/exposure.hpp"
 #include "lamella/scan/strategy.hpp"

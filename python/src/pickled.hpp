@@ -12,9 +12,9 @@
 
 namespace lamella::python {
 
-/// Returns a setup for public classes: without a `__new__` of their own, pickle protocols before 2 and
-/// `__reduce__` make an object of pybind11's base class, which ends the process. With one they raise a
-/// TypeError.
+/// Returns a setup that gives public classes a `__new__` of their own. Without it, pickle protocols before 2
+/// and `__reduce__` would make an object of pybind11's base class, which ends the process. With it they raise
+/// a TypeError.
 inline pybind11::custom_type_setup own_new() {
     return pybind11::custom_type_setup([](PyHeapTypeObject* heap_type) {
         heap_type->ht_type.tp_new = [](PyTypeObject* type, PyObject* /*arguments*/, PyObject* /*named*/) {
@@ -24,7 +24,7 @@ inline pybind11::custom_type_setup own_new() {
 }
 
 /// Makes objects picklable and copyable as a tuple of `size` items. `get(object)` returns the tuple.
-/// `set(tuple)` makes an object of it and checks its content, since it may come from anywhere.
+/// `set(tuple)` makes an object of the tuple, whose content it must check, because it may come from anywhere.
 template <class Class, class Get, class Set>
 void bind_pickle(Class& cls, const char* what, std::size_t size, const Get& get, const Set& set) {
     const auto checked = [=](const pybind11::tuple& state) {
@@ -39,7 +39,7 @@ void bind_pickle(Class& cls, const char* what, std::size_t size, const Get& get,
         throw Error(ErrorKind::input, std::string("this is no pickled ") + what);
     };
     cls.def(pybind11::pickle(get, checked));
-    // Older protocols do not ask for the state.
+    // Older protocols do not call __getstate__.
     cls.def("__reduce_ex__", [](const pybind11::object& self, int protocol) {
         const pybind11::object plain = pybind11::module_::import("builtins").attr("object");
         return pybind11::object(plain.attr("__reduce_ex__")(self, std::max(protocol, 2)));

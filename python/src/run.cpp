@@ -34,7 +34,8 @@ class Event {
     bool rung_ = false;
 };
 
-/// Joins without the interpreter lock: the end of the thread may take a while, for example to free gigabytes.
+/// Joins without the interpreter lock, because the thread may need a while to end, for example to free
+/// gigabytes.
 void join(std::thread& worker) {
     const GilRelease released;
     worker.join();

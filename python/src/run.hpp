@@ -1,6 +1,6 @@
 #pragma once
 
-// Long work called from Python: without the global interpreter lock, with progress, and interruptible by
+// Runs long work that Python calls, without the global interpreter lock, with progress, and interruptible by
 // Ctrl-C.
 
 #include "lamella/core/execution.hpp"
@@ -21,8 +21,9 @@
 
 namespace lamella::python {
 
-/// Progress reports of the library's threads, kept until the calling thread collects them: only that thread
-/// calls into Python. Only the latest progress of a stage is kept, so that a slow listener delays nothing.
+/// Progress reports of the library's threads, kept until the calling thread collects them, because only that
+/// thread calls into Python. Only the latest progress of a stage is kept, so that a slow listener delays
+/// nothing.
 class ProgressBox {
   public:
     void put(const Progress& progress);
@@ -39,12 +40,12 @@ void report(ProgressBox& box, const pybind11::object& listener);
 /// Interval at which a waiting thread of Python checks for signals.
 inline constexpr std::chrono::milliseconds between_signals{50};
 
-/// Throws the exception raised by a signal handler of Python, such as KeyboardInterrupt. Only Python's main
-/// thread has such handlers; elsewhere this does nothing.
+/// Runs pending signal handlers of Python, and throws the exception that one raises, such as
+/// KeyboardInterrupt. Does nothing in threads other than Python's main thread.
 void check_signals();
 
-/// Runs the work on a new thread, while the calling thread waits without the interpreter lock, reports
-/// progress, and checks for signals some twenty times a second. Returns or throws as the work does. If the
+/// Runs the work on a new thread. Meanwhile the calling thread waits without the interpreter lock, reports
+/// progress, and checks for signals about twenty times a second. Returns or throws as the work does. If the
 /// listener or a signal handler raises an exception, the work is stopped and the exception is thrown.
 void run(unsigned threads, const pybind11::object& listener,
          const std::function<void(const Execution&)>& work);
@@ -57,13 +58,14 @@ template <class Work>
     return std::move(*result);
 }
 
-/// Runs work that keeps alive all that it uses. Works as `run` with one exception: an error raised by a
-/// signal handler is thrown at once, and work that ignores the request to stop continues by itself until its
-/// end.
+/// Does the same as `run`, except that an error raised by a signal handler is thrown at once, while work that
+/// ignores the request to stop continues in the background. The work must therefore keep alive everything
+/// that it uses.
 void run_alone(const std::function<void(const Execution&)>& work);
 
-/// Returns the result of work on layers with this many points in total. The work must keep alive all that it
-/// uses. Work on few points takes less time than starting a thread, so the calling thread does it itself.
+/// Returns the result of work on layers with this many points in total. The work must keep alive everything
+/// that it uses. If there are few points, the calling thread does the work itself, because starting a thread
+/// would take longer.
 template <class Work>
 [[nodiscard]] auto result_of_points(std::size_t points, const Work& work) {
     constexpr std::size_t few = 1000;

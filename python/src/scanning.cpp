@@ -35,7 +35,7 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-/// Returns the value converted by a check of the package, whose errors name the attribute.
+/// Returns the value after conversion by a check of the package, whose errors name the attribute.
 template <class Value, class... More>
 Value checked(const char* check, const char* name, const py::object& value, const More&... more) {
     return py::module_::import("lamella._arguments").attr(check)(name, value, more...).template cast<Value>();
@@ -131,7 +131,7 @@ Rounding rounding_of(const Stack* stack) {
     return stack != nullptr ? stack->rounding : Rounding{};
 }
 
-/// Layers of vectors, and the area of material that none of them reaches, in mm^2.
+/// Layers of vectors, and the area of material that no vector reaches, in mm^2.
 using Scanned = std::pair<std::vector<LayerPointer>, double>;
 
 double sum_of(const std::vector<double>& areas) {

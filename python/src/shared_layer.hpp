@@ -20,20 +20,22 @@
 
 namespace lamella::python {
 
-/// An immutable layer with properties that are computed on first use. Must be called without the interpreter
-/// lock, since another thread may be computing the same property.
+/// An immutable layer with properties that are computed on first use. Its functions must be called without
+/// the interpreter lock, because another thread may be computing the same property.
 class SharedLayer {
   public:
     explicit SharedLayer(Layer layer, std::optional<PlaneRule> rule = {})
         : layer_(std::move(layer)), rule_(rule) {}
 
     [[nodiscard]] const Layer& get() const noexcept { return layer_; }
-    /// Rule by which it, or the layer that it was made from, was cut; unset if that was arrays.
+    /// Returns the rule by which this layer, or the layer from which it was made, was cut; nullopt if it was
+    /// made from arrays.
     [[nodiscard]] std::optional<PlaneRule> rule() const noexcept { return rule_; }
     [[nodiscard]] const LayerMeasure& measure() const;
     [[nodiscard]] const Nesting& nesting() const;
     [[nodiscard]] std::uint64_t hash() const;
-    /// For each ring the index of the ring around it, then a value for each chain; -1 is none.
+    /// Returns, for each ring, the index of the ring around it, and then a value for each chain; -1 stands
+    /// for none.
     [[nodiscard]] const std::vector<std::int64_t>& parents() const;
 
   private:
@@ -54,22 +56,21 @@ using LayerPointer = std::shared_ptr<SharedLayer>;
 struct Stack {
     std::vector<LayerPointer> layers;
     std::string label = {};
-    /// Box of the mesh that was sliced, as it was placed. Without a mesh, that of the layers; empty if these
-    /// are.
+    /// Bounding box of the placed mesh that was sliced; without a mesh, that of the layers.
     Box3 box = {};
     bool of_mesh = false; ///< true if `box` is that of the mesh
     /// Lower bound on the number of layers of the whole plan, including those left out; 0 if unknown.
     std::uint64_t planned = 0;
-    /// From the coordinates of the mesh to those in which it was sliced.
+    /// Transform from the coordinates of the mesh to those in which it was sliced.
     Transform matrix = {};
     /// The slice file that it was read from; empty if it was sliced.
     std::string path = {};
     std::string format = {};
-    Rounding rounding = {}; ///< of that file
+    Rounding rounding = {}; ///< rounding of that file
     PlaneRule rule = PlaneRule::section_above;
     /// If set, the layers are scan vectors.
     std::optional<Exposure> exposure = {};
-    bool support = false; ///< marked so in that file
+    bool support = false; ///< marked as support in that file
     /// The parts of a file with several parts, with the same number of layers.
     std::vector<std::shared_ptr<Stack>> parts = {};
 };
@@ -83,7 +84,7 @@ struct Stack {
 /// Returns the layer with its own copy of its points. Slicing stores the points of many layers in one
 /// allocation, which each of them would keep in memory.
 [[nodiscard]] Layer with_own_points(Layer layer);
-/// Throws Error{usage} for an unknown name.
+/// Returns the rule of this name. Throws Error{usage} for an unknown name.
 [[nodiscard]] PlaneRule rule_named(const std::string& name);
 /// Returns the layers without copying their points.
 [[nodiscard]] LayerStack plain(const std::vector<LayerPointer>& shared);

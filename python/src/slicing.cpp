@@ -49,8 +49,8 @@ CutPlan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at,
     return {std::move(plan), std::move(job.layering)};
 }
 
-/// Returns the number of layers of the whole plan, but at most one more than the end of these: enough to know
-/// whether there are any above.
+/// Returns the number of layers of the whole plan, but at most one more than the index after the last of
+/// these layers, which shows whether there are layers above them.
 std::uint64_t planned(const CutPlan& cuts, const SourceMesh& mesh, const Execution& execution) {
     const std::uint64_t end = cuts.plan.layers.back().index + 1;
     const PlaneSelection& only = cuts.layering.only;
@@ -78,7 +78,7 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const CutPlan& cuts,
     return stack;
 }
 
-/// Returns the defects of the mesh that its layers reveal.
+/// Returns the defects of the mesh that show in its layers.
 std::vector<std::string> doubts_of(const Stack& stack) {
     const GilRelease released;
     MeshDoubts doubts{.layers = stack.layers.size()};
@@ -119,8 +119,8 @@ void bind_cuts(py::module_& module) {
         }));
 }
 
-/// Returns null if the object is not yet constructed. Objects with several bases, which Python can derive,
-/// never are.
+/// Returns the stream of an object; null if the object is not constructed, as objects of Python classes with
+/// several bases never are.
 LayerStream* stream_of(PyObject* self) {
     auto* const instance = reinterpret_cast<py::detail::instance*>(self);
     if (!instance->simple_layout || !instance->simple_holder_constructed)
@@ -128,8 +128,8 @@ LayerStream* stream_of(PyObject* self) {
     return instance->get_value_and_holder().value_ptr<LayerStream>();
 }
 
-/// A listener may refer to the stream that refers to it: only the garbage collector can find that the cycle
-/// is unreachable.
+/// Lets the garbage collector traverse streams. A listener and its stream may refer to each other, and only
+/// the garbage collector can find that such a cycle is unreachable.
 void collect_streams(PyHeapTypeObject* heap_type) {
     PyTypeObject& type = heap_type->ht_type;
     type.tp_flags |= Py_TPFLAGS_HAVE_GC;
@@ -144,8 +144,8 @@ void collect_streams(PyHeapTypeObject* heap_type) {
             stream->forget_listener();
         return 0;
     };
-    // Other threads run while the stream stops. A garbage collection in one of them must not see a partly
-    // destroyed object; pybind11 2.10 does not untrack it.
+    // Other threads run while the stream stops. A garbage collection in one of them must not find the partly
+    // destroyed object, which pybind11 2.10 does not untrack.
     type.tp_dealloc = [](PyObject* self) {
         PyObject_GC_UnTrack(self);
         py::detail::pybind11_object_dealloc(self);

@@ -54,8 +54,8 @@ std::vector<std::array<std::uint32_t, 3>> triangles_of(const Numbers& rows, std:
     return triangles;
 }
 
-/// Resets vertices without a face, so that their values are ignored; the others keep their indices until
-/// these are dropped.
+/// Resets the coordinates of vertices without a face, so that their values are not checked. The vertices are
+/// dropped later, so indices do not change here.
 void forget_unused(IndexedMesh& mesh) {
     std::vector<bool> used(mesh.vertices.size());
     for (const auto& triangle : mesh.triangles)
@@ -80,7 +80,7 @@ MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
     check(mesh);
     if (mesh.triangles.empty())
         throw Error(ErrorKind::input, "faces: holds no triangle");
-    drop_unused_vertices(mesh); // as for files: bounds are those of the faces
+    drop_unused_vertices(mesh); // as for files, so that bounds are those of the faces
     MeshOrigin origin;
     origin.stored_triangles = mesh.triangles.size();
     MeshFile file;

@@ -21,7 +21,7 @@
 
 namespace lamella::python {
 
-/// Properties of a mesh besides its triangles.
+/// Properties of a mesh other than its triangles.
 struct MeshOrigin {
     std::string path = {};   ///< empty for a mesh made from arrays
     std::string format = {}; ///< empty for a mesh made from arrays
@@ -30,17 +30,18 @@ struct MeshOrigin {
     double unit_mm = 1; ///< millimetres per unit of the file
     std::uint64_t stored_triangles = 0;
     std::vector<std::string> warnings = {};
-    Transform matrix = {}; ///< from the original coordinates to the present ones
+    Transform matrix = {}; ///< transform from the original coordinates to the present ones
 };
 
-/// A mesh before it is placed. All transforms are composed before they are applied, as in the program, so
-/// coordinates are rounded once. An unpickled mesh begins with its coordinates at the time of pickling.
+/// A mesh before it is placed. As in the program, all transforms are composed before they are applied, so
+/// that coordinates are rounded only once. After unpickling, the coordinates at the time of pickling are the
+/// original ones.
 struct MeshSource {
     std::shared_ptr<const MeshFile> file;
-    std::optional<double> unit_mm = {}; ///< if the file states none
+    std::optional<double> unit_mm = {}; ///< for a file that specifies no unit
     Transform placement = {};
 
-    /// Throws the errors of load_plate.
+    /// Returns the plate of this mesh. Throws the errors of load_plate.
     [[nodiscard]] Plate plate(const Execution& execution) const;
     [[nodiscard]] bool has_negatives() const;
 };
@@ -48,7 +49,7 @@ struct MeshSource {
 /// An immutable mesh in millimetres, with its origin.
 class SourceMesh {
   public:
-    /// `mesh` is everything on the plate of the source, as one mesh.
+    /// `mesh` must be the contents of the plate of the source, as one mesh.
     SourceMesh(MeshSource source, Mesh mesh, MeshOrigin origin, const Execution& execution);
 
     [[nodiscard]] const MeshSource& source() const noexcept { return source_; }
@@ -75,7 +76,7 @@ class SourceMesh {
 
 using MeshPointer = std::shared_ptr<SourceMesh>;
 
-/// Returns all meshes of a file, placed, as one.
+/// Returns all placed meshes of a file as one.
 [[nodiscard]] MeshPointer source_mesh(MeshFile file, std::optional<double> unit_mm,
                                       const Execution& execution);
 
