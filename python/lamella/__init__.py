@@ -9,9 +9,9 @@
     lamella.write("part.cli", stack)
 
 Lengths are millimetres, heights are absolute z. A mesh is a path, a pair of arrays (vertices, faces), or an object
-such as a trimesh.Trimesh. Layers show their points as NumPy arrays without a copy. Invalid arguments raise a TypeError
-or a ValueError, other failures a lamella.Error, all with texts for people; defects that are no failure cause a
-lamella.DefectWarning.
+such as a trimesh.Trimesh. Points of layers are NumPy arrays that refer to memory of the library, without a copy.
+Invalid arguments raise a TypeError or a ValueError, other failures a lamella.Error. Defects that do not prevent a
+result cause a lamella.DefectWarning.
 """
 
 from . import _methods

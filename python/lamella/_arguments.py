@@ -1,7 +1,7 @@
 """Checks of arguments before the work begins.
 
-A wrong type is a TypeError, a wrong value a UsageError, which is a ValueError. The text names the argument, the value
-found, and the expected one.
+A wrong type is a TypeError, a wrong value a UsageError, which is a ValueError. The text contains the name of the
+argument, the value found, and a description of the value expected.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ MOST_QUOTED = 200  # characters of a value; the library quotes as many bytes
 
 
 def excerpt(value: object) -> str:
-    """Returns a value as errors quote it."""
+    """Returns the value as text, truncated for errors."""
     text = str(value)
     return text if len(text) <= MOST_QUOTED else f"{text[:MOST_QUOTED]}..."
 
@@ -65,7 +65,7 @@ def has_masked_entries(value: Any) -> bool:
 
 
 def is_array_of_one(value: Any) -> bool:
-    """Returns whether it is a number in an array without dimensions, and not masked."""
+    """Returns whether a value is an array without dimensions, that is, of one number, and not masked."""
     return isinstance(value, np.ndarray) and value.ndim == 0 and not has_masked_entries(value)
 
 
@@ -78,7 +78,7 @@ def number(
         refuse_type(name, expected, value)
     try:
         found = float(value)
-    except (ValueError, OverflowError):  # a Decimal that signals, a whole number of many digits
+    except (ValueError, OverflowError):  # a signalling Decimal, or an integer that is too large
         found = math.nan
     if not (math.isfinite(found) and found > above and found >= least):
         refuse_value(name, expected, value)
@@ -133,7 +133,7 @@ def _listed(choices: Sequence[str], last: str) -> str:
 
 
 def label(name: str, value: Any) -> bytes:
-    """Returns the bytes of a text that may come from a file, and thus need not be UTF-8."""
+    """Returns the bytes of a text, which need not be UTF-8, because it may come from a file."""
     return _encoded(name, text(name, value))
 
 
@@ -160,7 +160,7 @@ def _encoded(name: str, value: str) -> bytes:
 def several(
     name: str, value: Any, count: Optional[int], expected: str, each: Callable[[str, Any], T]
 ) -> Tuple[T, ...]:
-    """Returns `count` checked items, or any number of them."""
+    """Returns the checked items. There must be `count` of them; None permits any number."""
     if isinstance(value, (str, bytes)):
         refuse_type(name, expected, value)
     try:
@@ -178,19 +178,19 @@ def pair(name: str, value: Any, expected: str, each: Callable[[str, Any], T]) ->
 
 
 def optional(check: Callable[..., T], name: str, value: Any, *more: Any) -> Optional[T]:
-    """Returns None, or the result of the check."""
+    """Returns None for None, otherwise the result of the check."""
     return None if value is None else check(name, value, *more)
 
 
 def array(name: str, value: Any, expected: str, kinds: str = "fiu") -> npt.NDArray[Any]:
-    """Returns an array of numbers, which are integers if `kinds` is "iu"."""
+    """Returns an array of numbers; only of integers if `kinds` is "iu"."""
     if value is None or isinstance(value, (str, bytes, dict, set)):
         refuse_type(name, expected, value)
     if has_masked_entries(value):
         raise UsageError(f"{name}: expected {expected}, found one with masked entries")
     try:
         found = np.asarray(value)
-    except (TypeError, ValueError, OverflowError):  # rows of different lengths, things without a number
+    except (TypeError, ValueError, OverflowError):  # rows of different lengths, or objects that are not numbers
         raise UsageError(f"{name}: expected {expected}, found what is no array of numbers") from None
     if found.dtype.kind == "O" and found.ndim == 0:
         refuse_type(name, expected, value)
@@ -202,7 +202,7 @@ def array(name: str, value: Any, expected: str, kinds: str = "fiu") -> npt.NDArr
 def shaped(
     name: str, value: Any, shape: Tuple[Optional[int], ...], expected: str
 ) -> npt.NDArray[np.float64]:
-    """Returns an array of numbers of this shape, where None is any length, as float64, row by row."""
+    """Returns a float64 array of this shape, in C order. A None in `shape` permits any length."""
     found = array(name, value, expected)
     if found.ndim != len(shape) or any(want not in (None, has) for want, has in zip(shape, found.shape)):
         raise UsageError(f"{name}: expected {expected}, found {described(found)}")
@@ -248,7 +248,7 @@ def reading(
     threads: Any,
     progress: Any,
 ) -> Tuple[bytes, Optional[float], bool, str, int, int, int, Optional[Progress]]:
-    """Checks the arguments for reading a file that may hold a mesh."""
+    """Checks the arguments for reading a file that may contain a mesh."""
     return (
         path("path", file),
         optional(positive, "unit_mm", unit_mm),

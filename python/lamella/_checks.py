@@ -23,7 +23,7 @@ from ._warning import warn
 
 @dataclass(frozen=True)
 class Verification:
-    """Findings of `verify`. Lengths are millimetres."""
+    """Findings of `verify`. Lengths are in millimetres."""
 
     ok: bool  #: no open chains, crossings, misoriented rings, layer gaps or overlaps; areas and centroids agree
     layers: int
@@ -32,11 +32,11 @@ class Verification:
     open_chains: int  #: contours that are not closed
     crossings: int  #: pairs of segments that cross
     misoriented: int  #: rings whose orientation contradicts their nesting
-    overlapping: int  #: rings of bodies within other bodies; no error
+    overlapping: int  #: rings of bodies within other bodies, which are not an error
     volume: float  #: mm^3, the sum of area times thickness
     max_area_error: Optional[float]  #: mm^2, the largest difference from the section of the mesh, if one was given
-    areas_agree: bool  #: those differences are within rounding
-    displaced: int  #: layers of the right area whose centroids differ from those of the mesh's sections
+    areas_agree: bool  #: the areas of all layers agree with those of the sections within rounding
+    displaced: int  #: layers whose areas agree but whose centroids differ from those of the mesh's sections
     height_overlaps: int  #: layers that begin within the height of another one
     gaps: int  #: between layers, where the mesh has material; 0 without a mesh
     findings: List[str]  #: one line for each kind of finding, with the first layer and location
@@ -55,9 +55,9 @@ def verify(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Verification:
-    """Checks that every contour of layers is closed, that outer rings are counter-clockwise and holes clockwise by
-    their nesting, and that none crosses another or itself. If a mesh is given, also checks that the areas and
-    centroids of layers are those of its sections, and that there are no gaps between layers.
+    """Checks that every contour of the layers is closed, that outer rings run counter-clockwise and holes clockwise
+    according to their nesting, and that no contour crosses another or itself. If a mesh is given, also checks that the
+    areas and centroids of layers are those of its sections, and that there are no gaps between layers.
 
     layers: a path or a Stack.
     mesh: the mesh that was sliced, as for `slice`, with the same `direction`, `transform` and `unit_mm`.
@@ -65,7 +65,7 @@ def verify(
     snap: as for `slice`.
     tolerance: additional tolerance of points, ends of lines and cuts, in millimetres, besides the rounding of the
         format: for layers that were rounded before, such as those of a CLI file converted to JSON.
-    threads: number of threads; 0 is one for each processor.
+    threads: number of threads; 0 means one for each processor.
     progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
     Raises InputError.
@@ -91,16 +91,16 @@ class VectorVerification:
     misoriented: int  #: rings whose orientation contradicts their nesting
     outside: int  #: vectors that leave the material, or are closer to its edges than the strategy allows
     too_short: int  #: hatch lines shorter than the shortest of the strategy
-    misplaced: int  #: hatch lines with another position or direction than in the strategy, or of another exposure
-    miscovered: int  #: planes of a part whose lines cover more or less than they must fill
-    wrong_contours: int  #: missing on a plane, or with another area than the material has at their depth
-    inverted_rings: int  #: of the mesh's sections, bound no material and have no vectors; 0 without a mesh
-    inverted_volume: float  #: mm^3, enclosed by these
+    misplaced: int  #: hatch lines whose position or direction differs from the strategy, or in other exposures
+    miscovered: int  #: planes of a part whose lines cover more or less area than they must
+    wrong_contours: int  #: contours missing on a plane, or whose area differs from that of the material at their depth
+    inverted_rings: int  #: rings of the mesh's sections that bound no material and have no vectors; 0 without a mesh
+    inverted_volume: float  #: mm^3, volume that these rings enclose
     height_overlaps: int  #: layers that begin within the height of another one
     gaps: int  #: between layers, where the mesh has material; 0 without a mesh
-    cover: Optional[float]  #: ratio of the area covered by lines to that which they must fill, if a strategy is given
+    cover: Optional[float]  #: ratio of the area covered by lines to the area that they must fill; with a strategy
     unreached_layers: int  #: planes with more material that no vector reaches than the strategy accepts
-    unreached_mm2: float  #: all such material; 0 without a strategy
+    unreached_mm2: float  #: area of all such material; 0 without a strategy
     unbounded: int  #: vectors whose material is unknown
     findings: List[str]  #: one line for each kind of finding, with the first layer and location
 
@@ -119,19 +119,19 @@ def verify_vectors(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> VectorVerification:
-    """Checks that in a file of scan vectors the contours of each exposure are closed, oriented and without crossings,
-    and that all vectors are within the mesh, or without one within the outermost contours of their part. If the
-    strategy by which they were made is given, also checks their distance from the edges, that each contour is present,
-    the distance, angle and least length of hatch lines, and that these fill the material.
+    """Checks a file of scan vectors: the contours of each exposure must be closed, oriented and without crossings, and
+    all vectors must be within the mesh or, without a mesh, within the outermost contours of their part. If the strategy
+    by which they were made is given, also checks their distance from the edges, that each contour is present, the
+    distance, angle and least length of hatch lines, and that these fill the material.
 
     path: path of a file with scan vectors, by `lamella slice --scan`, `lamella scan` or another program.
     mesh: the mesh that was sliced, as for `slice`, with the same `direction`, `transform` and `unit_mm`.
-    strategy: as for `scan`; lamella.ScanStrategy() is the default one, None checks no strategy.
+    strategy: as for `scan`; lamella.ScanStrategy() is the default strategy. With None, no strategy is checked.
     at: position of the cuts within the layers if it differs from that in the file: "bottom", "middle" or "top".
     snap: as for `slice`.
     tolerance: additional tolerance of points, ends of lines and cuts, in millimetres, besides the rounding of the
         format: for layers that were rounded before, such as those of a CLI file converted to JSON.
-    threads: number of threads; 0 is one for each processor.
+    threads: number of threads; 0 means one for each processor.
     progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
     Raises InputError, and UsageError for a file without scan vectors.
@@ -166,11 +166,11 @@ def _mesh_as_sliced(
 
 @dataclass(frozen=True)
 class LayerDifference:
-    """Difference between two layers on one plane."""
+    """Two layers on one plane that differ."""
 
-    z: float  #: of the plane, in millimetres
-    distance: float  #: mm, from a point of one's contours to the nearest contour of the other; inf if one has none
-    where: Optional[Tuple[float, float]]  #: point at which that distance begins
+    z: float  #: height of the plane, in millimetres
+    distance: float  #: mm, largest distance of contours from those of the other layer; inf if one has none
+    where: Optional[Tuple[float, float]]  #: a point at that distance
     first: Optional[Layer]  #: None if only the second stack has contours there
     second: Optional[Layer]
 
@@ -182,7 +182,7 @@ class Comparison:
     agree: bool
     tolerance: float  #: in millimetres
     layers: int  #: number of compared layers
-    same: int  #: number of these that are equal, bit for bit
+    same: int  #: number of compared layers that are equal, bit for bit
     differences: List[LayerDifference]  #: layers that do not agree, in ascending z
 
     def __bool__(self) -> bool:
@@ -201,13 +201,13 @@ def compare(
     program: `lamella compare`.
 
     first, second: paths or stacks.
-    tolerance: largest distance between equal contours, in millimetres; by default that explained by the rounding of
-        both formats, which is 0 for stacks that were sliced.
-    threads: number of threads; 0 is one for each processor.
+    tolerance: largest distance at which contours still agree, in millimetres; by default the sum of the rounding errors
+        of both formats, which is 0 for stacks that were sliced.
+    threads: number of threads; 0 means one for each processor.
     progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
-    Raises InputError. Issues a DefectWarning if no layers correspond because the lowest of both stacks are cut at
-    different heights.
+    Raises InputError. Issues a DefectWarning if no layers correspond because the two stacks are cut at different
+    heights.
     """
     tolerance = check.optional(check.distance, "tolerance", tolerance)
     threads, progress = check.thread_count(threads), check.listener(progress)

@@ -2,8 +2,8 @@
 
 
 class Error(Exception):
-    """Base of all failures that Lamella reports. Its text is one line: the file, the location in it, the content found,
-    and the expected one."""
+    """Base class of all failures that Lamella reports. Its text is one line: the file, the location in it, the content
+    found, and the content expected."""
 
     __module__ = "lamella"
 
@@ -21,7 +21,7 @@ class UsageError(Error, ValueError):
 
 
 class InputError(Error):
-    """A file or a mesh that cannot be read or holds nothing to slice."""
+    """A file or a mesh that cannot be read or contains nothing to slice."""
 
     __module__ = "lamella"
 
@@ -33,7 +33,7 @@ class DefectError(Error):
 
 
 class LimitError(Error):
-    """A limit was exceeded: of triangles, of memory, of numbers."""
+    """A limit was exceeded: the number of triangles, the amount of memory, or the range of numbers."""
 
     __module__ = "lamella"
 
@@ -51,7 +51,7 @@ class CancelledError(Error):
 
 
 class DefectWarning(UserWarning):
-    """A defect of a file or a mesh because of which the result may not be as intended. With `strict` it is a
-    DefectError instead."""
+    """A defect of a file or a mesh, because of which the result may not be as intended. With `strict`, a DefectError is
+    raised instead."""
 
     __module__ = "lamella"

@@ -22,7 +22,7 @@ from ._warning import warn, with_arguments
 
 MESH_EXTENSIONS = (".stl", ".ply", ".obj")
 
-# Field of a format that an option requires. Options that are not listed require an image format.
+# Property that a format must have for an option to apply. Options that are not listed here require an image format.
 ASKED_OF_FORMATS = {
     "units_mm": "units",
     "short_form": "short_form",
@@ -31,7 +31,7 @@ ASKED_OF_FORMATS = {
     "fade_layers": "exposure",
 }
 PAGES = "html"
-# Formats that keep the heights of layers as they are, or have none: they accept layers without thickness.
+# Formats that store the heights of layers unchanged, or no heights. They accept layers without thickness.
 WITHOUT_THICKNESS = ("json", "npz", "dxf", "geojson", "svg-layers", "png", "png-zip")
 MOST_PIXELS = 65535
 MOST_ANTIALIAS = 64
@@ -41,7 +41,7 @@ BATCH_POINTS = 2**22  # 64 MB
 
 Layers = Union[Layer, Stack, LayerStream, ScanLayer, Iterable[Layer], Iterable[Stack], Iterable[ScanLayer]]
 
-# Label and bounds of a part, the exposure of its vectors if it has any, and whether it is a support.
+# Label and bounds of a part, the exposure of its vectors (if it has any), and whether it is a support.
 Part = Tuple[bytes, npt.NDArray[np.float64], Optional[Exposure], bool]
 # The parts, the layers plane by plane, the number of planes, the bottom of the first layer, and the plane rule.
 Planes = Tuple[List[Part], Iterator[List[Layer]], int, float, str]
@@ -69,7 +69,7 @@ def read_layers(
 
 
 def _told(path: PathLike, warnings: Sequence[str], strict: bool) -> None:
-    """Issues the warnings of a slice file, or raises the first if `strict`."""
+    """Issues the warnings of a slice file; with `strict` raises the first one as an error."""
     texts = [f"{os.fsdecode(path)}: {warning}" for warning in warnings]
     if strict and texts:
         raise DefectError(texts[0])
@@ -127,29 +127,31 @@ def read(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Union[Mesh, Stack]:
-    """Reads a mesh file or a slice file, which is recognised by its content.
+    """Reads a mesh file or a slice file; the content determines the format.
 
     path: str or os.PathLike. Meshes: see `mesh_formats`. Layers: Common Layer Interface, layered SVG, SLC,
         3MF with slices, JSON, NumPy arrays, ILT, Open Vector Format, 3MF with toolpaths. Each may be compressed with
         gzip.
     kind: the required content of the file, "mesh" or "layers"; another file is an InputError.
-    unit_mm: millimetres per unit of a mesh file that does not state its unit; 1 by default. Slice files state theirs.
+    unit_mm: millimetres per unit, for a mesh file that does not specify its unit; 1 by default. Not
+        permitted for slice files.
     strict: raises a DefectError instead of issuing a DefectWarning.
     include: one or several of the words "support", "negative", "modifier", "support-blocker", "support-enforcer",
-        "surface" and "other": objects that 3MF and AMF files mark so are read as solids, too. Otherwise negative
-        volumes are subtracted when the mesh is sliced, and a DefectWarning counts the other objects that were left
-        out. In slice files supports are parts like others, see Stack.support.
-    max_triangles: a mesh with more of them is a LimitError; 0 is any number.
-    max_memory: reading more bytes than this is a LimitError; 0 is three quarters of the physical memory. An
-        uncompressed binary STL file does not count, nor does data made from a mesh afterwards.
-    threads: number of threads; 0 is one for each processor.
+        "surface" and "other". Objects to which a 3MF or AMF file gives one of these roles are then read as solids, too.
+        By default negative volumes are subtracted when the mesh is sliced, and a DefectWarning counts the other objects
+        that were left out. In slice files supports are parts like others; see Stack.support.
+    max_triangles: largest number of triangles; otherwise a LimitError is raised. 0 permits any number.
+    max_memory: largest number of bytes in memory; otherwise a LimitError is raised. 0 means three quarters of the
+        physical memory. An uncompressed binary STL file does not count, nor does data that is computed from a mesh
+        afterwards.
+    threads: number of threads; 0 means one for each processor.
     progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
-    Returns a Mesh or a Stack. The file is copied before it is parsed and may change afterwards; if it becomes shorter
-    while it is copied, that is an InputError. The copy of a file larger than a quarter of `max_memory` is on disk, in
-    $TMPDIR or /var/tmp, without a name.
+    Returns a Mesh or a Stack. The file is copied before it is parsed and may change afterwards; an InputError is raised
+    if it becomes shorter while it is copied. A copy larger than a quarter of `max_memory` is kept in an anonymous
+    temporary file, in $TMPDIR or /var/tmp.
 
-    Raises InputError that names the file, the location in it, the invalid content and the expected one, and
+    Raises InputError that reports the file, the location in it, the content found and the content expected, and
     UsageError if `unit_mm` is given for a slice file.
     """
     wanted = check.optional(check.choice, "kind", kind, ("mesh", "layers"))
@@ -162,7 +164,7 @@ def read(
     if wanted not in (None, found):
         held = "layers" if found == "layers" else "a mesh"
         raise InputError(f'{os.fsdecode(path)}: holds {held}, and kind="{wanted}" was given')
-    # Reading a mesh has checked `strict` itself.
+    # Reading a mesh has already checked `strict`.
     _told(path, warnings, strict and isinstance(read, Stack))
     return read
 
@@ -201,32 +203,34 @@ def write(
     """Writes layers or a mesh to a file, whose extension selects the format. No reader ever sees an incomplete file.
 
     path: str or os.PathLike. Meshes: .stl, .ply, .obj. Layers: see `layer_formats`.
-    what: a Mesh; a Layer, a Stack, or any iterable of layers in ascending z; several stacks on the same planes,
-        which are the parts of the file; or scan vectors, as `scan` returns them. A stream from `iter_layers`, and
-        `scan` of that or of a Stack, is written while it is computed; layers of any other iterable are collected first.
+    what: a Mesh; a Layer, a Stack, or any iterable of layers in ascending z; several stacks on the same planes, which
+        become the parts of the file; or scan vectors from `scan`. A stream from `iter_layers`, and the result of `scan`
+        for such a stream or for a Stack, is written while it is computed; layers of any other iterable are collected
+        first.
     format: name of the format of layers, if the extension does not select it.
-    units_mm: Common Layer Interface, ILT, 3MF with toolpaths: millimetres per unit; 0.001 by default. Coordinates are
-        rounded to whole units with short_form, in "cli-ascii" and in "3mf-toolpath".
-    short_form: binary Common Layer Interface, ILT: coordinates of 16 bits.
+    units_mm: millimetres per unit in Common Layer Interface, ILT and 3MF with toolpaths; 0.001 by default. Coordinates
+        are rounded to whole units with short_form, in "cli-ascii" and in "3mf-toolpath".
+    short_form: writes coordinates of 16 bits, in binary Common Layer Interface and ILT.
 
     Images (png, png-zip, sl1, sl1s):
-    pixel_mm, pixels, display_mm: size of a pixel, their number, and size of the display, each along x and y; any two
-        of these three determine the third. Values not given are the printer's; without a printer, pixels are 0.05 mm
-        wide.
-    orientation: "landscape" or "portrait": x runs along the columns of an image or along its rows.
+    pixel_mm, pixels, display_mm: size of a pixel, number of pixels, and size of the display, each along x and y; any
+        two of these three determine the third. Values not given are those of the printer; without a printer, pixels are
+        0.05 mm wide.
+    orientation: "landscape" if x runs along the columns of an image, "portrait" if x runs along its rows.
     mirror: "none", "x", "y" or "xy".
-    antialias: 1 is black and white, by the centres of pixels; 2 to 64: grey by the covered fraction of each pixel,
-        exact for up to that many corners close together; 8 by default.
-    gamma: grey is 255 times the covered fraction to this power; 1 by default.
-    exposure_s, first_exposure_s: sl1, sl1s: seconds of a layer, and of each of the first three.
-    fade_layers: sl1, sl1s: number of layers in which the first exposure fades to the normal one; 10 by default.
+    antialias: 1 for black and white, by the centres of pixels; 2 to 64 for grey values, which are the covered fractions
+        of pixels, exact for up to that many corners close together; 8 by default.
+    gamma: exponent of grey values: 255 times the covered fraction to this power; 1 by default.
+    exposure_s, first_exposure_s: exposure time in seconds of a layer, and of each of the first three layers (sl1,
+        sl1s).
+    fade_layers: number of layers over which the first exposure fades to the normal one (sl1, sl1s); 10 by default.
 
     strict: raises a DefectError instead of issuing a DefectWarning, and writes no file.
-    threads: number of threads that format layers; 0 is one for each processor. The file does not depend on it.
+    threads: number of threads that format layers; 0 means one for each processor. The file does not depend on it.
     progress: called as progress("write", done, total), in layers.
 
-    Raises OutputError, UsageError for an unknown format and for options that do not apply to it, and TypeError.
-    Issues a DefectWarning for content that the format cannot hold.
+    Raises OutputError, UsageError for an unknown format and for options that do not apply to it, and TypeError. Issues
+    a DefectWarning for content that the format cannot represent.
     """
     target = check.path("path", path)
     threads, progress = check.thread_count(threads), check.listener(progress)
@@ -266,7 +270,7 @@ def write(
             raise CancelledError(f"{os.fsdecode(path)}: the stream was closed while it was written")
         warnings = writer.finish()
     finally:
-        writer.close()  # now, even if an exception keeps it alive
+        writer.close()  # at once, even if an exception keeps the writer alive
     warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
 
 
@@ -307,7 +311,7 @@ def _format_for(path: bytes, format: str, given: Iterable[str]) -> str:
 
 
 def _batches(planes: Iterable[List[Layer]]) -> Iterator[List[List[Layer]]]:
-    """Yields planes to be formatted together: enough for all threads, within the memory for layers in flight."""
+    """Yields lists of planes that are formatted together, with enough planes for all threads, but limited memory."""
     batch: List[List[Layer]] = []
     points = 0
     for plane in planes:
@@ -370,7 +374,8 @@ def _planes_of_parts(stacks: List[Stack]) -> Planes:
 
 
 def _boxes(stacks: List[Stack]) -> List[npt.NDArray[np.float64]]:
-    """Returns boxes such that a part without contours does not enlarge the box of the file, if others have some."""
+    """Returns the boxes of parts. A part without contours does not enlarge the box of the file if other parts have
+    contours."""
     boxes = [stack._box for stack in stacks]
     return boxes if any(np.isfinite(box).all() for box in boxes) else [stack.bounds for stack in stacks]
 
@@ -401,7 +406,7 @@ def _planes_of_vectors(
 
 
 def _collected(what: Any) -> List[Any]:
-    """Returns one or more objects, all of one kind: layers, stacks or scan layers."""
+    """Returns a list of at least one object, all of one kind: layers, stacks or scan layers."""
     expected = "a lamella.Mesh, Layer or Stack, or an iterable of layers, stacks or scan layers"
     if isinstance(what, (Layer, Stack, ScanLayer)):
         return [what]
@@ -472,15 +477,15 @@ def convert(
 def _same_file(first: bytes, second: bytes) -> bool:
     try:
         return os.path.samefile(first, second)
-    except OSError:  # at least one does not exist, which opening it reports
+    except OSError:  # at least one does not exist; opening it will report that
         return False
 
 
 def mesh_formats() -> List[str]:
-    """Returns the formats that meshes are read in, by their extensions, such as "stl"."""
+    """Returns the extensions of the formats from which meshes can be read, such as "stl"."""
     return _lamella.mesh_extensions()
 
 
 def layer_formats() -> List[Tuple[str, str, str]]:
-    """Returns the formats that layers are written in, each as (name, extension, one line about it)."""
+    """Returns the formats to which layers can be written, each as (name, extension, description in one line)."""
     return [row for row in _lamella.layer_formats() if row[0] != PAGES]

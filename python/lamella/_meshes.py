@@ -28,7 +28,7 @@ class HasFaces(Protocol):
 
     @property
     def faces(self) -> Any:
-        """Three rows of `vertices` for each triangle: (m, 3) whole numbers."""
+        """Indices of three rows of `vertices` for each triangle: (m, 3) whole numbers."""
 
 
 MeshLike = Union[PathLike, Mesh, HasFaces, Tuple[npt.ArrayLike, npt.ArrayLike], npt.NDArray[Any]]
@@ -36,23 +36,23 @@ MeshLike = Union[PathLike, Mesh, HasFaces, Tuple[npt.ArrayLike, npt.ArrayLike], 
 
 @dataclass(frozen=True, eq=False)
 class Inspection:
-    """Findings of `inspect` about a mesh. Lengths are millimetres; defects are counted, never repaired."""
+    """Findings of `inspect` about a mesh. Lengths are in millimetres. Defects are counted, not repaired."""
 
     path: str  #: the file; empty for arrays
     format: str  #: such as "stl-binary"; empty for arrays
     bounds: npt.NDArray[np.float64]  #: (2, 3): the smallest and the largest x, y and z
     triangles: int  #: as the file stores them
-    vertices: int  #: number of different ones
+    vertices: int  #: number of different vertices
     volume: float  #: mm^3; meaningful when closed, negative when inside out
     area: float  #: mm^2, of all triangles
     closed: bool  #: slices have no open chains
     sound: bool  #: closed, and no defect was counted
     shells: int  #: components connected by edges
-    cavities: int  #: closed shells that are hollows in the material of others
-    boundary_edges: int  #: with one triangle: rims of holes
-    nonmanifold_edges: int  #: with more than two triangles
+    cavities: int  #: closed shells that bound cavities in the material of others
+    boundary_edges: int  #: edges with one triangle, at the rims of holes
+    nonmanifold_edges: int  #: edges with more than two triangles
     orientation_conflicts: int  #: edges whose triangles do not run in opposite directions
-    duplicate_triangles: int  #: beyond the first with the same three vertices
+    duplicate_triangles: int  #: further triangles with the same three vertices
     degenerate_triangles: int  #: with two equal corners
     inverted_shells: int  #: closed shells that are inside out
 
@@ -113,7 +113,7 @@ def _mesh_of_triangles(name: str, corners: npt.NDArray[Any]) -> Mesh:
 
 
 def as_mesh(name: str, part: Any, unit_mm: Optional[float] = None, **reading: Any) -> Mesh:
-    """Returns a mesh from any supported object. `reading` applies to paths."""
+    """Returns a mesh made from any supported object. `reading` are further arguments of `read_mesh`, for paths."""
     if isinstance(part, (str, bytes, os.PathLike)):
         return read_mesh(check.path(name, part), unit_mm=unit_mm, **reading)
     if unit_mm is not None:
@@ -144,7 +144,7 @@ def placing(direction: Sequence[float], transform: Optional[npt.ArrayLike]) -> P
 
 
 def placed(mesh: Mesh, where: Placing, threads: int) -> Mesh:
-    """Applies the transform, then rotates the direction upright."""
+    """Applies the transform, then rotates the mesh so that the direction points along z."""
     direction, transform = where
     if transform is not None:
         mesh = mesh._transformed(transform, threads)
@@ -162,8 +162,8 @@ def inspect(
 
     part: a path, a Mesh, a pair of arrays (vertices (n, 3) in millimetres, faces (m, 3)), an array of triangles
         (m, 3, 3), or anything with .vertices and .faces, such as a trimesh.Trimesh.
-    unit_mm: millimetres per unit of a file that does not state its unit; 1 by default.
-    threads: number of threads; 0 is one for each processor.
+    unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.
+    threads: number of threads; 0 means one for each processor.
     progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
     Raises InputError for a file that cannot be read.

@@ -1,5 +1,5 @@
-"""Methods with arguments of the extension's classes. Arguments are checked here, as everywhere in the package, and
-passed on to the method of the extension with an underscore."""
+"""Methods of the extension's classes that have arguments. As everywhere in the package, arguments are checked in
+Python, and then passed to the extension's method whose name begins with an underscore."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ T = TypeVar("T")
 
 
 def _methods_of(cls: type) -> Callable[[T], T]:
-    """Adds the functions of the decorated class to `cls`, whose name their errors use."""
+    """Adds the functions of the decorated class to `cls`. The decorated class has the same name, which errors of Python
+    show."""
 
     def give(source: T) -> T:
         for name, method in vars(source).items():
@@ -85,8 +86,8 @@ class Layer(_lamella.Layer):
         _make_layer(self, _contours("rings", rings), height, below, above, number, _contours("chains", chains))
 
     def polygons(self) -> List[Tuple[int, List[int]]]:
-        """Returns the polygons of the material: pairs (outer, holes) of the index of the outer ring and a list of the
-        indices of its holes. Open chains, and rings that bound no material, are left out."""
+        """Returns the polygons of the material as pairs (outer, holes): the index of the outer ring, and the list of
+        the indices of its holes. Open chains, and rings that bound no material, are left out."""
         return self._polygons()
 
     def to_shapely(self) -> Any:
@@ -96,21 +97,21 @@ class Layer(_lamella.Layer):
 
     def filled(self, rule: check.FillRule = "nonzero") -> _lamella.Layer:
         """Returns the layer with overlapping bodies united. Material is where the winding number satisfies `rule`:
-        "nonzero", "evenodd" or "positive". Contours that do not overlap keep their points."""
+        "nonzero", "evenodd" or "positive". Rings that do not overlap others keep their points."""
         if check.text("rule", rule) not in ("nonzero", "evenodd", "positive"):
             raise UsageError(f'rule: "{check.excerpt(rule)}" is no fill rule; there are nonzero, evenodd and positive')
         return _made_of(self._filled(rule), self)
 
     def offset(self, distance: float, corners: check.Corners = "mitre") -> _lamella.Layer:
-        """Returns the layer with its material grown by `distance` millimetres, or shrunk by a negative one. `corners`
-        is the join of moved sides that separate at a corner: "mitre", "bevel" or "round"."""
+        """Returns the layer with its material grown by `distance` millimetres, or shrunk if that is negative. `corners`
+        is the join of moved edges that separate at a corner: "mitre", "bevel" or "round"."""
         if check.text("corners", corners) not in ("mitre", "bevel", "round"):
             raise UsageError(f'corners: "{check.excerpt(corners)}" are no corners; there are mitre, bevel and round')
         return _made_of(self._offset(check.number("distance", distance), corners), self)
 
     def union(self, other: _lamella.Layer) -> _lamella.Layer:
-        """Returns the union of the material of this layer and `other`, where winding numbers are positive. Contours
-        that intersect no others keep their points. Heights and open chains are those of this layer."""
+        """Returns the union of the material of this layer and `other`. Material is where the winding number is
+        positive. Rings that intersect no others keep their points. Heights and open chains are those of this layer."""
         return _made_of(self._union(_one_layer("other", other, "a layer")), self, other)
 
     def intersection(self, other: _lamella.Layer) -> _lamella.Layer:
@@ -126,7 +127,7 @@ class Layer(_lamella.Layer):
         return _made_of(self._symmetric_difference(_one_layer("other", other, "a layer")), self, other)
 
     def simplified(self, tolerance: float) -> _lamella.Layer:
-        """Returns the layer with fewer points, such that no contour moves by more than `tolerance` millimetres."""
+        """Returns the layer with fewer points. No contour moves by more than `tolerance` millimetres."""
         return _made_of(self._simplified(check.distance("tolerance", tolerance)), self)
 
 
@@ -158,7 +159,7 @@ class ParameterSet(_lamella.ParameterSet):
 
 
 def _attributes(base: type, rule: Any) -> Dict[str, Any]:
-    """Returns the attributes of our class, without those of derived classes."""
+    """Returns the attributes that the class of the package has, without those of derived classes."""
     return {name: getattr(rule, name) for name in dir(base) if not name.startswith("_")}
 
 

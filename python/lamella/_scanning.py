@@ -28,16 +28,16 @@ StrategyLike = Union[ScanStrategy, Mapping[str, Any], "os.PathLike[str]", str, N
 
 @dataclass(frozen=True)
 class ScanLayer:
-    """The scan vectors of one layer of a part, exposure by exposure, in the order in which they are executed."""
+    """The scan vectors of one layer of a part, exposure by exposure, in the order of execution."""
 
-    index: int  #: of the layer in the whole plan
-    z: float  #: where it was cut, in millimetres
-    bottom: float  #: of the material that it represents
+    index: int  #: index of the layer in the whole plan
+    z: float  #: height of the cut, in millimetres
+    bottom: float  #: bottom of the material that it represents
     top: float
     exposures: Tuple[Exposure, ...]
-    #: One for each exposure: contours as rings, each from its first exposed point; hatches as `hatches`. No copies.
+    #: One layer for each exposure: contours as rings, each from its first exposed point; hatches as `hatches`.
     layers: Tuple[Layer, ...]
-    #: Material of the layer that no vector reaches, in mm2; see `accepted_mm2` of a ScanStrategy.
+    #: Area of the material of the layer that no vector reaches, in mm2; see `accepted_mm2` of a ScanStrategy.
     unreached_mm2: float = 0.0
 
     def __post_init__(self) -> None:
@@ -54,7 +54,8 @@ class ScanLayer:
 
     @property
     def vectors(self) -> npt.NDArray[np.float64]:
-        """Returns all lines, from point to point, in their order: (n, 2, 2), millimetres. A copy."""
+        """Returns all lines, each from one point to another, in their order: (n, 2, 2), millimetres. The array is a
+        copy."""
         lines = [_lines(layer) for layer in self.layers]
         return np.concatenate(lines) if lines else np.empty((0, 2, 2))
 
@@ -66,7 +67,8 @@ class ScanLayer:
 
     @property
     def figures(self) -> List[ScanFigures]:
-        """Returns the figures of each exposure: lengths, seconds, energy; the beam goes from one to the next."""
+        """Returns the figures of each exposure: lengths, seconds, energy. The beam moves from each exposure to the
+        next."""
         return _lamella.measure_vectors(list(self.layers), list(self.exposures))
 
 
@@ -78,7 +80,7 @@ def _lines(layer: Layer) -> npt.NDArray[np.float64]:
 
 
 class ScanStream(Iterator[ScanLayer]):
-    """Scan layers of a source whose file header is known before its layers."""
+    """Scan layers of a source for which the header of a file is known before the layers."""
 
     def __init__(self, scanned: Generator[ScanLayer, None, None], source: Union[Stack, LayerStream]) -> None:
         self._scanned = scanned
@@ -88,7 +90,7 @@ class ScanStream(Iterator[ScanLayer]):
         self.rule = source.rule
 
     def first(self) -> Optional[ScanLayer]:
-        """Returns the next one without taking it; None at the end."""
+        """Returns the next scan layer without taking it; None at the end."""
         if self._first is None:
             self._first = next(self._scanned, None)
         return self._first
@@ -110,23 +112,24 @@ class ScanStream(Iterator[ScanLayer]):
 def scan(
     layers: Iterable[Layer], strategy: StrategyLike = None, part: str = "part", *, support: bool = False
 ) -> Iterator[ScanLayer]:
-    """Makes scan vectors of layers in ascending z, such as a Stack or a stream from `iter_layers`. Yields them one by
-    one, and holds no more layers than skins need. Skins take account of layers that `iter_layers` leaves out by its
-    options; above and below other layers, and a Stack with only some of its part's layers, there is no material. Points
-    of a Stack from a file are left out if they are collinear except for the rounding of the file.
+    """Computes scan vectors of layers in ascending z, such as a Stack or a stream from `iter_layers`. Yields them one
+    by one, and keeps no more layers than skins need. Skins depend on the layers above and below. For a stream they
+    include layers that the options of `iter_layers` leave out; otherwise there is no material above the last layer and
+    below the first one. Points of a Stack from a file are left out if they are collinear except for the rounding of the
+    file.
 
-    strategy: a ScanStrategy, of which a copy is taken; the path of a TOML file, as for the program (needs Python 3.11);
-        the same tables as a dict, such as {"hatch": {"distance": 0.08}}; None is the default strategy.
-    part: name of the part in exposures; an empty text is "part".
-    support: exposes the part as a support: by the strategy's rule for these, without skins.
+    strategy: a ScanStrategy, which is copied; the path of a TOML file, as for the program (needs Python 3.11); or the
+        same tables as a dict, such as {"hatch": {"distance": 0.08}}. None means the default strategy.
+    part: name of the part in exposures; an empty text means "part".
+    support: scans the part as a support, by the strategy's rule for supports and without skins.
 
     Pass the result to `write` to store it.
 
     Raises UsageError for an invalid strategy and for layers that do not ascend, InputError for a Stack that already
-    holds scan vectors, LimitError for layers that would have too many vectors. Issues a DefectWarning if layers have
-    content that vectors are not made of: hatch lines, open chains, rings that bound no material because the mesh is
-    inside out. It is issued at once for a Stack, for other layers when the last one has been taken. Issues another
-    one if skins need layers of the part that are not in a Stack.
+    contains scan vectors, LimitError for layers that would have too many vectors. Issues a DefectWarning if layers have
+    content of which no vectors are made: hatch lines, open chains, and rings that bound no material because the mesh is
+    inside out. For a Stack it is issued at once, for other layers after the last one was taken. Issues another
+    DefectWarning if skins need layers of the part that are not in a Stack.
     """
     try:
         each = _ascending(iter(layers))
@@ -159,7 +162,8 @@ def _ascending(layers: Iterator[Any]) -> Iterator[Layer]:
 
 
 def _check_stack(stack: Stack) -> None:
-    """Rejects scan vectors, which are not material: hatches have no contours, and each contour would be hatched."""
+    """Rejects scan vectors, because they do not describe material: hatches have no contours, and each contour would be
+    hatched again."""
     for part in stack.parts:
         if part.exposure is not None:
             raise InputError(
@@ -183,7 +187,7 @@ def _warn_of_skins(stack: Stack, strategy: ScanStrategy) -> None:
 
 
 def _told(layers: Iterable[Layer]) -> Iterator[Layer]:
-    """Yields the layers, and warns at the end of content that vectors are not made of."""
+    """Yields the layers. At the end, warns of their content of which no vectors are made."""
     losses = _lamella.ScanLosses()
     for layer in layers:
         losses.add(layer)
@@ -206,7 +210,7 @@ def _scan(
     stack = source if isinstance(source, Stack) else None
     exposures = tuple(_lamella.exposures(strategy, part))
     wanted = strategy.downskin.layers, strategy.upskin.layers
-    # Layers that iter_layers left out determine skins, too.
+    # Layers that iter_layers left out affect skins, too.
     beneath, on_top = source._beside(*wanted) if isinstance(source, LayerStream) and any(wanted) else ([], [])
     end = on_top[0] if on_top else None
     layers = chain(layers, on_top)
@@ -226,7 +230,7 @@ def _scan_layer(layer: Layer, exposures: Tuple[Exposure, ...], scanned: Tuple[Li
 
 
 def as_strategy(name: str, strategy: StrategyLike) -> ScanStrategy:
-    """Returns a copy, so that later changes of the given strategy have no effect."""
+    """Returns a copy of the strategy, so that later changes of the given object have no effect."""
     if strategy is None:
         return ScanStrategy()
     if isinstance(strategy, ScanStrategy):
@@ -257,7 +261,7 @@ def _toml(path: str) -> Dict[str, Any]:
 
 
 def _from_tables(name: str, tables: Mapping[str, Any]) -> ScanStrategy:
-    """Converts the tables of a strategy file, any of which may be missing."""
+    """Makes a strategy of the tables of a strategy file, any of which may be missing."""
     strategy = ScanStrategy()
     rules: List[Union[ContourRule, HatchRule]] = [
         strategy.contours, strategy.hatch, strategy.upskin.hatch, strategy.downskin.hatch,
@@ -318,11 +322,11 @@ def _assign(name: str, rule: Any, table: Any, sets: Optional[Dict[str, Parameter
 
 @dataclass(frozen=True)
 class Geometry:
-    """Lines in the form of PySLM's HatchGeometry or ContourGeometry."""
+    """Lines with the attributes of PySLM's HatchGeometry or ContourGeometry."""
 
-    coords: npt.NDArray[np.float64]  #: hatches: (2 n, 2), from point to point; contours: (n, 2), the first one again
-    bid: int  #: number of the build style, which is that of the exposure, from 1
-    mid: int  #: of the model
+    coords: npt.NDArray[np.float64]  #: hatches: (2 n, 2); contours: (n, 2), rings end with their first point
+    bid: int  #: number of the build style, which is the number of the exposure, from 1
+    mid: int  #: number of the model
     kind: str  #: "contour" or "hatch"
 
     def numPoints(self) -> int:  # noqa: N802, the name is PySLM's
@@ -356,7 +360,7 @@ class PyslmLayer:
 
 
 def to_pyslm(layer: ScanLayer, mid: int = 1) -> PyslmLayer:
-    """Converts a layer for tools that take PySLM's layers; PySLM itself is not needed. `mid` is the number of the
+    """Converts a layer for tools that accept PySLM's layers; PySLM itself is not needed. `mid` is the number of the
     model. Build styles (`bid`) are numbered like the exposures, from 1."""
     if not isinstance(layer, ScanLayer):
         check.refuse_type("layer", "a ScanLayer", layer)

@@ -1,4 +1,4 @@
-"""Layers as polygons of shapely, which is imported on first use: Lamella itself does not need it."""
+"""Converts layers to polygons of shapely, which is imported on first use, because Lamella itself does not need it."""
 
 from __future__ import annotations
 
@@ -21,6 +21,6 @@ def multi_polygon(layer: Layer) -> Any:
     ])  # fmt: skip
     if material.is_valid:
         return material
-    # Bodies share edges, or rings touch themselves: this is correct, but not valid in shapely.
+    # Bodies that share edges, and rings that touch themselves, are correct, but not valid in shapely.
     joined = unary_union([make_valid(polygon) for polygon in material.geoms])
     return MultiPolygon([part for part in getattr(joined, "geoms", [joined]) if isinstance(part, Polygon)])

@@ -21,7 +21,7 @@ PLACES = ("bottom", "middle", "top")
 
 
 class Engine(NamedTuple):
-    """An algorithm that makes layers of a mesh."""
+    """A slicing algorithm."""
 
     name: str  #: value for `engine=`
     summary: str  #: one line
@@ -31,8 +31,8 @@ class Engine(NamedTuple):
 def engines() -> List[Engine]:
     """Returns the available algorithms; the first is the default.
 
-    All give the same layers of a mesh that is closed and consistently oriented, with two triangles at each edge. An
-    exception is "conventional", which may err where contours touch in a point.
+    For a mesh that is closed and consistently oriented, with two triangles at each edge, all give the same layers, with
+    one exception: "conventional" may be wrong where contours touch in a point.
     """
     return [Engine(*row) for row in _lamella.engines()]
 
@@ -66,34 +66,34 @@ def slice(
     layer_height: thickness of a layer in millimetres, stacked from the bottom of the part; 0.1 by default.
 
     Instead of one layer height:
-    z: ascending heights in millimetres, (layers,): cuts at exactly these.
+    z: ascending heights in millimetres, (layers,); the mesh is cut exactly there.
     offsets: the same, relative to the bottom of the part.
     heights: ranges (from, to, layer_height) in millimetres above the bottom of the part; elsewhere layers are
         `layer_height` high.
-    adaptive: the smallest and the largest layer height, for layers as high as the slopes of the surface allow:
+    adaptive: the smallest and the largest layer height. Layers are as high as the slopes of the surface allow, so that
         their steps deviate from it by at most `cusp` millimetres, 0.05 by default.
 
     first_layer_height: thickness of the first layer in millimetres, if it differs.
     at: position of the cut within a layer: "bottom", "middle" or "top".
-    z_range: only layers cut from the first to the second of these heights, in millimetres.
-    layers: only layers from the first of these indices to the one before the second.
-    snap: vertices at most this far from a plane, in millimetres, count as on it, such as those of faces that are
+    z_range: keeps only the layers that are cut between these two heights, in millimetres, both included.
+    layers: keeps only the layers with indices from the first of these numbers to the one before the second.
+    snap: vertices at most this far from a plane, in millimetres, count as on it. It is meant for faces that are
         horizontal except for rounding.
-    direction: the upward direction, (x, y, z) of any length; the mesh is rotated so that it points along z.
-    transform: a (4, 4) matrix that is applied to the mesh before that, in millimetres.
-    unit_mm: millimetres per unit of a file that does not state its unit; 1 by default.
+    direction: the direction of slicing, (x, y, z) of any length; the mesh is rotated so that this points along z.
+    transform: a (4, 4) matrix in millimetres that is applied to the mesh before this rotation.
+    unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.
     engine: the algorithm, one of `engines`.
     strict: raises a DefectError for any defect of the file or its mesh.
-    threads: number of threads; 0 is one for each processor. The result is the same, bit for bit, for any number.
-    progress: called as progress(stage, done, total) from time to time, on the calling thread: `done` of `total`
-        bytes, triangles or layers of the stages "read", "weld", "link" and "slice". An exception that it raises stops
-        slicing and reaches the caller.
+    threads: number of threads; 0 means one for each processor. The result is the same, bit for bit, for any number.
+    progress: called as progress(stage, done, total) from time to time, on the calling thread. The stages are "read",
+        "weld", "link" and "slice"; `done` and `total` count bytes, triangles or layers. An exception that it raises
+        stops slicing and reaches the caller.
 
-    Other Python threads run meanwhile. Ctrl-C stops within a second.
+    Other Python threads can run in the meantime. Ctrl-C stops slicing within a second.
 
     Raises UsageError, InputError, DefectError, LimitError. Issues a DefectWarning if the file has defects, if contours
-    do not close because the mesh has holes, if rings bound no material because triangles face inwards, and if
-    horizontal faces lie within rounding of a plane, so that rounding decides the content of their layers.
+    do not close because the mesh has holes, if rings bound no material because triangles face inwards, or if horizontal
+    faces coincide with a plane except for rounding, which then decides the content of the layer.
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
@@ -129,14 +129,14 @@ def iter_layers(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> LayerStream:
-    """Yields the layers of a mesh one by one, in ascending z, while the next ones are computed: for parts whose layers
-    do not fit into memory. It holds a bounded number of layers; those that were taken belong to the caller.
+    """Yields the layers of a mesh one by one, in ascending z, while the next ones are computed. This is for parts whose
+    layers do not fit into memory: the number of layers that wait for the caller is bounded.
 
-    Takes what `slice` takes and gives the same layers. The mesh is read before this returns; later errors are raised
-    by the iterator. Leaving the loop early, close(), or `with` stops the work.
+    Takes what `slice` takes and gives the same layers. The mesh is read before this function returns; later errors are
+    raised by the iterator. To stop early, leave the loop, call close(), or use `with`.
 
-    strict: inspects the mesh first; without it open chains (see Layer.open_chains) and rings that bound no material
-        cause no warning.
+    strict: inspects the mesh first. Otherwise there is no warning about open chains (see Layer.open_chains) and rings
+        that bound no material.
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
@@ -166,7 +166,7 @@ def _prepared(
     threads: int,
     progress: Optional[Progress],
 ) -> Tuple[Mesh, _lamella.Plan]:
-    """Returns the placed mesh, and the planes to cut it at."""
+    """Returns the placed mesh, and the plan by which it is cut."""
     _check_conflicts(layer_height, z, offsets, heights, adaptive, cusp, first_layer_height)
     names = [known.name for known in engines()]
     if check.text("engine", engine) not in names:

@@ -9,7 +9,7 @@ from typing import Iterable
 from ._errors import DefectWarning
 
 
-#: Python's names for fields in texts of the library.
+#: Names in Python for fields that texts of the library mention.
 ARGUMENTS = {
     "`snap_mm` ": "snap=",
     "`close_gaps_mm` ": "lamella slice --close-gaps ",
