@@ -1,6 +1,6 @@
 #pragma once
 
-// Ctrl-C, the termination signal, and the end of the terminal.
+// Handles Ctrl-C, the termination signal, and the end of the terminal.
 
 #include "lamella/core/execution.hpp"
 

@@ -19,7 +19,7 @@
 // returns the correct result.
 #ifdef __clang__
 #pragma clang diagnostic push
-#pragma clang diagnostic ignored "-Wignored-attributes" // of templates that were included before
+#pragma clang diagnostic ignored "-Wignored-attributes" // for templates included before
 #pragma clang attribute push(__attribute__((no_sanitize("unreachable"))), apply_to = function)
 #endif
 #include <toml++/toml.h>

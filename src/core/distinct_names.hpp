@@ -12,7 +12,7 @@ class DistinctNames {
     /// Returns the name, with a number appended if another part has it already.
     std::string of(const std::string& name);
 
-    /// Number of names that were changed, and the first of them after the change.
+    /// Return the number of names that were changed, and the first changed name.
     [[nodiscard]] std::uint64_t changed() const noexcept { return changed_; }
     [[nodiscard]] const std::string& first_changed() const noexcept { return first_changed_; }
 

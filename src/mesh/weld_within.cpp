@@ -108,7 +108,8 @@ class CellGrid {
     }
 
   private:
-    /// The cells along x and y; the cell along z, and the point.
+    /// Two numbers that are sorted: the first combines the cells along x and y, the second the cell along z
+    /// and the point.
     using Position = std::pair<std::uint64_t, std::uint64_t>;
 
     std::vector<Position> positions_;

@@ -83,9 +83,9 @@ void give_back_chunk(const FaceChunk& chunk, ReadLimits& limits);
 using TrianglePosition = std::function<std::string(std::uint64_t triangle)>;
 
 /// Makes a mesh file of faces. Triangulates the polygons, and drops triangles with a corner that is not
-/// finite (with a remark) and vertices that no triangle uses. `first_vertex` is the number of the file's
-/// first vertex: 0 or
-/// 1. Throws Error{input} if a face refers to a vertex that does not exist, or if no triangle is left.
+/// finite (with a remark) and vertices that no triangle uses. `first_vertex`, 0 or 1, is the number of the
+/// file's first vertex. Throws Error{input} if a face refers to a vertex that does not exist, or if no
+/// triangle is left.
 [[nodiscard]] MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned first_vertex,
                                       const TrianglePosition& location, Remarks& remarks, Executor& executor);
 

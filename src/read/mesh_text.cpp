@@ -77,7 +77,7 @@ class Elements {
     }
 
   private:
-    /// Divides a sequence between elements.
+    /// Divides a sequence into chunks of whole elements.
     void cut(std::string_view run, std::size_t mesh) {
         while (run.size() > text_chunk_bytes) {
             const std::size_t cut = run.find(kind_.tag, text_chunk_bytes);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Limits of memory and time for an operation on one layer.
+// Limits for an operation on one layer: memory and cancellation.
 
 #include "lamella/core/api.hpp"
 #include "lamella/core/execution.hpp"

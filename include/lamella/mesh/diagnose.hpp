@@ -84,7 +84,7 @@ struct Diagnosis {
     std::vector<EdgeLocation> nonmanifold_edges; ///< ordered by vertex numbers
     std::vector<EdgeLocation> conflicting_edges; ///< ordered by vertex numbers
     std::vector<Point3> vertices;                ///< the non-manifold vertices, ordered by number
-    /// Ordered by number; the first triangle of each kind is not listed.
+    /// Ordered by number; the first triangle of each group of duplicates is not listed.
     std::vector<std::uint32_t> duplicate_triangles;
     std::vector<std::uint32_t> degenerate_triangles;     ///< ordered by number
     std::vector<Shell> shells;                           ///< ordered by first triangle

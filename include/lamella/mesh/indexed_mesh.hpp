@@ -16,8 +16,8 @@ namespace lamella {
 
 /// Vertices (#V by 3, double) and triangles (#T by 3, indices into the vertices, counter-clockwise seen from
 /// outside). Vertices may be repeated: those with equal coordinates are the same vertex (see Mesh). Some
-/// functions that take an IndexedMesh compare vertices by index only; their contracts state it. At most 2^32
-/// - 1 vertices and 2^32 - 1 triangles; functions that would need more throw Error{limit}.
+/// functions that take an IndexedMesh compare vertices by index only; their contracts state it. There are at
+/// most 2^32 - 1 vertices and 2^32 - 1 triangles; functions that would need more throw Error{limit}.
 struct IndexedMesh {
     std::vector<Point3> vertices;
     std::vector<std::array<std::uint32_t, 3>> triangles;

@@ -15,9 +15,9 @@ LAMELLA_API_BEGIN
 namespace lamella {
 
 struct Inspection {
-    Box3 box;              ///< of all vertices
+    Box3 box;              ///< bounding box of all vertices
     double volume_mm3 = 0; ///< signed; meaningful when `closed()`
-    double area_mm2 = 0;   ///< of all triangles
+    double area_mm2 = 0;   ///< area of all triangles
     std::uint64_t triangles = 0;
     std::uint64_t vertices = 0;
 

@@ -82,14 +82,14 @@ struct OrientedMesh {
 /// centroid of A's largest triangle, B's box contains A's box, and their surfaces do not cross. If they
 /// touch, A keeps its orientation. Outward means that the volume is positive; the volume of a group with open
 /// edges is measured from the centre of the box around these edges. Non-orientable patches keep their
-/// orientation. So does a group whose volume is 0 within rounding, and one whose holes, closed by fans, would
-/// have nearly half the area of the group or more.
+/// orientation. So does a group whose volume is 0 within rounding, and one where the fans that would close
+/// its holes have nearly half of its area or more.
 ///
 /// If a body lies within another one and both are oriented outward, the inner body becomes a void: do not
-/// call this function if it should be filled. The result does not depend on the order of triangles nor on the
-/// first corner of each: the lexicographically smallest triangle decides ties. Throws Error{limit} beyond
-/// 2^31 - 1 triangles. Expected O(n) per pass if few triangles lie above or below each patch; a flip can
-/// require another pass, and a few passes usually suffice. O(n^2) for n nested patches.
+/// call this function if the inner body should be filled. The result does not depend on the order of
+/// triangles nor on the first corner of each: the lexicographically smallest triangle decides ties. Throws
+/// Error{limit} beyond 2^31 - 1 triangles. Expected O(n) per pass if few triangles lie above or below each
+/// patch; a flip can require another pass, and a few passes usually suffice. O(n^2) for n nested patches.
 [[nodiscard]] OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution = {});
 
 } // namespace lamella

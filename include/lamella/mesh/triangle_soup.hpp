@@ -35,8 +35,8 @@ using Triangle3 = std::array<Point3, 3>;
 /// file (spacing 50 bytes). It keeps that memory alive and is cheap to copy.
 ///
 /// A soup may carry a placement: an affine map applied in double precision to each corner when it is read.
-/// All corners are finite: constructors throw Error{input} that names the first triangle with another corner.
-/// Equal corners are the same vertex, with -0 equal to +0.
+/// All corners are finite: constructors throw Error{input} that names the first triangle with a corner that
+/// is NaN or infinite. Equal corners are the same vertex, with -0 equal to +0.
 class TriangleSoup {
   public:
     TriangleSoup() = default;
@@ -49,10 +49,10 @@ class TriangleSoup {
     TriangleSoup(std::shared_ptr<const void> owner, const std::byte* first, std::size_t stride,
                  std::size_t count);
 
-    /// States that all corners have been checked to be finite.
+    /// A tag: all corners are known to be finite.
     struct KnownFinite {};
 
-    /// The same view without the check of the corners. `box` is the box of all corners, if known.
+    /// A view of triangles whose corners are not checked. `box` is the box of all corners, if known.
     TriangleSoup(KnownFinite, std::shared_ptr<const void> owner, const std::byte* first, std::size_t stride,
                  std::size_t count, const std::optional<Box3>& box = std::nullopt)
         : owner_(std::move(owner)), first_(first), stride_(stride), count_(count), stored_box_(box) {}

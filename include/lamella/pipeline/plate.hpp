@@ -69,7 +69,7 @@ struct PlateFile {
     std::string path;
     std::string format; ///< MeshFile::format
     double unit_mm = 1;
-    Transform matrix; ///< from the file's coordinates (without build items) to the plate's
+    Transform matrix; ///< transform from the file's coordinates (without build items) to those of the plate
     std::uint64_t stored_triangles = 0;
     std::vector<std::string> warnings;
     std::vector<MeshBody> bodies; ///< MeshFile::bodies

@@ -49,12 +49,12 @@ class Communicator {
 
 /// Figures of each process, as in docs/scaling.md.
 struct ProcessFigures {
-    std::uint64_t triangles_read = 0;   ///< of its part of the files
+    std::uint64_t triangles_read = 0;   ///< triangles in its part of the files
     std::uint64_t triangles_sliced = 0; ///< triangles that its planes cut
-    std::uint64_t bytes_sent = 0;       ///< triangles for other processes
+    std::uint64_t bytes_sent = 0;       ///< bytes of triangles sent to other processes
     std::uint64_t planes = 0;
     std::uint64_t points = 0;
-    double read_seconds = 0;     ///< three passes over its part of the files
+    double read_seconds = 0;     ///< time of three passes over its part of the files
     double exchange_seconds = 0; ///< including waiting for other processes
     double slice_seconds = 0;    ///< including formatting
     double write_seconds = 0;

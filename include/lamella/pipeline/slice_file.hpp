@@ -109,7 +109,7 @@ struct LayerStatistics {
     InvertedRings inverted;        ///< sum over all parts; see FileResult::doubts
     std::vector<GapJoin> joins;    ///< gaps that were closed; with RepairPolicies::close_gaps_mm
     std::uint64_t hash = 0;        ///< content_hash of the contours of all parts in one layer (see `merged`)
-    LayerChanges changes;          ///< made by FileJob::steps
+    LayerChanges changes;          ///< changes by FileJob::steps
     std::vector<ScanFigures> scan; ///< one for each of FileResult::exposures, with FileJob::scan
     /// Hash of the scan vectors, with FileJob::scan: the stack_hash of the content hashes of all exposures,
     /// part by part, in their order.

@@ -68,13 +68,13 @@ struct SliceReport {
 /// Receives each layer as soon as it is sliced. It is called once for every layer, from several threads at
 /// once and in any order, and does the work that can run in parallel, such as formatting. It returns a
 /// function, which may be empty, for the work that must be done in order, such as writing. These functions
-/// are called later, one at a time and in ascending z. If either throws, slicing stops and the exception
-/// reaches the caller.
+/// are called later, one at a time and in ascending z. If the sink or such a function throws, slicing stops
+/// and the exception reaches the caller.
 using LayerSink = std::function<std::function<void()>(Layer&&)>;
 
 /// Called with ranges of triangles, [begin, end), while slicing reads them; each triangle of the mesh is
-/// visited once. It is called from several threads at once. Since the triangles are then in the cache, it
-/// costs less than a separate pass.
+/// visited once. It is called from several threads at once. Since the triangles are then in the cache, a
+/// visit costs less than a separate pass.
 using TriangleVisitor = std::function<void(const Mesh& mesh, std::uint64_t begin, std::uint64_t end)>;
 
 /// Input and output of an engine.

@@ -91,11 +91,11 @@ struct LayerWriteOptions {
     double units_mm = usual_units_mm;
     /// Common Layer Interface, binary: writes 16-bit coordinates. Error{usage} if the coordinates do not fit.
     bool short_form = false;
-    /// Options of png, png-zip, sl1 and sl1s.
+    /// Options of the formats png, png-zip, sl1 and sl1s.
     ImageOptions image = {};
-    /// sl1, sl1s.
+    /// Options of the formats sl1 and sl1s.
     ExposureOptions exposure = {};
-    /// html.
+    /// Options of the format html.
     PageOptions page = {};
 };
 

@@ -5,9 +5,10 @@
 
 // Efficient contour construction with edge matching
 //
-// This is section 3.2 of King, Rennie and Bennett (2021), and the column "ECC + edge matching" of its Table
-// 5. It is ECC, except that it searches only for the first intersection on a pair of edges; the positions of
-// the others follow from the first. The cases are tested in the order in which the paper introduces them.
+// This is section 3.2 of King, Rennie and Bennett (2021), and the column "ECC + edge matching" of its
+// Table 5. It is ECC, except that it searches only for the first intersection on a pair of edges; the
+// positions of the others follow from the first. The cases are tested in the order in which the paper
+// introduces them.
 
 namespace lamella {
 

@@ -197,7 +197,7 @@ class alignas(128) Collector {
         if (!corners_.load(i, corner, rank))
             return;
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
-            return; // no area and no effect on the topology: its two cut edges, if any, are one
+            return; // no area and no effect on the topology: its two cut edges, if any, coincide
 
         const std::array<std::uint64_t, 3> hash{Corners::hash(corner[0]), Corners::hash(corner[1]),
                                                 Corners::hash(corner[2])};

@@ -53,7 +53,7 @@ struct PlaneSpan {
     std::uint32_t last;
 };
 
-/// The two ends of an edge, in the representation that a kind of mesh has for vertices.
+/// The two ends of an edge. `Vertex` is the representation of a vertex in a kind of mesh.
 template <class Vertex>
 struct EdgeEnds {
     Vertex low, high;
