@@ -71,11 +71,14 @@ int run_command(const Command& command, const Context& context) {
     try {
         return command.run(context);
     } catch (const Error& error) {
+        const std::string text = error.what();
+        if (text.starts_with("-: ") || text.starts_with("-, ") || text.starts_with("- and ")) // its path
+            throw Error(error.kind(), input_name("-") + text.substr(1));
         const bool of_data = error.kind() == ErrorKind::limit || error.kind() == ErrorKind::input ||
                              error.kind() == ErrorKind::defect || error.kind() == ErrorKind::internal;
-        if (!of_data || is_named(error.what()))
+        if (!of_data || is_named(text))
             throw;
-        throw Error(error.kind(), inputs() + error.what());
+        throw Error(error.kind(), inputs() + text);
     } catch (const std::bad_alloc&) {
         throw Error(ErrorKind::limit, inputs() + std::string(out_of_memory));
     }

@@ -75,7 +75,8 @@ void write_at(const std::string& path, std::uint64_t position, const ByteStore& 
 
 JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Communicator& processes,
                      std::uint64_t most_in_memory)
-    : processes_(processes), path_(job.output), most_bytes_(job.write.most_bytes), waiting_(most_in_memory) {
+    : processes_(processes), path_(job.output), most_bytes_(job.write.most_bytes), strict_(job.write.strict),
+      waiting_(most_in_memory) {
     if (!job.output.empty()) {
         format_ = &layer_format(job.format, job.output);
         LayerWriteOptions options = job.write;
@@ -90,7 +91,9 @@ JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Co
                           waiting_.add(bytes);
                       }};
             info.chunk = &chunk_;
-            options.most_bytes = 0; // the limit applies to the whole file
+            // Both apply to the whole file.
+            options.most_bytes = 0;
+            options.strict = false;
         }
         in_agreement(processes, [&] {
             if (shared_ || processes.process() == 0)
@@ -133,21 +136,40 @@ JobOutput::Written JobOutput::finish_file() {
         if (!shared_ || chunk_.layers > 0)
             writer_->finish();
         written.bytes = shared_ ? 0 : writer_->bytes();
-        written.warnings = writer_->warnings();
     });
-    // All processes get the warnings, even if only one wrote.
-    const std::string mine = fmt::format("{}", fmt::join(std::exchange(written.warnings, {}), "\n"));
-    for (const std::string& warnings : processes_.gather(mine)) {
-        std::istringstream lines(warnings);
-        for (std::string warning; std::getline(lines, warning);)
-            written.warnings.push_back(warning);
-    }
+    if (shared_)
+        gather_losses();
+    written.warnings = warnings_of_file();
     if (shared_) {
         written.bytes = write_shared();
     } else {
         processes_.sum(std::span(&written.bytes, 1)); // others have 0
     }
     return written;
+}
+
+/// Adds the losses of all ranges to those of the first one, which process 0 has written.
+void JobOutput::gather_losses() {
+    const std::vector<std::string> all = processes_.gather(Packer().put(writer_->losses()).take());
+    in_agreement(processes_, [&] {
+        if (processes_.process() != 0)
+            return;
+        for (std::size_t p = 1; p < all.size(); ++p)
+            writer_->add_losses(Unpacker(all[p]).get<WriteLosses>());
+        if (strict_)
+            check_warnings(path_, writer_->warnings());
+    });
+}
+
+/// Returns the warnings of process 0, on all processes.
+std::vector<std::string> JobOutput::warnings_of_file() {
+    const std::vector<std::string> mine =
+        processes_.process() == 0 ? writer_->warnings() : std::vector<std::string>();
+    std::istringstream lines(processes_.gather(fmt::format("{}", fmt::join(mine, "\n"))).front());
+    std::vector<std::string> warnings;
+    for (std::string warning; std::getline(lines, warning);)
+        warnings.push_back(warning);
+    return warnings;
 }
 
 std::vector<std::string> JobOutput::finish_page(const PageNotes& notes) {

@@ -22,7 +22,7 @@
 namespace lamella {
 
 /// The slice file of a job, and the page beside it. A single process writes while it slices. If there are
-/// several and the layers of the file lie one after the other (LayerFormat::pieces), each process writes its
+/// several and the layers of the file lie one after the other (LayerFormat::chunks), each process writes its
 /// range of the file once all sizes are known. Layers for other formats, and for standard output, go to
 /// process 0, which writes. Nothing has its name before all of it is written. All processes must call these
 /// functions together.
@@ -49,6 +49,8 @@ class JobOutput {
     [[nodiscard]] bool has_page() const noexcept { return page_ != nullptr; }
 
   private:
+    void gather_losses();
+    [[nodiscard]] std::vector<std::string> warnings_of_file();
     void send_layers();
     void write_layers_of_others();
     [[nodiscard]] std::uint64_t write_shared();
@@ -56,6 +58,7 @@ class JobOutput {
     Communicator& processes_;
     std::string path_;
     std::uint64_t most_bytes_;
+    bool strict_;
     const LayerFormat* format_ = nullptr;
     std::unique_ptr<LayerWriter>
         writer_; ///< of the file or of this process's range of it; null if another process writes

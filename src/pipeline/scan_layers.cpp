@@ -32,12 +32,9 @@ void UnreachedMaterial::add(double unreached_mm2, double z) noexcept {
 
 std::string UnreachedMaterial::text() const {
     return fmt::format("{:.4g} mm2 of material on {}, the lowest at z = {:.6g} mm, are reached by no vector: "
-                       "it is too narrow for "
-                       "contours, for lines of hatches or for lines of thin walls. More contours or smaller "
-                       "values of beam_offset, "
-                       "border, shortest or thinnest reach more; accepted_mm2 of the strategy says how much "
-                       "of a layer may be "
-                       "left",
+                       "it is too narrow for contours, for lines of hatches or for lines of thin walls. More "
+                       "contours or smaller values of beam_offset, border, shortest or thinnest reach more; "
+                       "accepted_mm2 of the strategy says how much of a layer may be left",
                        area_mm2, counted(layers, "layer"), first_z);
 }
 
@@ -125,7 +122,8 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
     for (std::uint32_t i = 0; i < planes; ++i)
         result.unreached.add(unreached[i], parts.front()[i].z);
     if (options.strict && result.unreached.layers > 0)
-        throw Error(ErrorKind::defect, fmt::format("{}: {}", path, result.unreached.text()));
+        throw Error(ErrorKind::defect,
+                    fmt::format("{}: {}", name.empty() ? path : name, result.unreached.text()));
     writer->finish();
     for (const std::vector<ScanFigures>& layer : result.layers)
         for (std::size_t i = 0; i < layer.size(); ++i)

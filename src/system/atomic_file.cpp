@@ -78,8 +78,12 @@ std::string follow_links(const std::string& path) {
 
 } // namespace
 
+std::string name_of_output(const std::string& path) {
+    return path == "-" ? "standard output" : path;
+}
+
 Error output_error(const std::string& path, int system_error) {
-    const std::string what = path == "-" ? "standard output" : "'" + path + "'";
+    const std::string what = path == "-" ? name_of_output(path) : "'" + path + "'";
     const auto text = [&](const std::string& reason) {
         return Error(ErrorKind::output, fmt::format("cannot write {}: {}", what, reason));
     };

@@ -21,6 +21,9 @@ namespace lamella {
 /// the replacement has the same group; if not, permissions of the group are dropped.
 [[nodiscard]] unsigned kept_permissions(unsigned mode, bool same_group) noexcept;
 
+/// Returns the name of an output in messages: "standard output" for "-".
+[[nodiscard]] std::string name_of_output(const std::string& path);
+
 /// Returns the error for a path that could not be written: the path, the system's error (an errno) and
 /// advice, in one line.
 [[nodiscard]] Error output_error(const std::string& path, int system_error);

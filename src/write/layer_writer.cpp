@@ -4,10 +4,10 @@
 #include "lamella/core/printable.hpp"
 #include "lamella/write/layer_page.hpp"
 
-#include "contour/same_height.hpp"
 #include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
+#include "system/atomic_file.hpp"
 #include "write/layer_writers.hpp"
 #include "write/ordered_writer.hpp"
 
@@ -195,43 +195,23 @@ void check_info(const LayerFileInfo& info) {
                     "a slice file needs the box of its part, and that is empty or not finite");
 }
 
-/// Counts layers that were not cut at mid-height.
-class MovedCuts {
-  public:
-    void note(const PlanePosition& layer) {
-        const auto is_at = [&](double z) {
-            return std::abs(layer.z - z) <= same_height_mm;
-        };
-        if (is_at(layer.bottom + (layer.top - layer.bottom) / 2))
-            return;
-        if (all_++ == 0)
-            lowest_ = layer.z;
-        bottoms_ += is_at(layer.bottom) ? 1 : 0;
-        tops_ += is_at(layer.top) ? 1 : 0;
-    }
-    /// Returns a warning if there are any, for a format that cannot keep them.
-    [[nodiscard]] std::vector<std::string> warnings() const {
-        if (all_ == 0)
-            return {};
-        return {
-            fmt::format("{} cut {}, the lowest at z = {:.6g} mm: the format cannot hold that, and readers "
+/// Returns a warning about layers that were not cut at mid-height, if there are any, for a format that cannot
+/// keep cuts.
+std::vector<std::string> warnings_of_cuts(const WriteLosses& losses) {
+    const std::uint64_t all = losses.cuts.count;
+    if (all == 0)
+        return {};
+    return {fmt::format("{} cut {}, the lowest at z = {:.6g} mm: the format cannot hold that, and readers "
                         "take the middle; {} have",
-                        counted(all_, "layer was", "layers were"),
-                        tops_ == all_      ? "at the top"
-                        : bottoms_ == all_ ? "at the bottom"
-                                           : "elsewhere than in the middle",
-                        lowest_, names_of_exact())};
-    }
-
-  private:
-    std::uint64_t all_ = 0;
-    std::uint64_t bottoms_ = 0;
-    std::uint64_t tops_ = 0;
-    double lowest_ = 0;
-};
+                        counted(all, "layer was", "layers were"),
+                        losses.top_cuts == all      ? "at the top"
+                        : losses.bottom_cuts == all ? "at the bottom"
+                                                    : "elsewhere than in the middle",
+                        losses.cuts.z, names_of_exact())};
+}
 
 /// Enforces LayerWriteOptions::most_bytes and `strict` on another writer: throws after the layer that exceeds
-/// the limit, and instead of ending a file with warnings. Adds the warnings that follow from the table of
+/// the limit, and instead of ending a file with warnings. Adds the warning that follows from the table of
 /// formats.
 class LimitedWriter final : public LayerWriter {
   public:
@@ -242,17 +222,15 @@ class LimitedWriter final : public LayerWriter {
 
     std::function<void()> prepare(std::span<const Layer> parts) override {
         std::function<void()> write = writer_->prepare(parts);
-        return [this, write = std::move(write), position = plane_position(parts)] {
+        return [this, write = std::move(write)] {
             write();
-            if (!keeps_cuts_)
-                moved_cuts_.note(position);
             check_bytes(path_, bytes(), most_bytes_);
         };
     }
 
     void finish() override {
-        if (const std::vector<std::string> losses = warnings(); strict_ && !losses.empty())
-            throw Error(ErrorKind::defect, fmt::format("{}: {}", path_, losses.front()));
+        if (strict_)
+            check_warnings(path_, warnings());
         check_bytes(path_, bytes(), most_bytes_);
         writer_->finish();
     }
@@ -260,10 +238,13 @@ class LimitedWriter final : public LayerWriter {
     std::uint64_t bytes() const noexcept override { return writer_->bytes(); }
     std::vector<std::string> warnings() const override {
         std::vector<std::string> lines = writer_->warnings();
-        for (std::string& line : moved_cuts_.warnings())
-            lines.push_back(std::move(line));
+        if (!keeps_cuts_)
+            for (std::string& line : warnings_of_cuts(losses()))
+                lines.push_back(std::move(line));
         return lines;
     }
+    WriteLosses losses() const override { return writer_->losses(); }
+    void add_losses(const WriteLosses& above) override { writer_->add_losses(above); }
 
   private:
     std::unique_ptr<LayerWriter> writer_;
@@ -271,7 +252,6 @@ class LimitedWriter final : public LayerWriter {
     bool keeps_cuts_;
     std::uint64_t most_bytes_;
     bool strict_;
-    MovedCuts moved_cuts_;
 };
 
 } // namespace
@@ -280,9 +260,14 @@ void check_bytes(const std::string& path, std::uint64_t bytes, std::uint64_t mos
     if (most != 0 && bytes > most)
         throw Error(
             ErrorKind::limit,
-            fmt::format("'{}' would take more than the {} bytes that it may; choose higher layers, another "
+            fmt::format("{}: would take more than the {} bytes that it may; choose higher layers, another "
                         "format or a larger limit",
-                        path, most));
+                        name_of_output(path), most));
+}
+
+void check_warnings(const std::string& path, const std::vector<std::string>& warnings) {
+    if (!warnings.empty())
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", name_of_output(path), warnings.front()));
 }
 
 Box3 part_box(std::span<const Layer> layers) noexcept {

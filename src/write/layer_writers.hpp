@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace lamella {
 
@@ -51,5 +52,8 @@ OpenLayerWriter open_toolpath_3mf;
 
 /// Throws Error{limit} if a file takes more than LayerWriteOptions::most_bytes.
 void check_bytes(const std::string& path, std::uint64_t bytes, std::uint64_t most);
+
+/// Throws Error{defect}, with the first warning, if there are any (LayerWriteOptions::strict).
+void check_warnings(const std::string& path, const std::vector<std::string>& warnings);
 
 } // namespace lamella

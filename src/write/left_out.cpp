@@ -1,10 +1,12 @@
 #include "write/left_out.hpp"
 
 #include "container/text_position.hpp"
+#include "contour/same_height.hpp"
 #include "core/counted.hpp"
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 namespace lamella {
@@ -49,36 +51,65 @@ LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts) : holds_(holds) {
     }
 }
 
-PlaneExtras extras_of(std::span<const Layer> parts) {
-    const double z = parts.front().z;
-    PlaneExtras extras{{0, z}, {0, z}, {0, z}};
-    for (const Layer& layer : parts) {
-        extras.open_chains.count += layer.open_chains();
-        extras.hatches.count += layer.hatches.size() / 2;
-    }
-    return extras;
+void WriteLosses::Kind::add(const Kind& above) noexcept {
+    if (count == 0)
+        z = above.z;
+    count += above.count;
 }
 
-void LeftOut::note(const PlaneExtras& plane) {
-    const auto add = [](Extras& all, const Extras& more) {
-        all = {all.count + more.count, all.count == 0 ? more.z : all.z};
+void WriteLosses::add(const WriteLosses& above) noexcept {
+    open_chains.add(above.open_chains);
+    hatches.add(above.hatches);
+    gaps.add(above.gaps);
+    cuts.add(above.cuts);
+    bottom_cuts += above.bottom_cuts;
+    top_cuts += above.top_cuts;
+    rounded.add(above.rounded);
+}
+
+WriteLosses losses_of_plane(std::span<const Layer> parts) {
+    const Layer& plane = parts.front();
+    WriteLosses losses;
+    for (WriteLosses::Kind* kind : {&losses.open_chains, &losses.hatches, &losses.gaps, &losses.cuts})
+        kind->z = plane.z;
+    for (const Layer& layer : parts) {
+        losses.open_chains.count += layer.open_chains();
+        losses.hatches.count += layer.hatches.size() / 2;
+    }
+    const auto is_at = [&](double z) {
+        return std::abs(plane.z - z) <= same_height_mm;
     };
-    add(noted_.open_chains, plane.open_chains);
-    add(noted_.hatches, plane.hatches);
-    add(noted_.gaps, plane.gaps);
+    if (!is_at(plane.bottom + (plane.top - plane.bottom) / 2)) {
+        losses.cuts.count = 1;
+        losses.bottom_cuts = is_at(plane.bottom) ? 1 : 0;
+        losses.top_cuts = is_at(plane.top) ? 1 : 0;
+    }
+    return losses;
+}
+
+void LeftOut::add(const WriteLosses& above) {
+    WriteLosses planes = above;
+    rounding_.add(std::exchange(planes.rounded, {}));
+    losses_.add(planes);
+}
+
+WriteLosses LeftOut::losses() const {
+    WriteLosses losses = losses_;
+    losses.rounded = rounding_.losses();
+    return losses;
 }
 
 std::vector<std::string> LeftOut::warnings() const {
     std::vector<std::string> lines = rounding_.warnings();
-    const auto say = [&](bool held, const Extras& extras, const char* one, const char* many) {
+    const auto say = [&](bool held, const WriteLosses::Kind& extras, const char* one, const char* many) {
         if (!held && extras.count != 0)
             lines.push_back(fmt::format("{} {} left out, the lowest at z = {:.6g} mm: the format cannot "
                                         "store them",
                                         extras.count, extras.count == 1 ? one : many, extras.z));
     };
-    say(holds_.open_chains, noted_.open_chains, "open contour was", "open contours were");
-    say(holds_.hatches, noted_.hatches, "hatch line was", "hatch lines were");
-    say(holds_.gaps, noted_.gaps, "gap or overlap of layers was", "gaps or overlaps of layers were");
+    say(holds_.open_chains, losses_.open_chains, "open contour was", "open contours were");
+    say(holds_.hatches, losses_.hatches, "hatch line was", "hatch lines were");
+    say(holds_.gaps, losses_.gaps, "gap or overlap of layers was", "gaps or overlaps of layers were");
     if (changed_labels_ != 0)
         lines.push_back(
             fmt::format("{} changed, the first from \"{}\" to \"{}\": the format has no place for "

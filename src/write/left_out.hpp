@@ -33,28 +33,17 @@ struct Holds {
     std::string_view not_kept = {};
 };
 
-/// Number of a kind, and height of the lowest one.
-struct Extras {
-    std::uint64_t count = 0;
-    double z = 0;
-};
+/// Counts the content of a plane that some formats cannot hold, except for gaps and rounding.
+[[nodiscard]] WriteLosses losses_of_plane(std::span<const Layer> parts);
 
-/// Content of a plane that some formats cannot hold.
-struct PlaneExtras {
-    Extras open_chains;
-    Extras hatches;
-    Extras gaps; ///< one if the plane's layer does not begin at the top of the one before it
-};
-
-/// Counts all kinds except gaps.
-[[nodiscard]] PlaneExtras extras_of(std::span<const Layer> parts);
-
-/// Counts content that a file leaves out. Planes must be noted in ascending z.
+/// Counts content that a file leaves out. Planes must be added in ascending z.
 class LeftOut {
   public:
     LeftOut(Holds holds, std::span<const PartInfo> parts);
 
-    void note(const PlaneExtras& plane);
+    /// Adds the losses of a plane or of a range of planes.
+    void add(const WriteLosses& above);
+    [[nodiscard]] WriteLosses losses() const;
     /// Returns the counter for writers that round.
     [[nodiscard]] RoundingLoss& rounding() noexcept { return rounding_; }
     /// Returns one line for each kind.
@@ -68,7 +57,7 @@ class LeftOut {
     std::uint64_t labelled_ = 0;      ///< parts whose labels differ from the default
     std::string first_labelled_;      ///< first label of these
     std::uint64_t changed_parts_ = 0; ///< parts that lose a parameter that differs from its default
-    PlaneExtras noted_;               ///< of all planes
+    WriteLosses losses_;              ///< of all planes, except by rounding
     RoundingLoss rounding_;
     std::uint64_t changed_labels_ = 0;
     std::string first_label_; ///< first changed label, and its text in the file

@@ -189,7 +189,7 @@ std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bo
                                            ? "1 triangle loses its area or a corner"
                                            : fmt::format("{} triangles lose their area or a corner", lost)));
     if (strict && !warnings.empty())
-        throw Error(ErrorKind::defect, fmt::format("{}: {}", path, warnings.front()));
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", name_of_output(path), warnings.front()));
     writer.finish();
     return warnings;
 }

@@ -83,11 +83,11 @@ void PlaneOrder::end() const {
 
 std::function<void()> OrderedWriter::prepare(std::span<const Layer> parts) {
     order_.check_parts(parts);
-    return [this, write = formatted(parts), extras = extras_of(parts),
+    return [this, write = formatted(parts), losses = losses_of_plane(parts),
             offset = plane_position(parts)]() mutable {
-        extras.gaps.count = order_.adjoins(offset) ? 0 : 1;
+        losses.gaps.count = order_.adjoins(offset) ? 0 : 1;
         order_.next(offset);
-        left_out_.note(extras);
+        left_out_.add(losses);
         write(offset);
     };
 }

@@ -77,6 +77,8 @@ class OrderedWriter : public LayerWriter {
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) final;
     void finish() final;
     [[nodiscard]] std::vector<std::string> warnings() const override { return left_out_.warnings(); }
+    [[nodiscard]] WriteLosses losses() const final { return left_out_.losses(); }
+    void add_losses(const WriteLosses& above) final { left_out_.add(above); }
 
   protected:
     /// Writes a formatted plane; called in order.

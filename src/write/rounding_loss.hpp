@@ -2,10 +2,11 @@
 
 // Losses of contours by rounding that are worth a warning.
 
+#include "lamella/write/layer_writer.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <mutex>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -44,20 +45,14 @@ class RoundingLoss {
     /// May be called from any threads, for layers in any order.
     void add(const RoundedContour& contour, std::uint64_t layer);
     void add_height(double moved_mm, std::uint64_t layer);
+    void add(const WriteLosses::Rounded& other);
+    [[nodiscard]] WriteLosses::Rounded losses() const;
     /// Returns at most one line for contours and one for heights.
     [[nodiscard]] std::vector<std::string> warnings() const;
 
   private:
-    [[nodiscard]] std::string contours_text() const;
-
     mutable std::mutex mutex_;
-    double moved_mm_ = 0;
-    std::uint64_t merged_ = 0;
-    std::uint64_t lost_ = 0;
-    std::uint64_t lost_lines_ = 0;
-    std::optional<std::uint64_t> first_layer_; ///< with a loss
-    double moved_heights_mm_ = 0;
-    std::optional<std::uint64_t> first_moved_height_;
+    WriteLosses::Rounded losses_;
 };
 
 } // namespace lamella

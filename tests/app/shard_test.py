@@ -220,7 +220,7 @@ class Shard(ProgramTest):
         self.assertEqual(len(self.bytes_of("short.cli")), len(self.bytes_of("whole.cli")))
         self.succeed("merge", "units.cli", *files, "--units-mm", "0.01")
         self.assertIn(b"$$UNITS/0.01", self.bytes_of("units.cli"))
-        self.fail_with(5, "'m.cli' would take more than the 1000 bytes that it may", "merge", "m.cli", *files, "--max-output", "1000")
+        self.fail_with(5, "m.cli: would take more than the 1000 bytes that it may", "merge", "m.cli", *files, "--max-output", "1000")
         self.assertFalse(self.path("m.cli").exists())
 
     def test_shards_are_files_that_merge_can_read(self):

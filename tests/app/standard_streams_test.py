@@ -8,7 +8,7 @@ import socket
 import subprocess
 import threading
 
-from program import PROGRAM, ProgramTest, binary_stl, box_triangles, main
+from program import PROGRAM, ProgramTest, binary_stl, box_triangles, main, open_box
 
 CONTENTS = {"box.stl": binary_stl(box_triangles(2, 3, 1)), "z.txt": b"0.25\n0.75\n", "job.toml": b"layer-height = 0.5\n",
             "list": b"box.stl\n"}
@@ -42,6 +42,21 @@ class StandardStreams(ProgramTest):
                 self.assertEqual(code, 3, err)
                 self.assertRegex(err, "^lamella: error: standard input.* closed")
         self.assertEqual(self.listing(), sorted(CONTENTS))
+
+    def test_errors_name_standard_streams_in_words(self):
+        self.succeed("slice", "box.stl", "-o", "top.json", "--slice-at", "top", "--layer-height", "0.5")
+        layers, opened = self.bytes_of("top.json"), binary_stl(open_box(2, 3, 1))
+        job = ["--format", "cli", "-o", "-"]
+        for code, named, arguments, stdin in [
+                (4, "standard output", ["convert", "top.json", "-", "--format", "cli", "--strict"], b""),
+                (4, "standard output", ["convert", "-", "-", "--format", "cli", "--strict"], layers),
+                (4, "standard output", ["slice", "-", *job, "--slice-at", "top", "--strict"], CONTENTS["box.stl"]),
+                (5, "standard output", ["slice", "-", *job, "--max-output", "100"], CONTENTS["box.stl"]),
+                (4, "standard input", ["slice", "-", *job, "--strict"], opened),
+                (2, "standard input", ["slice", "-", *job, "--layer-height", "9"], opened),
+                (2, 'standard input, part "part"', ["slice", "-", "box.stl", *job, "--z-range", "7:8"], opened)]:
+            with self.subTest(arguments):
+                self.fail_with(code, f"^lamella: error: {named}: [^-]", *arguments, stdin=stdin)
 
     def test_a_run_without_standard_streams_does_its_work(self):
         self.succeed("slice", "box.stl", "-o", "expected.cli")

@@ -83,6 +83,24 @@ class Results(MpiTest):
         for result in [one, many]:
             self.assertEqual(result.err.count(warning), 1, result.err)
 
+    def test_losses_of_a_format_are_reported_once_with_the_counts_of_all_processes(self):
+        self.box(size="2,2,6")
+        for options in [["--slice-at", "top"],  # heights of cuts
+                        ["--format", "cli-ascii", "--units-mm", "0.3", "--rotate-z", "20"]]:  # points and heights
+            common = ["slice", "box.stl", "--layer-height", "0.7", *options, "-o"]
+            one = self.succeed(*common, "one.cli")
+            self.assertIn("warning: one.cli: ", one.err)
+            refused = self.fail_with(4, "strict.cli: ", *common, "strict.cli", "--strict")
+            for processes in NUMBERS:
+                with self.subTest(options, processes=processes):
+                    many = self.by(processes, *common, "many.cli")
+                    self.assertEqual(many.code, 0, many.err)
+                    self.assertEqual(many.err, one.err.replace("one.cli", "many.cli"))
+                    strict = self.by(processes, *common, "strict.cli", "--strict")
+                    self.assertEqual(strict.code, 4, strict.err)
+                    self.assertIn(refused.err, strict.err)
+                    self.assertFalse(self.path("strict.cli").exists())
+
     def peak_of(self, processes, *arguments):
         """Bytes that the largest of all processes of a job took."""
         watch = ("import resource, subprocess, sys; subprocess.run(sys.argv[1:], check=True, stdout=subprocess.DEVNULL); "

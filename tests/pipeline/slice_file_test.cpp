@@ -210,6 +210,41 @@ TEST_F(Processes, SnapAndWarnOfLevelFacesNearPlanesAlike) {
     EXPECT_NO_THROW(static_cast<void>(slice_file(job)));
 }
 
+TEST_F(Processes, CountTheLossesOfAFormatTogether) {
+    write_stl(path("part.stl"), make_box(10, 10, 2.05).transformed(rotation('z', 20)));
+    FileJob job = job_of({{.path = path("part.stl"), .label = "a, \"b\""}}, 0.1);
+    job.layering.at = SliceAt::top;
+    job.write.units_mm = 0.05;
+    for (const std::string name : {"cli", "cli-ascii", "dxf", "3mf"}) {
+        job.format = name;
+        job.output = path("out");
+        const FileResult one = slice_file(job);
+        EXPECT_FALSE(one.warnings.empty()) << name;
+        for (const std::size_t processes : {2, 3, 50}) {
+            SCOPED_TRACE(testing::Message() << name << " by " << processes);
+            for (const FileResult& many : test::slice_by(processes, job))
+                EXPECT_EQ(many.warnings, one.warnings);
+        }
+    }
+    job.format = "cli";
+    job.output = path("strict.cli");
+    job.strict = job.write.strict = true;
+    std::string refusal;
+    try {
+        static_cast<void>(slice_file(job));
+    } catch (const Error& error) {
+        refusal = error.what();
+    }
+    EXPECT_NE(refusal, "");
+    for (const std::size_t processes : {2, 50}) {
+        const Error error = test::common_failure(
+            processes, [&](Communicator& own) { static_cast<void>(slice_file(job, {}, own)); });
+        EXPECT_EQ(error.kind(), ErrorKind::defect);
+        EXPECT_EQ(error.what(), refusal);
+    }
+    EXPECT_FALSE(std::filesystem::exists(path("strict.cli")));
+}
+
 TEST_F(Processes, FailOnAllWithTheSameWords) {
     write_stl(path("part.stl"), part());
     FileJob plain = job_of({{.path = path("part.stl")}}, 0.1);

@@ -56,10 +56,10 @@ struct ScanResult {
 
 /// Computes the scan vectors of the layers of parts and writes them. The stacks of all parts must have the
 /// same planes. `rounding` is that of the file from which the layers were read; by default none. `info` is
-/// the header for a file of these layers. `name` is the name of their file in error messages. `max_memory`:
-/// see layer_limits. Existing hatch lines of layers are ignored. Uses all threads, each of which holds the
-/// vectors of one plane in memory. Throws the errors of `scan` and `write_layers`, and, with
-/// LayerWriteOptions::strict, Error{defect} for material that no vector reaches.
+/// the header for a file of these layers. `name` is the name of their file in error messages; if it is empty,
+/// `path` is. `max_memory`: see layer_limits. Existing hatch lines of layers are ignored. Uses all threads,
+/// each of which holds the vectors of one plane in memory. Throws the errors of `scan` and `write_layers`,
+/// and, with LayerWriteOptions::strict, Error{defect} for material that no vector reaches.
 [[nodiscard]] ScanResult scan_layers(const std::string& path, const LayerFormat& format,
                                      std::span<const LayerStack> parts, const Rounding& rounding,
                                      const LayerFileInfo& info, const ScanStrategy& strategy,

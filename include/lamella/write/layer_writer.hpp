@@ -36,9 +36,48 @@ struct PartInfo {
 /// of its last. It is empty if there are none. O(points).
 [[nodiscard]] Box3 part_box(std::span<const Layer> layers) noexcept;
 
+/// Counts of content that a range of layers loses in a file, because its format cannot hold it: the figures
+/// behind LayerWriter::warnings. They are numbers only, so that processes can send them to one another.
+struct WriteLosses {
+    /// Number of losses of a kind, and height of the lowest in mm.
+    struct Kind {
+        std::uint64_t count = 0;
+        double z = 0;
+
+        /// Adds losses above these.
+        void add(const Kind& above) noexcept;
+    };
+    /// Losses by rounding.
+    struct Rounded {
+        static constexpr std::uint64_t no_layer = ~std::uint64_t{0};
+
+        double moved_mm = 0;             ///< largest move of a point
+        std::uint64_t merged = 0;        ///< points equal to the one before
+        std::uint64_t contours = 0;      ///< of which no point is left
+        std::uint64_t lines = 0;         ///< hatch lines that shrank to a point
+        std::uint64_t layer = no_layer;  ///< index of the first layer with any of these
+        double moved_heights_mm = 0;     ///< largest move of a height
+        std::uint64_t height = no_layer; ///< index of the first layer with a moved height
+
+        void add(const Rounded& other) noexcept;
+    };
+
+    Kind open_chains;
+    Kind hatches;                  ///< hatch lines
+    Kind gaps;                     ///< layers that do not begin at the top of the one before
+    Kind cuts;                     ///< layers that were not cut at mid-height
+    std::uint64_t bottom_cuts = 0; ///< those of them cut at their bottom
+    std::uint64_t top_cuts = 0;    ///< those cut at their top
+    Rounded rounded;
+
+    /// Adds the losses of layers above these.
+    void add(const WriteLosses& above) noexcept;
+};
+
 /// A range of the layers of a slice file, for formats whose files consist of the layers one after the other
 /// (LayerFormat::chunks). Several processes can thus write one file: the file is the concatenation of the
 /// ranges.
+/// Its warnings are those of the writer of the first range, once the losses of the others are added to it.
 struct LayerFileChunk {
     std::uint64_t before = 0; ///< number of layers of the file below this range
     std::uint64_t layers = 0; ///< number of layers of this range
@@ -166,6 +205,12 @@ class LayerWriter {
     /// contours and lines lost by its rounding, and for the largest displacement of points by rounding if it
     /// exceeds 0.01 mm. Must be called after all layers are written.
     [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
+
+    /// Returns the counts behind `warnings`, for the writer of another range of the file.
+    [[nodiscard]] virtual WriteLosses losses() const { return {}; }
+
+    /// Adds the losses of ranges above this one (LayerFileChunk) to those that `warnings` reports.
+    virtual void add_losses(const WriteLosses& /*above*/) {}
 };
 
 /// Opens a writer. Throws Error{output} if the file cannot be created at the path, Error{usage} for
