@@ -267,15 +267,6 @@ CrossingPairs crossings_of(std::span<const Side> sides, std::uint64_t most, cons
     return crossing_pairs(lines, most, budget);
 }
 
-CrossingPairs all_crossings_of(std::span<const Side> sides, const LayerBudget& budget) {
-    const std::uint64_t most = most_crossings(sides.size());
-    const std::uint64_t room = budget.room(bytes_of_crossing);
-    CrossingPairs pairs = crossings_of(sides, std::min(most, room), budget);
-    if (pairs.size() > most && most <= room)
-        refuse_crossings(sides.size(), budget);
-    return pairs;
-}
-
 /// Number of crossings and cuts above which a layer is treated as exceptional.
 std::uint64_t many(std::span<const Side> sides) noexcept {
     return 16 * sides.size() + 65536;
@@ -642,14 +633,19 @@ bool bounds(const Arrangement& arrangement, const Material& material, const Wind
 } // namespace
 
 Arrangement arranged(std::span<const RingWithWinding> rings, const Windings& around, const ClippingGrid& grid,
-                     const LayerBudget& budget) {
+                     const LayerBudget& budget, const CrossingLimit& most) {
     std::optional<Uncut> uncut(std::in_place, rings, grid, reach_of_cuts);
     CrossingPairs pairs = crossings_of(uncut->arrangement.sides, many(uncut->arrangement.sides), budget);
+    const std::uint64_t room = budget.room(bytes_of_crossing);
     if (pairs.size() > many(uncut->arrangement.sides)) {
         uncut.emplace(rings, grid, reach_of_bundles);
         join_bundles(uncut->arrangement, budget);
-        pairs = all_crossings_of(uncut->arrangement.sides, budget);
+        pairs = crossings_of(uncut->arrangement.sides, std::min(most(uncut->arrangement.sides.size()), room),
+                             budget);
     }
+    if (const std::size_t sides = uncut->arrangement.sides.size();
+        pairs.size() > most(sides) && most(sides) <= room)
+        refuse_crossings(sides, budget, most);
     budget.need(pairs.size(), bytes_of_crossing, "crossings of contours, or more,");
     Arrangement arrangement = std::move(uncut->arrangement);
     if (!arrangement.sides.empty()) {

@@ -6,6 +6,7 @@
 
 #include "core/layer_budget.hpp"
 #include "polygon/clipping_grid.hpp"
+#include "polygon/crossing_pairs.hpp"
 #include "polygon/material.hpp"
 #include "polygon/orientation.hpp"
 #include "polygon/windings.hpp"
@@ -83,10 +84,12 @@ struct Arrangement {
 };
 
 /// Cuts the rings on the grid at their intersections. The rings may come in any order and start at any point.
-/// `around` holds the winding numbers outside of all rings. Throws Error{limit} for more crossings or pieces
-/// than the budget allows, and Error{cancelled}. O(n + (m + k) log m) for n points, k crossings, and m sides
-/// that come close to others or reverse in x, if these are found in that time.
+/// `around` holds the winding numbers outside of all rings. Throws Error{limit} for more than `most`
+/// crossings and for more crossings or pieces than the budget allows, and Error{cancelled}. O(n + (m + k) log
+/// m) for n points, k crossings, and m sides that come close to others or reverse in x, if these are found in
+/// that time.
 [[nodiscard]] Arrangement arranged(std::span<const RingWithWinding> rings, const Windings& around,
-                                   const ClippingGrid& grid, const LayerBudget& budget = {});
+                                   const ClippingGrid& grid, const LayerBudget& budget = {},
+                                   const CrossingLimit& most = most_crossings);
 
 } // namespace lamella

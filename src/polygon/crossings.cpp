@@ -396,7 +396,7 @@ crossing_pairs(std::span<const Segment> segments, std::uint64_t most, const Laye
     return std::move(found.pairs());
 }
 
-void check_crossings(const Layer& layer, const LayerBudget& budget) {
+void check_crossings(const Layer& layer, const LayerBudget& budget, const CrossingLimit& limit) {
     std::vector<Segment> segments;
     for (std::size_t ring = 0; ring < layer.rings; ++ring) {
         const std::span<const Point2> points = layer.contour(ring);
@@ -413,19 +413,19 @@ void check_crossings(const Layer& layer, const LayerBudget& budget) {
     const Box2 box = box_of(layer.points.span());
     // Sides that are collinear except for rounding are joined before they are cut.
     const double clear = 0x1p-28 * std::max(box.x1 - box.x0, box.y1 - box.y0);
-    const std::uint64_t most = most_crossings(segments.size());
+    const std::uint64_t most = limit(segments.size());
     const std::uint64_t room = std::min(budget.room(bytes_of_crossing), most);
     const CrossingSearch found(segments, ids, box, 0, room + 1, budget, clear);
     budget.need(found.count(), bytes_of_crossing, "crossings of contours, or more,");
     if (found.count() > most)
-        refuse_crossings(segments.size(), budget);
+        refuse_crossings(segments.size(), budget, limit);
 }
 
-void refuse_crossings(std::size_t sides, const LayerBudget& budget) {
+void refuse_crossings(std::size_t sides, const LayerBudget& budget, const CrossingLimit& most) {
     throw Error(ErrorKind::limit,
                 fmt::format("{}: {} sides of contours in contact cross more than {} times, the limit; "
                             "leave out some of the bodies, or offset by less",
-                            budget.layer(), sides, most_crossings(sides)));
+                            budget.layer(), sides, most(sides)));
 }
 
 } // namespace lamella

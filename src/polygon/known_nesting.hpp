@@ -5,6 +5,7 @@
 #include "lamella/polygon/nesting.hpp"
 
 #include "polygon/contacts.hpp"
+#include "polygon/crossing_pairs.hpp"
 #include "polygon/monotone_chains.hpp"
 #include "polygon/windings.hpp"
 
@@ -29,9 +30,11 @@ struct NestingWithWindings {
 /// contacts costs O(log c) for c rings and a short search down the grid.
 ///
 /// `turns` is each ring's contribution to the winding numbers; for one operand, it is 1 for the first and 0
-/// for the second.
+/// for the second. Throws Error{limit} if left ends of rings lie at many crossing edges, and the rings cross
+/// more than `most` times.
 [[nodiscard]] NestingWithWindings nesting(const Layer& layer, const MonotoneChains& chains,
                                           const std::optional<ChainGrid>& grid, const Contacts& contacts,
-                                          std::span<const Windings> turns, const LayerBudget& budget = {});
+                                          std::span<const Windings> turns, const LayerBudget& budget = {},
+                                          const CrossingLimit& most = most_crossings);
 
 } // namespace lamella

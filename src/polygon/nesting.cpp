@@ -35,7 +35,8 @@ class NestingSearch {
                 order_.push_back(i);
     }
 
-    NestingWithWindings run(const std::optional<ChainGrid>& grid, const LayerBudget& budget) && {
+    NestingWithWindings run(const std::optional<ChainGrid>& grid, const LayerBudget& budget,
+                            const CrossingLimit& most) && {
         order_by_area();
         order_from_left_to_right();
         const bool by_grid = grid && !grid->full();
@@ -58,7 +59,7 @@ class NestingSearch {
         for (const std::uint32_t ring : open)
             crossing += surroundings->crossing_edges_at(ring);
         if (crossing > half_a_second)
-            check_crossings(layer_, budget);
+            check_crossings(layer_, budget, most);
         for (std::size_t i = 0; i < order_.size(); ++i) {
             budget.check();
             if (edges[i].sure)
@@ -186,9 +187,10 @@ Nesting nesting(const Layer& layer) {
 
 NestingWithWindings nesting(const Layer& layer, const MonotoneChains& chains,
                             const std::optional<ChainGrid>& grid, const Contacts& contacts,
-                            std::span<const Windings> turns, const LayerBudget& budget) {
+                            std::span<const Windings> turns, const LayerBudget& budget,
+                            const CrossingLimit& most) {
     check_size(layer);
-    return NestingSearch(layer, chains, turns, contacts).run(grid, budget);
+    return NestingSearch(layer, chains, turns, contacts).run(grid, budget, most);
 }
 
 std::vector<Polygon> polygons(const Nesting& nesting) {

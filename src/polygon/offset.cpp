@@ -9,6 +9,8 @@
 #include "polygon/box2.hpp"
 #include "polygon/clipping_grid.hpp"
 #include "polygon/collinear_points.hpp"
+#include "polygon/crossing_pairs.hpp"
+#include "polygon/moved_bodies.hpp"
 #include "polygon/moved_rings.hpp"
 #include "polygon/overlay.hpp"
 
@@ -27,6 +29,10 @@
 namespace lamella {
 
 namespace {
+
+/// Moved rings that cross more often are united by halves. They hardly do unless most bodies overlap most
+/// others when they are moved.
+constexpr CrossingLimit few_crossings{4096, 16};
 
 void check(std::span<const double> distances, const OffsetCorners& corners) {
     for (const double distance : distances)
@@ -85,8 +91,7 @@ class Boundaries {
         std::vector<Layer> result;
         for (std::size_t k = 0; k < all.size(); ++k) {
             const Layer rings = std::move(all[k]);
-            Overlaid overlaid =
-                Overlay(rings, limits_).filled(Material(FillRule::positive), Walls::dissolved);
+            Overlaid overlaid = material_of(rings, distances[k]);
             if (vanished != nullptr && k == 0)
                 *vanished = vanished_rings(rings, overlaid.fates, gone[k], distances[k]);
             result.push_back(with_chains(std::move(overlaid.filled.layer)));
@@ -95,6 +100,21 @@ class Boundaries {
     }
 
   private:
+    /// Returns the boundaries of the material of moved rings.
+    [[nodiscard]] Overlaid material_of(const Layer& moved, double distance) const {
+        try {
+            return Overlay(moved, limits_, few_crossings)
+                .filled(Material(FillRule::positive), Walls::dissolved);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::limit)
+                throw;
+        }
+        Overlaid overlaid;
+        overlaid.filled.layer = united_by_halves(moved, polygons_, distance, limits_);
+        overlaid.fates.assign(moved.rings, Fate::united);
+        return overlaid;
+    }
+
     /// Returns the rings of bodies, or holes, that are so narrow that their sides sweep all of their area.
     [[nodiscard]] std::vector<bool> surely_gone(double distance, const OffsetCorners& corners) const {
         std::vector<bool> gone(layer_.rings, false);

@@ -33,9 +33,10 @@ std::int64_t left_of(Fate fate) noexcept {
 class Filler {
   public:
     Filler(const Layer& layer, std::span<const Windings> turns, const Material& material, Walls walls,
-           const Contacts& contacts, const NestingWithWindings& nest, const LayerBudget& budget)
+           const Contacts& contacts, const NestingWithWindings& nest, const LayerBudget& budget,
+           const CrossingLimit& most)
         : layer_(layer), turns_(turns), material_(material), walls_(walls), nest_(nest), budget_(budget),
-          groups_(contacts.groups), fates_(layer.rings) {
+          most_(most), groups_(contacts.groups), fates_(layer.rings) {
         assert(contacts.group.size() == layer.rings && nest.nesting.order.size() == layer.rings);
         for (const std::uint32_t ring : nest.nesting.order) {
             const std::uint32_t group = contacts.group[ring];
@@ -95,7 +96,7 @@ class Filler {
         }
         if (!grid_)
             grid_.emplace(layer_.points.span().first(layer_.offsets[layer_.rings]));
-        const Arrangement arrangement = arranged(wound(group), around, *grid_, budget_);
+        const Arrangement arrangement = arranged(wound(group), around, *grid_, budget_, most_);
         if (!arrangement.crossed && stay(group, arrangement, most))
             return;
         unite(group, arrangement);
@@ -129,7 +130,7 @@ class Filler {
         std::erase_if(all, [this](std::uint32_t ring) { return flat(ring); });
         united_.clear();
         result_ = {};
-        unite(all, arranged(wound(all), {}, *grid_, budget_));
+        unite(all, arranged(wound(all), {}, *grid_, budget_, most_));
     }
 
     /// Returns whether all rings of the group can stay whole, because they do not cross, and sets their
@@ -170,6 +171,7 @@ class Filler {
     Walls walls_;
     const NestingWithWindings& nest_;
     const LayerBudget& budget_;
+    const CrossingLimit& most_;
     std::vector<std::vector<std::uint32_t>> groups_;
     std::vector<Fate> fates_;
     std::optional<ClippingGrid> grid_;
@@ -179,10 +181,11 @@ class Filler {
 
 } // namespace
 
-Overlay::Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits)
-    : layer_(layer), budget_(limits, layer.index, layer.z), turns_(std::move(turns)), chains_(layer),
-      grid_(ChainGrid::of(chains_)), contacts_(find_contacts(layer, chains_, grid_, budget_)),
-      nest_(nesting(layer, chains_, grid_, contacts_, turns_, budget_)) {}
+Overlay::Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits,
+                 const CrossingLimit& most)
+    : layer_(layer), budget_(limits, layer.index, layer.z), most_(most), turns_(std::move(turns)),
+      chains_(layer), grid_(ChainGrid::of(chains_)), contacts_(find_contacts(layer, chains_, grid_, budget_)),
+      nest_(nesting(layer, chains_, grid_, contacts_, turns_, budget_, most_)) {}
 
 bool Overlay::clean() const noexcept {
     if (contacts_.groups > 0)
@@ -202,7 +205,7 @@ Box2 Overlay::box() const noexcept {
 }
 
 Overlaid Overlay::filled(const Material& material, Walls walls) const {
-    return Filler(layer_, turns_, material, walls, contacts_, nest_, budget_).run();
+    return Filler(layer_, turns_, material, walls, contacts_, nest_, budget_, most_).run();
 }
 
 Layer united(const Layer& layer, const LayerLimits& limits) {

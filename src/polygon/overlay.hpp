@@ -9,6 +9,7 @@
 #include "core/layer_budget.hpp"
 #include "polygon/chain_grid.hpp"
 #include "polygon/contacts.hpp"
+#include "polygon/crossing_pairs.hpp"
 #include "polygon/known_nesting.hpp"
 #include "polygon/material.hpp"
 #include "polygon/monotone_chains.hpp"
@@ -39,11 +40,13 @@ struct Overlaid {
 class Overlay {
   public:
     /// Examines the rings of one operand.
-    explicit Overlay(const Layer& layer, const LayerLimits& limits = {})
-        : Overlay(layer, std::vector<Windings>(layer.rings, {1, 0}), limits) {}
+    explicit Overlay(const Layer& layer, const LayerLimits& limits = {},
+                     const CrossingLimit& most = most_crossings)
+        : Overlay(layer, std::vector<Windings>(layer.rings, {1, 0}), limits, most) {}
     /// `turns` is each ring's contribution to the winding numbers of its inside. The layer must outlive this
-    /// object.
-    Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits);
+    /// object. This and `filled` throw Error{limit} for more than `most` crossings.
+    Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits,
+            const CrossingLimit& most = most_crossings);
 
     /// Returns whether no rings are in contact and every ring bounds material, so that no winding number
     /// exceeds 1.
@@ -59,6 +62,7 @@ class Overlay {
   private:
     const Layer& layer_;
     LayerBudget budget_;
+    CrossingLimit most_;
     std::vector<Windings> turns_;
     MonotoneChains chains_;
     std::optional<ChainGrid> grid_;

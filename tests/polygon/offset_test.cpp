@@ -56,6 +56,19 @@ double distance_to(const Layer& layer, const Point2& p) {
     return least;
 }
 
+/// The number of times the rings of a layer run around a point.
+int winding(const Layer& layer, const Point2& p) {
+    int winding = 0;
+    for (std::size_t r = 0; r < layer.rings; ++r)
+        for (std::size_t i = 0; i < layer.contour(r).size(); ++i) {
+            const Point2& a = layer.contour(r)[i];
+            const Point2& b = layer.contour(r)[(i + 1) % layer.contour(r).size()];
+            if ((a.y <= p.y) != (b.y <= p.y) && orientation(a, b, p) == (a.y < b.y ? 1 : -1))
+                winding += a.y < b.y ? 1 : -1;
+        }
+    return winding;
+}
+
 TEST(Offset, OfNothingIsTheLayerItself) {
     const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4)}));
     EXPECT_EQ(offset(layer, 0).points.data(), layer.points.data());
@@ -557,6 +570,41 @@ TEST(Offset, TakesAnyLayerThatFillTakes) {
             ASSERT_FALSE(fill(moved, FillRule::positive).changed());
         }
     }
+}
+
+/// Kites side by side around one point, with half of the angle between them free.
+std::vector<Contour> petals(int count) {
+    std::vector<Contour> rings;
+    const auto polar = [&](double radius, double step) {
+        const double angle = 2 * std::numbers::pi * step / count;
+        return Point2{radius * std::cos(angle), radius * std::sin(angle)};
+    };
+    for (int i = 0; i < count; ++i)
+        rings.push_back({{0, 0}, polar(60, i - 0.25), polar(100, i), polar(60, i + 0.25)});
+    return rings;
+}
+
+TEST(Offset, OfThousandsOfRingsThatMeetInAPointTakesNoMemoryForTheirCrossings) {
+    // Their moved rings cross six million times.
+    std::vector<Contour> rings = petals(1600);
+    const Layer grown = offset(layer_of(rings), 0.1, mitred, nullptr, {.memory = 16 << 20});
+    EXPECT_EQ(grown.rings, 1U);
+    EXPECT_FALSE(fill(grown, FillRule::positive).changed());
+    const Layer petal = layer_of({rings.front()});
+    Random random(87);
+    for (int i = 0; i < 1000; ++i) {
+        // The symmetry leaves half of a petal to be examined.
+        const double angle = random.real(0, std::numbers::pi / 1600);
+        const double radius = random.real(1, 101);
+        const Point2 p{radius * std::cos(angle), radius * std::sin(angle)};
+        const bool inside = winding(petal, p) != 0;
+        const double distance = inside ? 0 : distance_to(petal, p);
+        if (distance < 0.0999 || (distance > 0.1001 && p.x < 99)) { // no mitre of a tip is there
+            ASSERT_EQ(winding(grown, p), distance < 0.1 ? 1 : 0) << p.x << ' ' << p.y;
+        }
+    }
+    std::reverse(rings.begin(), rings.end());
+    EXPECT_TRUE(same_contours(offset(layer_of(rings), 0.1), grown));
 }
 
 TEST(Offset, ScalesWithTheLayer) {
