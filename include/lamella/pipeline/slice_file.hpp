@@ -43,8 +43,8 @@ struct FileResult;
 struct FileReport {
     std::string path; ///< "": no page
     PageOptions page;
-    /// Returns the notes that the page shows. Called when all layers are written; in the result only the
-    /// total of the seconds is still missing.
+    /// Returns the notes that the page shows. Called when all layers are written. The result is then
+    /// complete, except for `seconds.total`.
     std::function<PageNotes(const FileResult&)> notes;
 };
 
@@ -80,9 +80,9 @@ struct FileJob {
     std::string engine; ///< name; "" is the default engine
     /// Welds the meshes and counts their defects before slicing.
     bool inspect = false;
-    /// Inspects the meshes, and throws Error{defect}, so that no file appears, for: any defect of a mesh,
-    /// horizontal faces within rounding of a plane, rings that bound no material, material that no scan
-    /// vector reaches, and steps that leave no contour in any layer.
+    /// Inspects the meshes. Throws Error{defect}, and writes no file, if there is any of these: a defect of a
+    /// mesh, horizontal faces within rounding of a plane, open chains, rings that bound no material, material
+    /// that no scan vector reaches, or steps that leave no contour in any layer.
     bool strict = false;
     /// Measures and hashes every layer.
     bool layer_statistics = false;
@@ -207,10 +207,10 @@ struct FileResult {
 /// whose planes miss every part, and Error{limit} if the plan takes too much memory.
 [[nodiscard]] Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution = {});
 
-/// Slices mesh files into one slice file. The layers of a single part are written while it is sliced. Several
-/// parts are sliced one after the other, in ranges of planes that fit the memory bound; jobs with scan
-/// vectors likewise, in ranges of a few planes. So the number of layers in memory is bounded. No file appears
-/// at the output path before it is complete.
+/// Slices mesh files into one slice file. The layers of a single part are written while it is sliced. If
+/// there are several parts, the planes are divided into ranges that fit the memory bound; in each range, the
+/// parts are sliced one after the other. Jobs with scan vectors use ranges of a few planes. So the number of
+/// layers in memory is bounded. No file appears at the output path before it is complete.
 ///
 /// Throws Error{usage} for an impossible plan, Error{input} for a file that cannot be read or a mesh without
 /// height, Error{defect} with FileJob::strict, and the errors of reading, slicing and writing.

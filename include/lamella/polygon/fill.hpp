@@ -41,11 +41,11 @@ struct Filled {
 ///
 /// Rings that already are such a boundary are unchanged, also where they touch. Nested rings without contacts
 /// are kept, dropped or reversed, and keep their points bit for bit. Only groups of rings that cross, or
-/// touch and overlap, are united. Their corners keep their coordinates. Their crossings are rounded to a grid
-/// whose unit is at most 2^-36 of the layer's extent (1.5e-9 mm for a layer of 100 mm), and are accurate to
-/// about a unit. Overlaps of the size of rounding errors count as touching, and united rings thinner than a
-/// unit are left out. A second call changes nothing, unless rings of the given layer were thinner than a
-/// unit.
+/// touch and overlap, are united. Their crossings are rounded to a grid whose unit is at most 2^-36 of the
+/// layer's extent (1.5e-9 mm for a layer of 100 mm), and are accurate to about a unit. Their corners keep
+/// their coordinates, unless the new rings would then cross; in this case corners are rounded to the grid,
+/// too. Overlaps of the size of rounding errors count as touching, and united rings thinner than a unit are
+/// left out. A second call changes nothing, unless rings of the given layer were thinner than a unit.
 ///
 /// Open chains stay as they are. Flat rings, which bound nothing, are dropped.
 ///

@@ -26,8 +26,8 @@ enum class OffsetCorner : std::uint8_t {
 struct OffsetCorners {
     OffsetCorner shape = OffsetCorner::mitre;
     /// A mitre whose tip would be farther from the corner than mitre_limit (1 + mitre_tolerance) times the
-    /// offset distance is cut off, perpendicular to its bisector, at the offset distance from the corner. At
-    /// least 1.
+    /// offset distance is cut off, perpendicular to its bisector, at the offset distance from the corner.
+    /// mitre_limit must be at least 1.
     double mitre_limit = 2;
     /// Largest distance of chords from their arc, mm; above 0. A value below 2^-36 of the offset distance has
     /// the effect of that bound, because rounding of coordinates would hide finer chords.
@@ -50,10 +50,10 @@ struct OffsetCorners {
 /// Each edge is moved parallel to itself. Edges that separate are joined according to `corners`. By default
 /// they are extended to their intersection, so that parts keep their corners; a corner that would move by
 /// more than twice the distance (sharper than 60 degrees) is cut off. Edges that run into one another end at
-/// their intersection. Growing adds a strip along each edge and a wedge at each corner to the material;
-/// shrinking removes them. There are only two kinds of error: rounding of the coordinates where moved edges
-/// intersect; and errors of a few 2^-36 of the layer's extent in rings that touch or cross themselves or
-/// others after the move, and where collinear points are removed.
+/// their intersection. Growing adds to the material a strip along each edge, and a wedge at each corner where
+/// edges separate; shrinking removes them. The result is exact, with two exceptions. Points where moved edges
+/// intersect are rounded to doubles. Rings that touch or cross themselves or others after the move, and rings
+/// whose collinear points are removed, have errors of a few times 2^-36 of the layer's extent.
 ///
 /// Open chains stay as they are. A distance of 0 returns the layer itself, bit for bit; other results have no
 /// hatches. `vanished`, if given, is set to the number of rings that vanish: rings of bodies that are too

@@ -31,8 +31,9 @@ enum class IslandOrder : std::uint8_t {
 
 /// Parallel lines that fill an area.
 ///
-/// They lie at multiples of the distance from a line through the origin of the machine, independent of part,
-/// shard and neighbours, and so do stripes and islands. Angles are from the x axis to the y axis.
+/// They lie at multiples of `distance` from a line through the origin of the machine; in squares, they lie
+/// half a distance beside these multiples. Stripes and islands form a grid from the same origin. Lines and
+/// grid do not depend on part, shard and neighbours. Angles are measured counter-clockwise from the x axis.
 struct HatchRule {
     HatchPattern pattern = HatchPattern::stripes;
     double distance = 0.1;    ///< between lines, above 0
@@ -82,9 +83,10 @@ struct ContourRule {
     bool before_hatch = false;
     StartPoint start = StartPoint::aligned;
     double start_direction_degrees = 90; ///< of StartPoint::aligned
-    /// Treatment of walls thinner than twice the beam's offset. Those at least `thinnest` wide get lines, as
-    /// hatches of the outermost contour, two points each. Further contours have lines where they do not fit,
-    /// and the innermost one also where a hatch leaves narrow areas bare.
+    /// Treatment of walls thinner than twice the beam's offset. With ThinWalls::line, walls at least
+    /// `thinnest` wide get lines, which are stored as hatches (two points each) in the exposure of the
+    /// outermost contour. Where an inner contour does not fit, its exposure has lines, too. The exposure of
+    /// the innermost contour also has lines where hatch lines miss narrow areas.
     ThinWalls thin_walls = ThinWalls::line;
     double thinnest = 0.05;
     ParameterSet parameters{.name = "contour", .power_w = 120, .speed_mm_s = 500};
@@ -93,8 +95,8 @@ struct ContourRule {
 /// A region of the layer that has less than `layers` layers of material above it, or below.
 struct SkinRule {
     std::uint32_t layers = 0; ///< at most `most_skin_layers`; 0: no such region
-    /// Strips narrower than this, to a hundredth, are not skin: rounding and sloping walls leave such strips
-    /// at edges, in grooves and on ribs. By default the width of a line.
+    /// Strips narrower than this are not skin: rounding and sloping walls leave such strips at edges, in
+    /// grooves and on ribs. The limit is accurate to 1 %. By default the width of a line.
     double narrowest = 0.1;
     double overlap = 0.1; ///< by which the region is grown into the core
     HatchRule hatch;

@@ -52,8 +52,8 @@ struct MatchingCounts {
 
 /// Sizes and times of one slicing.
 struct SliceReport {
-    double weld_seconds = 0; ///< joining vertices; for engines that need an indexed mesh, also welding a soup
-    double link_seconds = 0; ///< sweep: ranks, cut graph; others: ranks, intersections, lists
+    double weld_seconds = 0;  ///< joining equal vertices, also into an indexed mesh if the engine needs one
+    double link_seconds = 0;  ///< sweep: ranks, cut graph; others: ranks, intersections, lists
     double slice_seconds = 0; ///< sweep: walk and points; others: reading the lists
     std::uint64_t layers = 0;
     std::uint64_t contours = 0;
