@@ -191,10 +191,9 @@ OptionGroup timed_run_options(SliceArguments& target) {
     group.options.push_back(max_triangles_option(target.limits));
     group.options.push_back(byte_limit(
         "max-memory",
-        "take no more memory, such as 500M or 2G: larger STL files are sliced in pieces, if need be by way "
-        "of "
-        "temporary files in $TMPDIR or /var/tmp, with the same result; what cannot be is an error (exit code "
-        "5); three quarters of the memory there is unless given",
+        "take no more memory, such as 500M or 2G: larger STL files are sliced in ranges of planes, if need "
+        "be by way of temporary files in $TMPDIR or /var/tmp, with the same result; what cannot be is an "
+        "error (exit code 5); three quarters of the memory there is unless given",
         target.limits.max_memory));
     group.options.push_back(
         row("timeout", ValueKind::number, "SECONDS",

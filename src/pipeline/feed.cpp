@@ -52,8 +52,8 @@ std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& en
     return {};
 }
 
-/// Returns the records out of n that a process reads. They are whole chunks of a fold, so that sums have the
-/// same bits as in a single process.
+/// Returns the records out of n that a process reads. They are whole chunks of the ordered sum
+/// (`fold_chunk`), so that sums have the same bits as in a single process.
 RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes) {
     const std::uint64_t chunks = (n + fold_chunk - 1) / fold_chunk;
     const auto bound = [&](std::size_t p) {
@@ -62,8 +62,8 @@ RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes)
     return {bound(process), bound(process + 1)};
 }
 
-/// Returns the records of the chunks that any of the planes cut, in few ranges: chunks between two close ones
-/// are read with them.
+/// Returns ranges of records that contain all chunks with a triangle cut by one of the planes. Two ranges at
+/// a short distance are joined, so that the chunks between them are read, too.
 std::vector<RecordRange> records_on(PlaneRange planes, std::span<const PlaneRange> cuts,
                                     std::uint64_t records) {
     constexpr std::uint64_t close = 4 * fold_chunk;
@@ -149,7 +149,7 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
                     "standard input reaches one of the processes only; give the name of a file");
     const unsigned threads = thread_count(execution);
     std::vector<MeshInput> inputs;
-    std::uint64_t room = memory_.of_input(threads); // for all texts, which stay in memory until they are read
+    std::uint64_t room = memory_.of_input(threads); // for copies of inputs in memory until they are parsed
     std::uint64_t bytes = 0;
     std::string not_streamed;
     bool divisible = true;
@@ -184,7 +184,7 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
         throw Error(
             ErrorKind::limit,
             fmt::format("{}: to be sliced whole takes up to {} of memory, above the {} of "
-                        "`max_memory`; it would be sliced in pieces, but for {}",
+                        "`max_memory`; it would be sliced in ranges, but for {}",
                         name_of(job.inputs), byte_amount(bytes), byte_amount(memory_.limit),
                         !needs_all.empty()
                             ? fmt::format("{}, which needs the whole mesh", needs_all)
@@ -202,7 +202,7 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
     const unsigned threads = thread_count(execution);
     std::vector<MeshFile> meshes;
     for (MeshInput& file : inputs) {
-        const MeshInput input = std::move(file); // frees a text once it is read
+        const MeshInput input = std::move(file); // frees a copy in memory once it is parsed
         const bool stl = input.can_stream();
         meshes.push_back(input.read(reading_, execution));
         if (memory_.asked && !stl)
@@ -211,7 +211,7 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
     plate_ = build_plate(job.inputs, std::move(meshes), execution, job.max_memory);
 }
 
-/// The first pass.
+/// The first pass: finds the bounding boxes and the unusable triangles.
 void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution) {
     for (MeshInput& input : inputs) {
         File& file = files_.emplace_back(File{std::move(input), std::nullopt, std::nullopt, {}, 0, {}, {}});
@@ -327,7 +327,7 @@ PlaneCounts Feed::counts_of_parts(std::size_t planes) const {
     return all;
 }
 
-/// The second pass.
+/// The second pass: counts the triangles and points on each plane.
 void Feed::count_streams(const Plan& plan, const Execution& execution) {
     const std::size_t shapes = plate_.shapes.size();
     begin_near_faces(plan);
@@ -448,8 +448,8 @@ std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange
     return ranges_;
 }
 
-/// True if reading the records of all ranges again takes less time than storing all triangles once: if they
-/// are at most twice those of the files. Known only after `count`.
+/// Returns true if the records that all ranges need are together at most twice the records of all files.
+/// Reading again then takes less time than storing all triangles once. Known only after `count`.
 bool Feed::is_cheap_to_read_again() const {
     constexpr std::uint64_t times_the_files = 2;
     if (ranges_.size() <= 1)

@@ -134,11 +134,11 @@ class ReadLimits(ProgramTest):
     def test_no_amount_of_memory(self):
         self.fail_with(2, "--max-memory.*no amount of memory", "info", "box.stl", "--max-memory", "much")
 
-    def test_help_speaks_of_pieces_where_there_are_some(self):
+    def test_help_speaks_of_ranges_where_there_are_some(self):
         for command in ["slice", "info", "verify", "compare", "convert", "merge", "view"]:
             text = " ".join(self.succeed(command, "--help").text.split())
             self.assertIn("--max-memory SIZE", text)
-            self.assertEqual("sliced in pieces" in text, command == "slice")
+            self.assertEqual("sliced in ranges" in text, command == "slice")
             for option in ["--max-triangles N", "--include WHAT"]:
                 self.assertEqual(option in text, command in ["slice", "info", "verify", "view"])
 
