@@ -18,15 +18,15 @@ std::span<const ExitCode> exit_codes() noexcept {
     static constexpr std::array<ExitCode, 9> codes{
         {{0, "all went well"},
          {1, "a fault of Lamella itself: please report it"},
-         {2,
-          "the command line, a configuration file, a scan strategy or a list of heights asks for what cannot "
-          "be done, or not with this part: it does not fit the display, the build volume or 16-bit "
-          "coordinates"},
+         {2, "a wrong or impossible request in the command line, a configuration file, a scan strategy or a "
+             "list "
+             "of heights; also a part that does not fit the display, the build volume or 16-bit coordinates"},
          {3, "an input cannot be read or holds nothing to work on"},
          {4, "defects: of the mesh with --strict, or a slice file that fails its check (verify, compare)"},
          {5, "a limit was hit, such as memory or --timeout"},
-         {6, "an output cannot be written; nothing was left at its path, though others may be there already"},
-         {7, "of the files of a batch some failed; the results say which, and why"},
+         {6, "an output cannot be written; nothing was left at its path, but other outputs of the run may be "
+             "complete"},
+         {7, "some files of a batch failed; the results name them and the reasons"},
          {130, "cancelled, by Ctrl-C, the terminate signal or the end of the terminal"}}};
     return codes;
 }

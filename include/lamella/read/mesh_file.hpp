@@ -101,8 +101,8 @@ struct MeshFile {
 /// a view; throws Error{output} if the disk is full.
 ///
 /// Corners of STL files have single precision, in ASCII files too: each number there is rounded once, to the
-/// nearest. So the ASCII and the binary file of a part give the same slices, bit for bit. Stored normals are
-/// ignored. All solids of an ASCII file are joined.
+/// nearest. So an ASCII file with at least nine significant digits gives the same slices as the binary file,
+/// bit for bit. Stored normals are ignored. All solids of an ASCII file are joined.
 ///
 /// These defects are accepted with a warning: a wrong or missing count, trailing bytes or text, a missing
 /// "endsolid", a truncated last triangle, and corners that are not finite (their triangles are dropped). For
