@@ -19,8 +19,8 @@ std::span<const ExitCode> exit_codes() noexcept {
         {{0, "all went well"},
          {1, "a fault of Lamella itself: please report it"},
          {2, "a wrong or impossible request in the command line, a configuration file, a scan strategy or a "
-             "list "
-             "of heights; also a part that does not fit the display, the build volume or 16-bit coordinates"},
+             "list of heights; also a part that does not fit the display, the build volume or 16-bit "
+             "coordinates"},
          {3, "an input cannot be read or holds nothing to work on"},
          {4, "defects: of the mesh with --strict, or a slice file that fails its check (verify, compare)"},
          {5, "a limit was hit, such as memory or --timeout"},

@@ -33,16 +33,16 @@ struct ClosedGaps {
 /// to itself becomes a ring.
 ///
 /// A pair is refused if the straight line between the ends would cross a contour or an earlier join, or pass
-/// through a point of one. It is also refused if it would make a ring of fewer than three points, or a ring
-/// of a single chain that is shorter than twice its gap: a short straight chain is no ring. Only the 64 first
-/// points closest to each last point are examined.
+/// through a point of one. A pair is also refused if the join would make a ring of fewer than three points,
+/// or would close a single chain that is shorter than twice its gap: a short straight chain is no ring. For
+/// each last point, only the 64 closest first points are examined.
 ///
 /// If the two chains overlap, so that the segments before and after the join cross, one of the two ends is
 /// dropped. This happens where a vertex lies on the edge of a neighbour (a T-junction): both ends differ by
 /// rounding.
 ///
 /// A layer without chains is returned as it is. Throws Error{usage} for a distance that is not a positive
-/// finite number. O(n + c log c) for n points and c chains if each is close to few others.
+/// finite number. O(n + c log c) for n points and c chains if each chain is close to few others.
 [[nodiscard]] ClosedGaps close_gaps(const Layer& layer, double within_mm);
 
 } // namespace lamella

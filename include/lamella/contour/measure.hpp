@@ -15,8 +15,8 @@ namespace lamella {
 /// the ring's first point, so that a ring far from the origin loses no precision. O(n).
 [[nodiscard]] double ring_area(std::span<const Point2> ring) noexcept;
 
-/// Returns whether a ring is so thin that `rounding` of its points, or that of double precision, may have
-/// reversed its orientation. O(n).
+/// Returns whether a ring is so thin that `rounding` of its points, or the rounding of double precision, may
+/// have reversed its orientation. O(n).
 [[nodiscard]] bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) noexcept;
 
 /// Returns the length in mm; for a ring it includes the segment back to the first point.

@@ -27,9 +27,9 @@ struct OpenGaps {
 /// long as its gap, or if no other end remains. So `longest_mm` is a useful limit for `close_gaps`. If
 /// triangles are flipped, a gap is as long as the part of the contour that runs in the wrong direction.
 ///
-/// O(1) for a layer without chains, otherwise O(c log c) for c chains on average. An end whose nearest
-/// partners were taken 16 times is matched with any remaining one, in the order of the chains, so that gaps
-/// of contrived layers may be reported too long.
+/// O(1) for a layer without chains, otherwise O(c log c) for c chains on average. If the nearest partners of
+/// an end were taken 16 times, the end is matched with any remaining one, in the order of the chains. The
+/// gaps of contrived layers may therefore be reported too long.
 [[nodiscard]] OpenGaps open_gaps(const Layer& layer);
 
 } // namespace lamella

@@ -17,7 +17,7 @@ struct Rounding {
     bool single_precision = false; ///< numbers are rounded to 24 significant bits
 
     /// Returns the largest distance between neighbouring numbers of the format, up to this magnitude.
-    /// Rounding moves no number by more than half of it.
+    /// Rounding moves no number by more than half of this distance.
     [[nodiscard]] double step_at(double magnitude_mm) const noexcept {
         constexpr double last_digit = 0x1p-23;
         return std::max(step_mm, single_precision ? std::abs(magnitude_mm) * last_digit : 0.0);
@@ -25,8 +25,8 @@ struct Rounding {
     friend bool operator==(const Rounding&, const Rounding&) = default;
 };
 
-/// Returns the largest distance by which rounding may have moved the plane of a layer, also in formats that
-/// store only bottom and top, from which the plane is computed.
+/// Returns the largest distance by which rounding may have moved the plane of a layer. This includes formats
+/// that store only bottom and top, from which the plane is computed.
 [[nodiscard]] inline double moved_cut(const Layer& layer, const Rounding& rounding) noexcept {
     return rounding.step_at(std::max(std::abs(layer.bottom), std::abs(layer.top))) / 2;
 }

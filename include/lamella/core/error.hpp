@@ -22,8 +22,8 @@ enum class ErrorKind {
 };
 
 /// Every failure that Lamella reports. what() is one line for a person: the file, the byte or line in it,
-/// what was found and what was expected. If it mentions a field of the options, the field's name is between
-/// backquotes, as in `max_memory`, so that a program can replace it by the name of its own option.
+/// what was found and what was expected. If the line mentions a field of the options, the field's name is
+/// between backquotes, as in `max_memory`, so that a program can replace the name by that of its own option.
 class Error : public std::runtime_error {
   public:
     Error(ErrorKind kind, const std::string& text) : std::runtime_error(text), kind_(kind) {}

@@ -26,10 +26,11 @@ struct Progress {
     std::uint64_t total = 0;
 };
 
-/// A request to end computations early, made from any thread or a signal handler. It cannot be withdrawn.
+/// A request to end computations early, made from any thread or a signal handler. A request cannot be
+/// withdrawn.
 class CancelFlag {
   public:
-    /// Makes a flag on which a request on `outer` counts, too. `outer` must outlive this flag.
+    /// Makes a flag that also counts as requested if `outer` is. `outer` must outlive this flag.
     explicit CancelFlag(const CancelFlag* outer = nullptr) noexcept : outer_(outer) {}
 
     void request() noexcept { requested_.store(true, std::memory_order_relaxed); }
@@ -42,11 +43,11 @@ class CancelFlag {
     const CancelFlag* outer_;
 };
 
-/// Parameters of every long computation. They never change results: any number of threads gives the same
-/// bytes.
+/// Parameters of every long computation. These parameters never change results: any number of threads gives
+/// the same bytes.
 struct Execution {
-    /// Number of threads; 0 means one per processor available to this process. Fewer are used if the system
-    /// cannot start more.
+    /// Number of threads; 0 means one per processor available to this process. Fewer threads are used if the
+    /// system cannot start all of them.
     unsigned threads = 0;
 
     /// Called about ten to a hundred times per stage, from one thread at a time, but not always from the same

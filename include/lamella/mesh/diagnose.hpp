@@ -25,8 +25,9 @@ struct BoundaryLoop {
     std::vector<Point3> points; ///< the first point of a closed loop is not repeated at the end
     bool closed = true;         ///< false where a flipped triangle breaks the rim
     double length_mm = 0;
-    /// Largest distance of a point of the loop from the line through the loop's first point and the point
-    /// farthest from that. At a T-junction (a vertex on an edge of a neighbour) it is within rounding errors.
+    /// Largest distance of a point of the loop from a line: the line through the loop's first point and the
+    /// point farthest from the first point. At a T-junction (a vertex on an edge of a neighbour) this
+    /// distance is within rounding errors.
     double width_mm = 0;
     Box3 box;
 
@@ -52,8 +53,8 @@ struct Shell {
     /// Signed volume, about the shell's first corner; meaningful for closed shells only.
     double volume_mm3 = 0;
     ShellKind kind = ShellKind::body;
-    /// A shell contains this one if it winds around the centroid of this one's largest triangle. `inside` is
-    /// the containing shell of least volume; `depth` is the number of containing shells.
+    /// Another shell contains this shell if it winds around the centroid of this shell's largest triangle.
+    /// `inside` is the containing shell of least volume; `depth` is the number of containing shells.
     std::optional<std::uint32_t> inside = {};
     std::uint32_t depth = 0;
 };
@@ -69,7 +70,7 @@ struct Diagnosis {
 
     std::uint64_t boundary_loops = 0;
     /// Number of slits: closed loops no wider than the rounding of coordinates, where edges coincide without
-    /// sharing vertices. `widest_slit_mm` is the width of the widest.
+    /// sharing vertices. `widest_slit_mm` is the width of the widest slit.
     std::uint64_t slits = 0;
     double widest_slit_mm = 0;
     double boundary_length_mm = 0;

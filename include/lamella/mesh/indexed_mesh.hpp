@@ -32,8 +32,8 @@ struct IndexedMesh {
 /// Applies the placement of a soup and joins equal corners: exactly, without a tolerance, with -0 equal to
 /// +0. Vertices are numbered in the order of their first occurrence, which keeps the locality of the file,
 /// and triangle i of the soup is triangle i of the mesh. The result is the same for any number of threads.
-/// Throws Error{limit} beyond 2^32 - 1 triangles, and if more than 2^32 - 1 corners differ from those shortly
-/// before them in the file. Expected O(n), worst case O(n log n).
+/// Throws Error{limit} beyond 2^32 - 1 triangles, and if more than 2^32 - 1 corners differ from the corners
+/// shortly before them in the file. Expected O(n), worst case O(n log n).
 [[nodiscard]] IndexedMesh weld(const TriangleSoup& soup, const Execution& execution = {});
 
 /// Joins the equal vertices of a mesh, which files contain where neighbouring faces do not share a vertex.
@@ -54,7 +54,8 @@ void drop_unused_vertices(IndexedMesh& mesh, const Execution& execution = {});
 /// Returns the box of all vertices, used or not. Empty for a mesh without vertices.
 [[nodiscard]] Box3 bounding_box(const IndexedMesh& mesh, const Execution& execution = {});
 
-/// Returns the signed volume in mm^3, bit for bit that of the soup from which the mesh was welded.
+/// Returns the signed volume in mm^3, with the same bits as the volume of the soup from which the mesh was
+/// welded.
 [[nodiscard]] double volume(const IndexedMesh& mesh, const Execution& execution = {});
 
 /// Returns the transformed mesh. If the map mirrors, triangles are flipped so that they stay

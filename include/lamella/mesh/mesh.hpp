@@ -16,7 +16,7 @@ LAMELLA_API_BEGIN
 namespace lamella {
 
 /// A TriangleSoup or an IndexedMesh: immutable, shared, cheap to copy. Functions that accept both kinds take
-/// a Mesh. Its coordinates are finite, and its indices are those of existing vertices.
+/// a Mesh. The coordinates of a Mesh are finite, and its indices refer to existing vertices.
 ///
 /// Vertices with equal coordinates are the same vertex, in either kind. An indexed mesh may therefore repeat
 /// vertices, as in files whose faces share none; slicing, welding and inspection treat them as one vertex.
@@ -73,9 +73,9 @@ class Mesh {
 /// Joins all equal corners exactly; see `weld` of a TriangleSoup and of an IndexedMesh.
 [[nodiscard]] IndexedMesh weld(const Mesh& mesh, const Execution& execution = {});
 
-/// Returns all meshes as one, in this order. Different meshes share no vertices in it. If there are several,
-/// each soup is welded by itself. A single mesh is returned as it is. Throws Error{limit} beyond 2^32 - 1
-/// vertices or triangles.
+/// Returns all meshes as one, in this order. In the result, different meshes share no vertices. If there are
+/// several meshes, each soup is welded by itself. A single mesh is returned as it is. Throws Error{limit}
+/// beyond 2^32 - 1 vertices or triangles.
 [[nodiscard]] Mesh joined(std::span<const Mesh> meshes, const Execution& execution = {});
 
 } // namespace lamella

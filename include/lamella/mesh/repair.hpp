@@ -50,10 +50,10 @@ struct DroppedDuplicates {
 };
 
 /// Drops triangles that have the same three vertices as others. Two such triangles of opposite orientation
-/// enclose nothing: they cancel in pairs. Of the rest the first is kept. So of a body that is stored twice
-/// one copy remains; a wall between two touching bodies vanishes; and a body stored together with its
-/// inside-out copy vanishes, too. Triangles keep their order; vertices that become unused are dropped.
-/// Expected O(n).
+/// enclose nothing: they cancel in pairs. The first of the remaining ones is kept. So a body that is stored
+/// twice remains once, a wall between two touching bodies vanishes, and a body stored together with its
+/// inverted copy vanishes, too. Triangles keep their order; vertices that become unused are dropped. Expected
+/// O(n).
 [[nodiscard]] DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& execution = {});
 
 struct OrientedMesh {
@@ -72,20 +72,20 @@ struct OrientedMesh {
 ///
 /// A patch is a part of the mesh connected by edges of exactly two triangles. Within a patch all triangles
 /// get the orientation of the majority. Patches that meet at a non-manifold edge are tied to one another. If
-/// the edge is balanced (used equally often in both directions), they keep their relative orientation. If
-/// flipping one of two patches would balance it, they are tied with opposite orientations. In each group of
-/// tied patches the minority of the triangles is then flipped. So if no edge is in conflict before, none is
-/// afterwards.
+/// the edge is balanced (used equally often in both directions), the patches keep their relative orientation.
+/// If flipping one of two patches would balance the edge, they are tied with opposite orientations. In each
+/// group of tied patches the minority of the triangles is then flipped. So if no edge is in conflict before,
+/// none is afterwards.
 ///
-/// Then each group of tied patches is flipped as a whole if necessary: outward, or inward if it is a void,
-/// that is, if it lies in an odd number of other closed groups. Group A lies in group B if B winds around the
-/// centroid of A's largest triangle, B's box contains A's box, and their surfaces do not cross. If they
-/// touch, A keeps its orientation. Outward means that the volume is positive; the volume of a group with open
-/// edges is measured from the centre of the box around these edges. Non-orientable patches keep their
-/// orientation. So does a group whose volume is 0 within rounding, and one where the fans that would close
-/// its holes have nearly half of its area or more.
+/// Then each group of tied patches is flipped as a whole if necessary, so that it faces outward. A group in
+/// an odd number of other closed groups is a void and faces inward. Group A lies in group B if B winds around
+/// the centroid of A's largest triangle, B's box contains A's box, and their surfaces do not cross. If their
+/// surfaces touch, A keeps its orientation. Outward means that the volume is positive; the volume of a group
+/// with open edges is measured from the centre of the box around these edges. Three kinds keep their
+/// orientation: non-orientable patches, groups whose volume is 0 within rounding, and groups whose holes
+/// would need closing fans of at least 0.45 times the area of the group.
 ///
-/// If a body lies within another one and both are oriented outward, the inner body becomes a void: do not
+/// If a body lies within another one and both are oriented outward, the inner body becomes a void. Do not
 /// call this function if the inner body should be filled. The result does not depend on the order of
 /// triangles nor on the first corner of each: the lexicographically smallest triangle decides ties. Throws
 /// Error{limit} beyond 2^31 - 1 triangles. Expected O(n) per pass if few triangles lie above or below each

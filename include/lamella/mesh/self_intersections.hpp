@@ -82,7 +82,7 @@ struct IntersectionOptions {
 /// empty or has one entry per triangle.
 ///
 /// O(n log n + pairs of triangles with overlapping boxes), on all threads; the result is the same for any
-/// number of threads. It is slow for long slanted triangles, because their boxes overlap many others.
+/// number of threads. The search is slow for long slanted triangles, because their boxes overlap many others.
 [[nodiscard]] SelfIntersections find_self_intersections(const IndexedMesh& mesh,
                                                         const IntersectionOptions& options = {},
                                                         const Execution& execution = {});

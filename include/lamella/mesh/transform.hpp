@@ -19,7 +19,7 @@ struct Transform {
         const auto row = [&](std::size_t r) {
             return linear[r][0] * p.x + linear[r][1] * p.y + linear[r][2] * p.z + offset[r];
         };
-        // Adding zero keeps -0 out of the mesh: it would not weld to +0.
+        // Adding zero keeps -0, which would not weld to +0, out of the mesh.
         return {row(0) + 0.0, row(1) + 0.0, row(2) + 0.0};
     }
 

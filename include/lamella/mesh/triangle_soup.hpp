@@ -32,7 +32,7 @@ using Triangle3f = std::array<Point3f, 3>;
 using Triangle3 = std::array<Point3, 3>;
 
 /// An immutable view of n triangles at equal spacing in memory, for example of the records of a binary STL
-/// file (spacing 50 bytes). It keeps that memory alive and is cheap to copy.
+/// file (spacing 50 bytes). A soup keeps that memory alive and is cheap to copy.
 ///
 /// A soup may carry a placement: an affine map applied in double precision to each corner when it is read.
 /// All corners are finite: constructors throw Error{input} that names the first triangle with a corner that

@@ -65,10 +65,10 @@ struct FileComparison {
 ///   from its first point. Between files of one format the exposures must be in the same order; between
 ///   formats the order may differ.
 /// - Bottoms and tops agree up to rounding and 1e-6 mm.
-/// - Parameters are compared between exposures with the same label, or else between those of the same region,
-///   kind and contour number, in their order. Between files of one format, any unequal value is a difference.
-///   Between formats a parameter that only one file has is not a difference, because some formats cannot
-///   store it.
+/// - Parameters are compared between exposures with the same label, or else between exposures of the same
+///   region, kind and contour number, in their order. Between files of one format, any unequal value is a
+///   difference. Between formats a parameter that only one file has is not a difference, because some formats
+///   cannot store it.
 /// - Between files of one format, an unmatched exposure is a difference.
 ///
 /// Expected O(n log n) for n points and ends of lines of both files. Takes memory for one copy of all

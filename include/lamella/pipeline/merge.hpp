@@ -27,10 +27,10 @@ struct MergeResult {
     std::vector<std::string> warnings; ///< content that the format cannot represent
 };
 
-/// Merges slice files of one format with adjoining layers, such as the shards of one job; they may be in any
-/// order. If input and output have the format Common Layer Interface, layers are copied unchanged, and
-/// `options` have no effect. The result is then, byte for byte, the file that a job without shards writes.
-/// Layers of other formats are read and rewritten. One file at a time is held in memory.
+/// Merges slice files of one format with adjoining layers, such as the shards of one job, in any order. If
+/// input and output have the format Common Layer Interface, layers are copied unchanged, and `options` have
+/// no effect. The result is then, byte for byte, the file that a job without shards writes. Layers of other
+/// formats are read and rewritten. One file at a time is held in memory.
 ///
 /// `format` is the name of the output format; if it is "", the extension of `output` selects the format.
 /// Throws
@@ -40,7 +40,7 @@ struct MergeResult {
 ///   is a gap between their layers, or an overlap;
 /// - Error{input} if layers would be copied from a file whose reading gives a warning;
 /// - Error{usage} for inputs that can be read only once, such as pipes; and if `output` exists and its layers
-///   adjoin those of the inputs, because it then counts as one of them;
+///   adjoin the layers of the inputs, because `output` then counts as an input;
 /// - the errors of read_layers and of the writer.
 MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
                               std::string_view format = {}, const LayerWriteOptions& options = {},

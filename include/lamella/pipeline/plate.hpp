@@ -31,15 +31,15 @@ struct PlateInput {
     /// Number of copies. They are arranged in a grid of rows along x that is as nearly square as possible.
     std::uint64_t copies = 1;
     double spacing_mm = 5; ///< distance between the bounding boxes of copies
-    /// Label of the file's parts. If empty, parts have their labels in the file; those without have the name
-    /// of the file, or "part" if there is no other part on the plate.
+    /// Label of the file's parts. If empty, parts have their labels in the file; parts without a label have
+    /// the name of the file, or "part" if there is no other part on the plate.
     std::string label = {};
     /// Treats all parts of the file as supports, whatever the file specifies.
     bool support = false;
 };
 
-/// A mesh that is sliced once for all parts that share it. It is already placed, except for the offsets of
-/// these parts along x and y.
+/// A mesh that is sliced once for all parts that share it. The mesh is already placed, except for the offsets
+/// of these parts along x and y.
 struct PlateShape {
     Mesh mesh;
     std::size_t input = 0; ///< index of the input that it comes from

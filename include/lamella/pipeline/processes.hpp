@@ -14,7 +14,7 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Communication between processes, which are numbered from 0. It is an interface, so that the library does
+/// Communication between processes, which are numbered from 0. This is an interface, so that the library does
 /// not depend on a message passing library. Except for send and receive, all processes must call the same
 /// functions in the same order. Messages may have any length. If one process ends early, the others end, too.
 class Communicator {

@@ -26,12 +26,12 @@ namespace lamella {
 /// Reference for the checks of layers or scan vectors.
 struct VerifyOptions {
     /// Reference mesh, which should be closed. The area and centroid of each layer are compared with those of
-    /// its section at the layer's z. Scan vectors must lie within the section; without a mesh, within the
-    /// outermost contour of their part.
+    /// the mesh's section at the layer's z. Scan vectors must lie within the section; without a mesh, within
+    /// the outermost contour of their part.
     std::optional<Mesh> mesh = {};
     /// The plate that `mesh` was made from. Its negative volumes, if any, are subtracted.
     std::optional<Plate> plate = {};
-    /// The rule by which the layers were cut. It matters only for planes through horizontal faces.
+    /// The rule by which the layers were cut; relevant only for planes through horizontal faces.
     PlaneRule rule = PlaneRule::section_above;
     double snap_mm = 0;    ///< snap distance with which the layers were cut; see Plan
     LayerSteps steps = {}; ///< steps applied to the layers of the mesh, as one part. Deviations by
@@ -42,10 +42,10 @@ struct VerifyOptions {
     Rounding rounding = {};
     /// Additional tolerance of points, ends of lines and cuts, in mm, for coordinates rounded earlier.
     double tolerance_mm = 0;
-    /// Strategy by which scan vectors were made. If it is set, vectors must keep its distances from the edges
-    /// of the material; each of its contours must be present at its depth; hatch lines must be at least
-    /// `shortest` long and have its angles and distances; and the length of lines times their distance must
-    /// equal the area that they fill.
+    /// Strategy by which scan vectors were made. If a strategy is set, vectors must keep its distances from
+    /// the edges of the material. Each of its contours must be present at the right depth. Hatch lines must
+    /// be at least `shortest` long, with the angles and distances of the strategy. The length of lines times
+    /// their distance must equal the area that they fill.
     std::optional<ScanStrategy> strategy = {};
 
     [[nodiscard]] bool subtracts() const noexcept { return plate && !plate->negatives.empty(); }
@@ -96,8 +96,8 @@ struct Verification {
     /// Number of rings that contradict their nesting: clockwise rings outside of material, and all rings
     /// within these.
     std::uint64_t misoriented = 0;
-    /// Number of counter-clockwise rings within the material of other rings. They are not an error, because
-    /// contours of overlapping bodies look like this; a hole with the wrong orientation looks the same.
+    /// Number of counter-clockwise rings within the material of other rings. Such rings are not an error,
+    /// because overlapping bodies have them; a hole with the wrong orientation looks the same.
     std::uint64_t overlapping = 0;
     double volume_mm3 = 0; ///< sum of area times thickness
     /// Largest difference between the area of a layer without open chains and that of the mesh's section. Set
@@ -166,9 +166,9 @@ struct VectorVerification {
     std::uint64_t unreached_layers = 0;
     double unreached_mm2 = 0;
     /// Number of contours that are missing on a plane of a part, or whose area differs from that of the
-    /// material at their depth. The tolerance is the sum of both perimeters times four times the deviation by
-    /// rounding and `simplify_mm`. If a mesh has several parts, contours are compared with the outermost
-    /// contours of each part.
+    /// material at their depth. The tolerance is four times the deviation by rounding and `simplify_mm`,
+    /// times the sum of the perimeters of contour and material. If a mesh has several parts, contours are
+    /// compared with the outermost contours of each part.
     std::uint64_t wrong_contours = 0;
     /// With a mesh: number of rings of its sections that bound no material (see `inverted_rings`) and
     /// therefore have no vectors; and the volume that they enclose.
@@ -192,10 +192,10 @@ struct VectorVerification {
     }
 };
 
-/// Checks the parts of a file that have an exposure, and ignores the others. All must have the same planes.
-/// Parallel over layers, with the same result for any number of threads. Throws the errors of `slice` and
-/// `offset`, and those of `verify` for a coordinate that is not finite. O(n log n) for n points and vectors
-/// of a layer, plus the cost of slicing and offsets.
+/// Checks the parts of a file that have an exposure, and ignores the others. All checked parts must have the
+/// same planes. Parallel over layers, with the same result for any number of threads. Throws the errors of
+/// `slice` and `offset`, and those of `verify` for a coordinate that is not finite. O(n log n) for n points
+/// and vectors of a layer, plus the cost of slicing and offsets.
 [[nodiscard]] VectorVerification verify_vectors(std::span<const LayerPart> parts,
                                                 const VerifyOptions& options = {},
                                                 const Execution& execution = {});

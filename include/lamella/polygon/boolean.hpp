@@ -24,10 +24,10 @@ enum class BooleanOperation : std::uint8_t {
 /// FillRule::nonzero reverses them).
 ///
 /// Each ring is kept, dropped or reversed by an exact decision, as in `fill`. Rings without contacts keep
-/// their points bit for bit. So do rings that only touch, unless a ring of one layer runs along a ring of the
-/// other. Only groups of rings that cross, or touch and overlap, are rounded: to a grid whose unit is at most
-/// 2^-36 of the extent of both layers. The union or intersection of a layer without overlaps with itself is
-/// the layer, bit for bit; the difference is empty.
+/// their points bit for bit. Rings that only touch keep them, too, unless a ring of one layer runs along a
+/// ring of the other. Only groups of rings that cross, or touch and overlap, are rounded to a grid, whose
+/// unit is at most 2^-36 of the extent of both layers. The union or intersection of a layer without overlaps
+/// with itself is the layer, bit for bit; the difference is empty.
 ///
 /// Index, heights and open chains are those of the first layer. Open chains of the second layer and hatches
 /// of both are left out. The result is in normal form. Its rings depend on the order of the layers only for

@@ -19,14 +19,14 @@ struct LayerDifference {
     /// True if the contours are equal, bit for bit. The distance and `displaced_mm2` are then 0.
     bool same = false;
     /// Hausdorff distance: the largest distance from a point of one layer's contours to the nearest contour
-    /// of the other, accurate to a thousandth of itself; `where` is that point. Infinite if only one layer
-    /// has contours.
+    /// of the other, accurate to a thousandth of itself; `where` is that point. The distance is infinite if
+    /// only one layer has contours.
     double distance_mm = 0;
     Point2 where = {};
     LayerMeasure first = {}; ///< measures of both layers
     LayerMeasure second = {};
-    /// Difference of the first moments divided by the extent of both layers: the area that would have to move
-    /// across the whole extent to cause it.
+    /// Difference of the first moments, divided by the extent of both layers. This is the area that would
+    /// have to move across the whole extent to cause the difference.
     double displaced_mm2 = 0;
 
     /// Returns whether no point is farther away than the tolerance, the numbers of open chains are equal, and
@@ -60,8 +60,8 @@ struct StackComparison {
     double tolerance_mm = 0;
     std::vector<ComparedPlane> planes; ///< in ascending z
     /// True if no layers belong together although the lowest layers of both stacks have the same bottom and
-    /// top. Then the stacks were cut at different heights, or one comes from a format that does not store the
-    /// cut.
+    /// top. Then the stacks were cut at different heights, or one of them comes from a format that does not
+    /// store the cut.
     bool cut_apart = false;
 };
 
@@ -69,9 +69,9 @@ struct StackComparison {
 /// their cuts are no further apart than the rounding errors of both formats plus the larger of 1e-6 mm and
 /// `tolerance_mm`. A layer without contours and hatch lines needs no partner. Hatch lines and heights of
 /// layers that belong together are not compared; see `compare_files`. `tolerance_mm` is passed to
-/// LayerDifference::within; the default is the sum of the rounding errors of both formats. Distances below it
-/// are measured at corners only. Throws Error{usage} for a tolerance that is negative or NaN. Parallel over
-/// planes; costs as much as `compare` of all layers that belong together.
+/// LayerDifference::within; the default is the sum of the rounding errors of both formats. Distances below
+/// `tolerance_mm` are measured at corners only. Throws Error{usage} for a tolerance that is negative or NaN.
+/// Parallel over planes; costs as much as `compare` of all layers that belong together.
 [[nodiscard]] StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
                                       std::optional<double> tolerance_mm = {},
                                       const Execution& execution = {});

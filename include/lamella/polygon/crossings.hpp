@@ -27,9 +27,9 @@ struct Crossings {
     std::vector<Crossing> first; ///< the first few, ordered by (contour_a, segment_a, contour_b, segment_b)
 };
 
-/// Counts pairs of segments that cross properly: each has its ends strictly on both sides of the other.
-/// Contours that touch at a point or along a segment do not cross in this sense, nor do contours that change
-/// sides at a vertex. The decision is exact for the given coordinates. `keep` is the largest size of
+/// Counts pairs of segments that cross properly: the ends of each lie strictly on opposite sides of the
+/// other. Contours that touch at a point or along a segment do not cross in this sense, nor do contours that
+/// change sides at a vertex. The decision is exact for the given coordinates. `keep` is the largest size of
 /// Crossings::first.
 ///
 /// Throws Error{limit} for a layer of more than 2^32 - 1 points. For k crossings expected O(n + k). Without

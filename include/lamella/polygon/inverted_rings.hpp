@@ -1,6 +1,7 @@
 #pragma once
 
-// Finds clockwise rings outside of material. They cannot be holes; the area that they enclose is not built.
+// Finds clockwise rings outside of material. Such rings cannot be holes; the area that they enclose is not
+// built.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"

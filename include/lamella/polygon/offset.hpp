@@ -33,8 +33,8 @@ struct OffsetCorners {
     /// the effect of that bound, because rounding of coordinates would hide finer chords.
     double arc_tolerance_mm = 0.001;
 
-    /// Relative tolerance of the limit. Without it, of several corners of the same shape some could be mitred
-    /// and others cut off, only because their coordinates are rounded.
+    /// Relative tolerance of the limit. Without this tolerance, rounded coordinates could decide which of
+    /// several corners of the same shape are mitred and which are cut off.
     static constexpr double mitre_tolerance = 1e-4;
     /// Returns the largest distance of the tip of a mitre from its corner, as a multiple of the offset
     /// distance.
@@ -47,13 +47,14 @@ struct OffsetCorners {
 /// negative. If it grows, outer rings move outwards, holes get smaller, and overlapping material is united.
 /// Material is where the winding number is above 0.
 ///
-/// Each edge is moved parallel to itself. Edges that separate are joined according to `corners`. By default
-/// they are extended to their intersection, so that parts keep their corners; a corner that would move by
-/// more than twice the distance (sharper than 60 degrees) is cut off. Edges that run into one another end at
-/// their intersection. Growing adds to the material a strip along each edge, and a wedge at each corner where
-/// edges separate; shrinking removes them. The result is exact, with two exceptions. Points where moved edges
-/// intersect are rounded to doubles. Rings that touch or cross themselves or others after the move, and rings
-/// whose collinear points are removed, have errors of a few times 2^-36 of the layer's extent.
+/// Each edge is moved parallel to itself. Edges that separate are joined according to `corners`. By default,
+/// edges that separate are extended to their intersection, so that parts keep their corners; a corner that
+/// would move by more than twice the distance (sharper than 60 degrees) is cut off. Edges that run into one
+/// another end at their intersection. Growing adds to the material a strip along each edge, and a wedge at
+/// each corner where edges separate; shrinking removes them. The result is exact, with two exceptions. Points
+/// where moved edges intersect are rounded to doubles. Rings that touch or cross themselves or others after
+/// the move, and rings whose collinear points are removed, have errors of a few times 2^-36 of the layer's
+/// extent.
 ///
 /// Open chains stay as they are. A distance of 0 returns the layer itself, bit for bit; other results have no
 /// hatches. `vanished`, if given, is set to the number of rings that vanish: rings of bodies that are too

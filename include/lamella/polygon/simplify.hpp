@@ -14,15 +14,15 @@ namespace lamella {
 /// inverted or moves past another ring. Where the removal of points would violate this, points are restored,
 /// if necessary all of them. A tolerance of 0 removes exactly collinear points.
 ///
-/// Follows Douglas and Peucker: the farthest points are kept first. Where the farthest points repeatedly
-/// split a contour very unevenly, as along spikes and spirals, middle points are kept instead, so that the
-/// time is O(n log n). Points are restored in passes, usually few, each of which searches for crossings
-/// again. Throws Error{usage} for a tolerance that is negative or NaN.
+/// Follows Douglas and Peucker: the farthest points are kept first. If the farthest points repeatedly split a
+/// contour very unevenly, as along spikes and spirals, middle points are kept instead. The time is therefore
+/// O(n log n). Points are restored in passes, usually few, each of which searches for crossings again. Throws
+/// Error{usage} for a tolerance that is negative or NaN.
 [[nodiscard]] Layer simplify(const Layer& layer, double tolerance);
 
 /// Simplifies each contour independently, which is much faster and serves for display. No ring vanishes or is
 /// inverted, but contours closer to one another than twice the tolerance may cross afterwards. Contours keep
-/// their order and their first points, so it also suits scan vectors.
+/// their order and their first points, so this function also suits scan vectors.
 [[nodiscard]] Layer simplify_each(const Layer& layer, double tolerance);
 
 } // namespace lamella

@@ -29,11 +29,11 @@ inline constexpr unsigned most_antialias = 64;
 
 struct RasterOptions {
     /// Number of strips into which a row of pixels is divided where exact coverage would take too long. A
-    /// pixel's coverage is the fraction of its area in which the winding number is not zero. It is exact
-    /// except where a contiguous part of a row contains more corners and crossings of contours than this
-    /// number, or more than twice as many edges, and is not a single line with bends. There each strip is
-    /// evaluated along its middle line. The error of a strip is less than its area, and is 0 unless contours
-    /// begin, end, bend or cross within it.
+    /// pixel's coverage is the fraction of its area in which the winding number is not zero. Coverage is
+    /// exact, with one exception: a contiguous part of a row that contains more corners and crossings of
+    /// contours than this number, or more than twice as many edges, and is not a single line with bends. In
+    /// such a part each strip is evaluated along its middle line. The error of a strip is less than its area,
+    /// and is 0 unless contours begin, end, bend or cross within the strip.
     ///
     /// 1 disables anti-aliasing: a pixel is covered if its centre is. A centre exactly on a contour counts as
     /// covered if the material lies to its right or, on a horizontal edge, below it, so that adjacent bodies
@@ -41,8 +41,8 @@ struct RasterOptions {
     unsigned antialias = 8;
     /// Set if the winding number is known to be 0 or 1 everywhere (see `winds_once`). Then coverage is
     /// computed as a sum over the edges in any order: exact, and several times as fast if contours are finer
-    /// than pixels. If it is set wrongly, overlaps within a pixel count several times, up to the whole pixel.
-    /// It has no effect without anti-aliasing. Image writers set it themselves.
+    /// than pixels. If this is set although contours overlap, overlaps within a pixel count several times, up
+    /// to the whole pixel. Without anti-aliasing, it has no effect. Image writers set it themselves.
     bool winds_once = false;
     /// The value of a pixel is 255 (v / 255)^gamma, rounded, where v is 255 times its coverage, rounded.
     double gamma = 1;

@@ -63,8 +63,8 @@ class MeshInput {
     /// `share` selects a range of the triangles of a binary file; `nonfinite_triangles` and `first_nonfinite`
     /// then refer to this range. The caller knows all ranges; it must warn of these triangles, and must check
     /// that at least one triangle of the file is usable. `stored_triangles` and `max_triangles` refer to the
-    /// number in the header, which is that of the whole file. Throws Error{usage} if the file has fewer
-    /// triangles than the range, for a range of an ASCII file, and for a file that cannot be streamed.
+    /// whole file, by the number in its header. Throws Error{usage} if the file has fewer triangles than the
+    /// range, for a range of an ASCII file, and for a file that cannot be streamed.
     MeshFile stream(const TriangleSink& sink, const MeshReadOptions& options = {},
                     const Execution& execution = {}, const std::optional<RecordRange>& share = {}) const;
 

@@ -36,8 +36,8 @@ struct Plan {
     double snap_mm = 0;
 };
 
-/// Throws Error{usage} that names the first layer whose heights are not finite or whose z is not above that
-/// of the layer before; also for a snap distance that is negative or not finite, and for more than 2^31 - 2
+/// Throws Error{usage} that names the first layer whose heights are not finite or whose z is not above the
+/// previous z. Also throws it for a snap distance that is negative or not finite, and for more than 2^31 - 2
 /// layers. O(layers).
 void check(const Plan& plan);
 
@@ -68,18 +68,18 @@ struct PlaneSelection {
 /// layer exists if its cut meets the part. Hence, with cuts at the bottom, a partly filled last layer is
 /// kept; with cuts in the middle, it is kept if it is more than half full; with cuts at the top, it is
 /// dropped. A remainder below a thousandth of the layer height is ignored. Heights are computed by
-/// multiplication, never as a running sum. With cuts at the top, a last cut that lies above z_max, or below
-/// it by no more than rounding, is moved to z_max.
+/// multiplication, never as a running sum. With cuts at the top, a last cut is moved to z_max if it lies
+/// above z_max, or below z_max by no more than rounding.
 ///
 /// Throws Error{usage} if a height is not a positive finite number, a range is empty, no layer remains, the
 /// layers are too thin for double precision, or there would be more than 2^31 - 2 layers.
 [[nodiscard]] Plan plan_uniform(double z_min, double z_max, const UniformLayers& layers,
                                 SliceAt slice_at = SliceAt::middle, const PlaneSelection& only = {});
 
-/// Returns layers cut at exactly these heights. Layer i is cut at z[i]. For SliceAt::middle it reaches
-/// half-way to its neighbours, for bottom from its cut to the next one, and for top from the previous cut to
-/// its own. The outermost layers have the thickness of their neighbours; the layer of a single cut is
-/// `single_height` thick.
+/// Returns layers cut at exactly these heights. Layer i is cut at z[i]. With SliceAt::middle, layer i reaches
+/// half-way to its neighbours; with SliceAt::bottom, from its cut to the next one; with SliceAt::top, from
+/// the previous cut to its own. The outermost layers have the thickness of their neighbours; the layer of a
+/// single cut is `single_height` thick.
 ///
 /// Throws Error{usage} if the list is empty or too long, or spans more than double precision can represent;
 /// if heights are not finite or not strictly ascending, naming the first such height; if the bottom and top

@@ -65,11 +65,11 @@ struct SliceReport {
     SliceReport& operator+=(const SliceReport& other) noexcept;
 };
 
-/// Receives each layer as soon as it is sliced. It is called once for every layer, from several threads at
-/// once and in any order, and does the work that can run in parallel, such as formatting. It returns a
-/// function, which may be empty, for the work that must be done in order, such as writing. These functions
-/// are called later, one at a time and in ascending z. If the sink or such a function throws, slicing stops
-/// and the exception reaches the caller.
+/// Receives each layer as soon as it is sliced. A sink is called once for every layer, from several threads
+/// at once and in any order, and does the work that can run in parallel, such as formatting. It returns a
+/// function, which may be empty, for the work that must be done in order, such as writing. The returned
+/// functions are called later, one at a time and in ascending z. If the sink or a returned function throws,
+/// slicing stops and the exception reaches the caller.
 using LayerSink = std::function<std::function<void()>(Layer&&)>;
 
 /// Called with ranges of triangles, [begin, end), while slicing reads them; each triangle of the mesh is
@@ -109,7 +109,7 @@ struct Engine {
 
 /// Returns one layer per plane of the plan, in order, each in normal form, empty where the plane misses the
 /// mesh. On a closed, consistently oriented mesh every contour is a ring, for any coordinates. On other
-/// meshes contours may not close; these are kept as open chains. `visitor`, if given, receives the mesh with
+/// meshes, contours that do not close are kept as open chains. `visitor`, if given, receives the mesh with
 /// joined vertices.
 ///
 /// Throws Error{limit} for about 2^32 / 3 triangles or more, Error{cancelled}, and the exceptions of the
@@ -121,16 +121,16 @@ struct Engine {
                                const TriangleVisitor& visitor = {});
 
 /// Slices into a sink, which receives the layers that `slice` would return, each as soon as it is complete.
-/// Points in flight are those handed to the sink and not yet released by its ordered function.
-/// `points_in_flight` is the largest number of them; 0 means 56 MB of points per thread, and at least 112 MB.
-/// A single larger layer is always permitted. Layers that the sink has released take no memory.
+/// `points_in_flight` is the largest number of points handed to the sink and not yet released by its ordered
+/// function; 0 means 56 MB of points per thread, and at least 112 MB. A single larger layer is always
+/// permitted. Layers that the sink has released take no memory.
 void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution = {},
               SliceReport* report = nullptr, const Engine& engine = engines().front(),
               std::uint64_t points_in_flight = 0, const TriangleVisitor& visitor = {});
 
 /// Returns the area of the section at each plane of the plan, mm^2, computed directly from the triangles,
-/// without contours. For closed meshes it equals the area of the layers of every engine, except for rounding;
-/// `lamella verify --mesh` and the tests use it as an independent check. O(triangles + points).
+/// without contours. For closed meshes this area equals the area of the layers of every engine, except for
+/// rounding; `lamella verify --mesh` and the tests use it as an independent check. O(triangles + points).
 [[nodiscard]] std::vector<double> section_areas(const Mesh& mesh, const Plan& plan,
                                                 const Execution& execution = {});
 

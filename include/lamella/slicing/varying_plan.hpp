@@ -21,9 +21,9 @@ struct HeightRange {
 };
 
 /// Returns layers stacked from z_min. Each has the height of the range that contains its bottom, or
-/// `layer_height` if no range does. A layer may reach beyond the end of its range. If its bottom is less than
-/// a thousandth of a layer below the beginning or the end of a range, it counts as being at that height. The
-/// last layer is chosen as in `plan_uniform`.
+/// `layer_height` if no range does. A layer may reach beyond the end of its range. A bottom less than a
+/// thousandth of a layer below the beginning or the end of a range counts as being at that height. The last
+/// layer is chosen as in `plan_uniform`.
 ///
 /// Throws Error{usage} if a range is empty, begins below 0, overlaps another one or does not ascend, naming
 /// the first such range; and in the cases of `plan_uniform`.

@@ -20,8 +20,8 @@ struct AlongXY {
 /// Options of the formats png, png-zip, sl1 and sl1s: the pixels of the image, and how they map to the part.
 /// The centre of the part's box is at the centre of the display.
 struct ImageOptions {
-    /// Size of a pixel, number of pixels, and size of the display; any two of them determine the third.
-    /// Values not given are those of the printer (sl1, sl1s). Without a printer, pixels are 0.05 mm wide, and
+    /// Size of a pixel, number of pixels, and size of the display; any two of them determine the third. The
+    /// defaults are the values of the printer (sl1, sl1s). Without a printer, pixels are 0.05 mm wide, and
     /// there are as many as the part needs.
     std::optional<AlongXY<double>> pixel_mm = {};
     std::optional<AlongXY<std::uint32_t>> pixels = {};
@@ -29,7 +29,7 @@ struct ImageOptions {
 
     /// Orientation, as PrusaSlicer defines it: with `portrait` the display is mounted upright in the printer,
     /// and x runs along the rows of the image, from below. Mirrored displays are seen from the other side.
-    /// Values not given are those of the printer; without a printer an image shows the layer as seen from
+    /// The defaults are the values of the printer; without a printer an image shows the layer as seen from
     /// above.
     std::optional<bool> portrait = {};
     std::optional<bool> mirror_x = {};
