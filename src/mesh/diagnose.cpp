@@ -25,8 +25,8 @@ namespace lamella {
 
 namespace {
 
-/// Joins directed edges, given in ascending order, end to end into loops that pass no vertex twice, and into
-/// chains where they do not close. Calls visit(vertices, closed).
+/// Joins directed edges, given in ascending order, end to end into loops that pass no vertex twice. Edges
+/// that do not close form chains. Calls visit(vertices, closed).
 template <class Visit>
 void for_each_loop(const std::vector<VertexPair>& edges, const Visit& visit) {
     // Edges that start at the same vertex are consecutive; data of a vertex is stored at the first of them.

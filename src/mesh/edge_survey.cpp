@@ -19,8 +19,9 @@ struct Worker {
     std::vector<TriangleOverEdge> triangles;
 };
 
-/// Calls visit(group) for triangles with the same three vertices, two or more in ascending order, among those
-/// whose two lowest vertices are the ends of the edge in `uses`. `work` is scratch memory.
+/// Calls visit(group) for each group of two or more triangles with the same three vertices, in ascending
+/// order. Considers the triangles whose two lowest vertices are the ends of the edge in `uses`. `work` is
+/// scratch memory.
 template <class Visit>
 void for_each_same(const IndexedMesh& mesh, std::span<const EdgeUse> uses,
                    std::vector<TriangleOverEdge>& work, const Visit& visit) {

@@ -32,8 +32,8 @@ struct EdgeUse {
 
     /// Returns true if the triangle runs from `low` to `high`.
     [[nodiscard]] bool upwards() const noexcept { return (position & upwards_bit) != 0; }
-    /// Returns true if these are the two lowest vertices of the triangle, which holds for exactly one of its
-    /// sides.
+    /// Returns true if the ends of this side are the two lowest vertices of the triangle, which holds for
+    /// exactly one of its sides.
     [[nodiscard]] bool lowest_side() const noexcept { return (position & lowest_bit) != 0; }
     [[nodiscard]] std::uint32_t low_in_partition() const noexcept { return position & (lowest_bit - 1); }
 };

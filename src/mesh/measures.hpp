@@ -29,8 +29,8 @@ namespace lamella {
     return {box.min.x / 2 + box.max.x / 2, box.min.y / 2 + box.max.y / 2, box.min.z / 2 + box.max.z / 2};
 }
 
-/// Returns the same corners sorted lexicographically. Results computed from them depend neither on which
-/// corner comes first nor on the orientation.
+/// Returns the same corners sorted lexicographically. Results computed from sorted corners depend neither on
+/// the first corner nor on the orientation.
 [[nodiscard]] inline Triangle3 in_order(Triangle3 t) noexcept {
     std::sort(t.begin(), t.end());
     return t;

@@ -37,8 +37,8 @@ namespace lamella {
 
 namespace {
 
-/// The neighbour over each side of a triangle is stored, if the edge has two triangles, as twice its number,
-/// plus 1 if both run through the edge in the same direction.
+/// If an edge has two triangles, the neighbour over it is stored for each of them as twice the neighbour's
+/// number, plus 1 if both triangles run through the edge in the same direction.
 constexpr std::uint32_t no_neighbour = 0xffffffff;
 
 PageArray<std::uint32_t> find_neighbours(Executor& executor, const IndexedMesh& mesh) {
@@ -172,7 +172,7 @@ struct UnevenUse {
     int balance;         ///< uses upwards minus uses downwards, not 0
 };
 
-/// Returns the uneven uses in ascending order; those of non-orientable patches are left out.
+/// Returns the uneven uses in ascending order; uses by non-orientable patches are left out.
 std::vector<UnevenUse> find_uneven_uses(Executor& executor, const IndexedMesh& mesh, const Patches& patches) {
     std::vector<std::vector<UnevenUse>> found(executor.workers());
     for_each_edge(executor, mesh, [&](std::span<const EdgeUse> uses, unsigned worker) {
@@ -254,8 +254,8 @@ std::vector<Balance> tied_balances(std::span<const UnevenUse> uses, const Ties& 
 }
 
 /// Ties the patches at each balanced edge with their present orientations. Where exactly two patches or
-/// groups would balance if one of them were flipped, ties them with opposite orientations. If such flips
-/// contradict one another, none of these flips is made.
+/// groups would balance if one of them were flipped, ties them with opposite orientations. If such ties
+/// contradict one another, none of them is made.
 Ties fit(std::size_t patches, const std::vector<UnevenUse>& uneven) {
     Ties ties(patches);
     for_each_uneven_edge(uneven, [&](std::span<const UnevenUse> uses) {

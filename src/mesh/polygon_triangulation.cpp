@@ -52,7 +52,7 @@ std::size_t cell_of(double position, std::size_t cells) {
 }
 
 /// Returns the least and the largest x of a triangle between y = row and y = row + 1, with a margin. The grid
-/// only selects candidates; whether a corner is in the way is decided on the exact points.
+/// only selects candidates; the exact points decide whether a corner is in the way.
 std::pair<double, double> extent_in_row(const Triangle2& triangle, double row) {
     constexpr double margin = 0x1p-6;
     const double low = row - margin;

@@ -19,8 +19,9 @@ class PolygonTriangulator {
     using Triangle = std::array<std::uint32_t, 3>;
 
     /// Returns the n - 2 triangles of a polygon of n finite corners (none for fewer than three), each with
-    /// its corners in the order of the polygon. They are valid until the next call. Each edge of the polygon
-    /// is an edge of one triangle, and all other edges have two: a closed surface of polygons stays closed.
+    /// its corners in the order of the polygon. The result is valid until the next call. Each edge of the
+    /// polygon is an edge of one triangle, and all other edges have two: a closed surface of polygons stays
+    /// closed.
     ///
     /// A convex polygon becomes a fan from its first corner. In any other polygon whose projection does not
     /// cross itself, each triangle has the orientation of the polygon, or no area if its corners are

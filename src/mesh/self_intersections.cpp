@@ -32,7 +32,7 @@ struct Pair {
     }
 };
 
-/// Adds a pair to a heap, with the greatest on top, of the `keep` lowest pairs so far.
+/// Adds a pair to a heap of the `keep` lowest pairs so far, with the greatest of them on top.
 void add_to(std::vector<Pair>& first, const Pair& pair, std::size_t keep) {
     if (first.size() >= keep) {
         if (keep == 0 || !(pair < first.front()))

@@ -143,8 +143,8 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
         return box.min.x <= p.x && p.x <= box.max.x && box.min.y <= p.y && p.y <= box.max.y &&
                box.min.z <= p.z && p.z <= box.max.z;
     };
-    // Nested shells have as many hits as there are pairs of shells. This many hits are kept at a time; a
-    // single point never has more.
+    // Nested shells have as many hits as there are pairs of shells. At most this many hits are kept at a
+    // time, unless a single point has more.
     const std::uint64_t most_hits = std::max<std::uint64_t>(std::uint64_t{1} << 20, mesh.triangles.size());
     std::vector<std::vector<Enclosure>> hits(executor.workers());
     std::vector<std::atomic<std::uint32_t>> hits_of_point(points.size());

@@ -23,8 +23,9 @@ struct Survey {
     std::vector<Box3> boxes = {};
     std::vector<bool> inward = {}; ///< closed, and certainly of negative volume
     std::vector<bool> cavity = {}; ///< inward, and in the material of others
-    /// Number of other shells that contain each shell, and the smallest of these or no_shell. With locations
-    /// they are set for all shells, otherwise only for those that may be cavities.
+    /// Number of other shells that contain each shell, and the smallest of the containing shells or no_shell.
+    /// If locations are requested, both are set for all shells, otherwise only for shells that may be
+    /// cavities.
     std::vector<std::uint32_t> depth = {};
     std::vector<std::uint32_t> inside = {};
 };

@@ -59,8 +59,8 @@ void put_lone_corner_first(Triangle3& t, const Signs& signs, Triangle3& other, S
     }
 }
 
-/// Returns whether one corner is in the other's plane and the two others are on one side of it, so that only
-/// that corner can be shared.
+/// Returns whether one corner is in the plane of the other triangle and the two other corners are on one side
+/// of that plane, so that the triangles can share only the first corner.
 bool in_a_point(const Signs& s) noexcept {
     return std::count(s.begin(), s.end(), 0) == 1 && !both_sides(s);
 }

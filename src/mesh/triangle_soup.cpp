@@ -45,8 +45,8 @@ Box3 placed_box(const TriangleSoup& soup, std::size_t begin, std::size_t end) {
     return box;
 }
 
-/// Throws unless all corners are finite. Makes one pass without branches, and searches for the triangle only
-/// if that fails.
+/// Throws unless all corners are finite. Makes one pass without branches; only if it finds a defect, a second
+/// pass searches for the triangle.
 void require_finite(const TriangleSoup& soup) {
     const auto is_finite = [&](std::size_t i) {
         std::array<float, 9> numbers;

@@ -17,7 +17,7 @@ class UnionFind {
     /// Begins with the numbers below `size`, each a set of its own.
     explicit UnionFind(std::size_t size) : up_(size, Fill::zero) {}
 
-    /// Returns the lowest member of i's set once all joins are done; before that, some member of it.
+    /// Returns the lowest member of i's set once all joins are done; until then, some member of the set.
     [[nodiscard]] std::uint32_t find(std::uint32_t i) const noexcept {
         for (;;) {
             const std::uint32_t parent = above(i);

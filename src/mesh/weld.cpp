@@ -114,8 +114,8 @@ void gather(const TriangleSoup& soup, Range<Key>& range, std::vector<std::array<
     range.locals = locals;
 }
 
-/// Numbers, in order, the items without an equal item before them (`first[i] == 0`). Returns how many there
-/// are.
+/// Numbers, in order, the items without an equal item before them (`first[i] == 0`). Returns the number of
+/// these items.
 std::uint32_t number_firsts(Executor& executor, std::span<const std::uint32_t> first,
                             std::span<std::uint32_t> number) {
     // Count, prefix sum, fill.

@@ -2,7 +2,7 @@
 //
 //     points   equal vertices become one point; points are numbered in lexicographic order, so that the
 //              following steps do not depend on the order of the mesh
-//     pairs    a grid of cells as wide as the tolerance finds the points no farther apart than that
+//     pairs    a grid of cells as wide as the tolerance finds the pairs of points within the tolerance
 //     join     groups are joined, the closest pair first, if the diagonal of their common box is at most the
 //              tolerance
 //     rewrite  triangles refer to the first point of each group instead of vertices
@@ -89,8 +89,8 @@ class CellGrid {
         return squares / 16 - std::min(squares / 16, positions_.size() / 2);
     }
 
-    /// Calls visit(point, other) for the i-th point in the order of the grid and all that follow it in its
-    /// own cell and in the half of the neighbouring cells that follow it.
+    /// Calls visit(point, other) for the i-th point in the order of the grid, with each later point in its
+    /// own cell, and with each point in the neighbouring cells that come later in this order (half of them).
     template <class Visit>
     void after(std::size_t i, const Visit& visit) const {
         constexpr std::uint64_t next = std::uint64_t{1} << 32;

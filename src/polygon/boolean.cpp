@@ -23,8 +23,8 @@ namespace {
 
 using Rings = std::vector<std::span<const Point2>>;
 
-/// The rings of two layers in normal form: those that are, bit for bit, in both layers, and those in only
-/// one.
+/// The rings of two layers in normal form, divided into rings that are, bit for bit, in both layers, and
+/// rings in only one of them.
 struct Shares {
     Shares(const Layer& a, const Layer& b) {
         std::size_t i = 0;
@@ -49,8 +49,8 @@ struct Shares {
     Rings second;
 };
 
-/// Removes common rings outside of the box of the rings that are in only one layer. Out there the winding
-/// numbers of both layers are equal, so they do not affect the result.
+/// Removes common rings outside of the box of the rings that are in only one layer. Outside of this box the
+/// winding numbers of both layers are equal, so these rings do not affect the result.
 void drop_far(Shares& rings) {
     std::optional<Box2> box;
     for (const Rings* alone : {&rings.first, &rings.second})

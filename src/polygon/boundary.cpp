@@ -45,8 +45,8 @@ bool clockwise_before(const Point2& v, const Point2& u, const Point2& a, const P
     return half_a != half_b ? half_a < half_b : orientation(v, a, b) < 0;
 }
 
-/// The sides that are not yet in a ring, clockwise around each point where sides begin. Even if thousands
-/// begin at one point, the next one is found without a search through all of them.
+/// The sides that are not yet in a ring, clockwise around each point where sides begin. Even if thousands of
+/// sides begin at one point, the next side is found without a search through all of them.
 class SidesAhead {
   public:
     /// `sides` are sorted by their beginnings and must outlive this object.
@@ -67,7 +67,7 @@ class SidesAhead {
 
     void take(std::size_t side) noexcept { left_[position_[side]] = position_[side] + 1; }
 
-    /// Returns the first side that begins where this one ends, clockwise from the direction back along it.
+    /// Returns the first side that begins where `side` ends, clockwise from the direction back along `side`.
     [[nodiscard]] std::size_t after(const Directed& side) {
         const Point2& v = side.to;
         const auto begin =

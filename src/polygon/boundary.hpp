@@ -13,8 +13,8 @@ namespace lamella {
 
 /// Returns the boundary of the material in an arrangement on this grid: bodies counter-clockwise, holes
 /// clockwise. Rings that meet at a point are joined so that each keeps its own wedge of material. Points that
-/// were corners of the given rings keep their coordinates; other points lie on the grid. The rings do not
-/// cross.
+/// were corners of the given rings get their original coordinates; other points lie on the grid. If the rings
+/// would then cross, all points lie on the grid instead. The rings do not cross.
 [[nodiscard]] std::vector<Ring> boundary(const Arrangement& arrangement, const Material& material,
                                          const ClippingGrid& grid);
 

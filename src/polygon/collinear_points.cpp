@@ -30,7 +30,8 @@ class Way {
 
     [[nodiscard]] const Point2& to() const noexcept { return to_; }
 
-    /// Extends the segment to p if it stays straight, and removes its former end. Returns whether it did.
+    /// Extends the segment to p if the segment stays straight, and removes its former end. Returns whether
+    /// this was done.
     bool go_on_to(const Point2& p, double tolerance) noexcept {
         const Point2 v = between(from_, to_);
         const Point2 w = between(from_, p);

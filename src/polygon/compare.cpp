@@ -68,7 +68,7 @@ std::vector<ComparedPlane> paired(const RoundedLayers& first, const RoundedLayer
 }
 
 /// Raises `largest` to the largest squared distance from a corner of `from` to the contours of the other
-/// layer, if that is larger.
+/// layer, if that distance is larger.
 void farthest(const Layer& from, const EdgeTree& to, double& largest, Point2& where) {
     for (const Point2& p : from.points) {
         const double distance = to.empty() ? infinity : to.distance_squared(p, largest);

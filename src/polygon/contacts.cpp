@@ -28,7 +28,7 @@ class Groups {
             i = parent_[i] = parent_[parent_[i]];
         return i;
     }
-    /// Returns whether a contact between the two would change the sets or marks.
+    /// Returns whether a contact between two rings would change the sets or marks.
     [[nodiscard]] bool open(std::uint32_t i, std::uint32_t j) noexcept {
         return i == j ? !marked_[find(i)] : find(i) != find(j);
     }

@@ -28,10 +28,10 @@ struct Contacts {
 /// than the vertex between them. Groups are connected by contacts, and numbered by the first of their rings.
 /// The decision is exact. Open chains and points that repeat the one before them are ignored.
 ///
-/// Fast for layers with few contacts, usually O(chains), because the grid finds the chains whose boxes
-/// overlap, and only these are examined. O(n log n) for layers without a useful grid, such as long parallel
-/// diagonal walls. If such a layer has contacts, rings whose boxes overlap form one group, so groups may be
-/// larger than the contacts require, but never smaller.
+/// Usually O(chains) for layers with few contacts, because the grid finds the chains whose boxes overlap, and
+/// only these chains are examined. O(n log n) for layers without a useful grid, such as long parallel
+/// diagonal walls. If a layer without a useful grid has contacts, rings whose boxes overlap form one group,
+/// so groups may be larger than the contacts require, but never smaller.
 ///
 /// `grid` is the grid of these chains, if there is one.
 [[nodiscard]] Contacts find_contacts(const Layer& layer, const MonotoneChains& chains,

@@ -30,8 +30,8 @@ namespace {
 using SegmentId = std::uint32_t; // index of its first point in the layer
 
 /// Local coordinates, relative to the lower left corner of the layer, in a unit in which they are at most 4.
-/// So nothing overflows, and a part far from the origin loses no precision. They only select the cells to
-/// search; the original points decide whether segments cross.
+/// So nothing overflows, and a part far from the origin loses no precision. Local coordinates only select the
+/// cells to search; the original points decide whether segments cross.
 struct Frame {
     double unit = 1; ///< a power of two
     Point2 origin;   ///< in that unit
@@ -51,8 +51,8 @@ struct Frame {
     }
 };
 
-/// Returns the approximate crossing of two segments, within a few rounding errors of both. It is computed
-/// along the shorter segment, where an error of the parameter moves it least.
+/// Returns the approximate crossing of two segments, within a few rounding errors of both. The crossing is
+/// computed along the shorter segment, where an error of the parameter moves it least.
 Point2 point_of_crossing(Segment s, Segment t) noexcept {
     const auto squared_length = [](const Segment& of) {
         return (of.hi.x - of.lo.x) * (of.hi.x - of.lo.x) + (of.hi.y - of.lo.y) * (of.hi.y - of.lo.y);
@@ -65,8 +65,8 @@ Point2 point_of_crossing(Segment s, Segment t) noexcept {
     };
     double share = height(s.lo) / (height(s.lo) - height(s.hi));
     share = share == share ? std::clamp(share, 0.0, 1.0) : 0.5; // 0 / 0 gives NaN
-    // If the two are nearly parallel, the parameter is inaccurate, but then they nearly coincide where their
-    // boxes overlap.
+    // If the segments are nearly parallel, the parameter is inaccurate, but then they nearly coincide where
+    // their boxes overlap.
     const auto within = [](double value, double a, double b, double c, double d) {
         const double first = std::max(std::min(a, b), std::min(c, d));
         return std::max(first, std::min(value, std::min(std::max(a, b), std::max(c, d))));
@@ -76,9 +76,9 @@ Point2 point_of_crossing(Segment s, Segment t) noexcept {
 }
 
 /// Selects segments so that every crossing involves at least one of them: if two neighbours on the sweep line
-/// cross, both are set aside. Their number is at most twice the smallest number of segments whose removal
-/// removes all crossings. So one stray segment through a thousand walls costs two passes, not a thousand.
-/// Returns an empty vector if nothing crosses.
+/// cross, both are set aside. Let m be the smallest number of segments whose removal removes all crossings;
+/// at most 2 m segments are selected. So one stray segment through a thousand walls costs two passes, not a
+/// thousand. Returns an empty vector if nothing crosses.
 std::vector<bool> one_of_each_crossing(std::span<const Segment> segments) {
     SweepStatus status(segments);
     std::vector<bool> set_aside(segments.size(), false);
@@ -119,8 +119,9 @@ std::vector<bool> one_of_each_crossing(std::span<const Segment> segments) {
 
 /// All proper crossings of a layer. A grid divides the segments into cells with a few of them; cells with
 /// many are divided again. If most segments are long compared with their cell, such as many parallel diagonal
-/// walls, no grid separates them. A sweep then finds in O(m log m) that nothing crosses, or a few segments of
-/// which every crossing involves one. These are tested against segments close to them (`LineTree`).
+/// walls, no grid separates them. A sweep of m segments then finds in O(m log m) that nothing crosses, or
+/// selects a few segments so that every crossing involves one of them. The selected segments are tested
+/// against segments close to them (`LineTree`).
 ///
 /// Two segments can meet in several cells: a crossing counts in the half-open cell that contains its computed
 /// location.
@@ -354,7 +355,7 @@ Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
     if (layer.points.size() > std::numeric_limits<SegmentId>::max())
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967295 points; crossings are found in smaller ones");
-    // Most rings touch no others; finding these takes a small fraction of the time.
+    // Most rings touch no others; finding the rings that do takes a small fraction of the time.
     if (layer.open_chains() == 0) {
         const MonotoneChains chains(layer);
         if (const std::optional<ChainGrid> grid = ChainGrid::of(chains)) {

@@ -127,8 +127,8 @@ double EdgeTree::distance_squared(const Segment& s, double enough) const {
     Point2 normal;
     if (length > 0)
         normal = {(s.lo.y - s.hi.y) / length, (s.hi.x - s.lo.x) / length};
-    // A lower bound of the squared distance of a box from the line of the segment: for a diagonal segment,
-    // its own box is a poor bound.
+    // A lower bound of the squared distance of a box from the line of the segment. For a diagonal segment,
+    // the box of the segment would be a poor bound.
     const auto squared_from_line = [&](const Box2& box) {
         const double middle =
             normal.x * ((box.x0 + box.x1) / 2 - s.lo.x) + normal.y * ((box.y0 + box.y1) / 2 - s.lo.y);

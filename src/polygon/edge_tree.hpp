@@ -22,10 +22,10 @@ class EdgeTree {
 
     [[nodiscard]] bool empty() const noexcept { return edges_.empty(); }
 
-    /// Returns the squared distance from p to the nearest edge, or any value below `enough` if it is below
+    /// Returns the squared distance from p to the nearest edge; if this is below `enough`, any value below
     /// `enough`. Infinite if there are no edges.
     [[nodiscard]] double distance_squared(const Point2& p, double enough) const;
-    /// Returns the same for the distance from a segment: 0 if it meets an edge.
+    /// Returns the same for the distance from a segment: 0 if the segment meets an edge.
     [[nodiscard]] double distance_squared(const Segment& s, double enough) const;
 
     /// Returns the ends of the nearest edge. Requires at least one edge.

@@ -16,9 +16,9 @@ struct RingEdge {
     Segment line;
     std::uint32_t ring = 0; ///< a representative, see `RingCopies`
     Windings step;          ///< change of the winding numbers from below to above
-    /// Orders coincident edges from below to above: first those of rings whose inside is below, inner rings
-    /// before those around them; then those of rings whose inside is above, outer rings first. Negative if
-    /// the inside of the ring is below.
+    /// Orders coincident edges from below to above. First come edges of rings whose inside is below, inner
+    /// rings before the rings around them; then edges of rings whose inside is above, outer rings first.
+    /// Negative if the inside of the ring is below.
     std::int64_t order = 0;
 };
 
@@ -48,14 +48,14 @@ class EdgeColumn {
     std::vector<RingEdge> loose_;   ///< edges that cross others, in no particular order
 };
 
-/// A segment tree over values of x. Each edge is stored in few nodes. The edges over one of these values are
-/// those in the ancestors of one leaf.
+/// A segment tree over values of x. Each edge is stored in few nodes. The edges over one of these values of x
+/// are the edges in the ancestors of one leaf.
 ///
-/// Neither a sweep status nor a grid could replace it. A query needs the sum of the steps of all edges below
-/// a point, where edges coincide and cross. A status provides the neighbours of an edge, but the sum below it
-/// only until an edge is inserted or erased below, which happens between two queries if edges coincide. With
-/// a grid, edges would be added one by one from the point downwards: for each of many nested rings, those of
-/// all rings around it.
+/// Neither a sweep status nor a grid could replace the tree. A query needs the sum of the steps of all edges
+/// below a point, where edges coincide and cross. A status provides the neighbours of an edge. The sum below
+/// an edge is valid only until another edge is inserted or erased below it, which happens between two queries
+/// if edges coincide. With a grid, edges would be added one by one from the point downwards. For each of many
+/// nested rings, these would be the edges of all rings around it.
 class EdgesByX {
   public:
     explicit EdgesByX(std::vector<double> abscissae);

@@ -30,8 +30,8 @@ struct NumbersBelow {
 class Grid {
   public:
     /// Returns the size of cells for `count` objects, at least one, whose extents add up to `length`. There
-    /// are about as many cells as objects, but their size is at least half the mean extent, so that each
-    /// object is in few cells.
+    /// are about as many cells as objects, but the size of a cell is at least half the mean extent of
+    /// objects, so that each object is in few cells.
     [[nodiscard]] static double cell_size(const Box2& whole, double count, double length) noexcept {
         const double width = whole.width();
         const double height = whole.height();

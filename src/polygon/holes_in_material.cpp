@@ -114,8 +114,8 @@ class HoleCheck {
     [[nodiscard]] const Point2& left_end(const Hole& hole) const noexcept {
         return layer_.contour(hole.ring).front();
     }
-    /// Takes the cost of some work from the budget. Returns false if that is exhausted; the layer then needs
-    /// another method.
+    /// Takes the cost of some work from the budget. Returns false if the budget is exhausted; the layer then
+    /// needs another method.
     [[nodiscard]] bool spend(std::size_t work) noexcept {
         const bool enough = work <= work_left_;
         work_left_ -= enough ? work : work_left_;

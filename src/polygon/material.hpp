@@ -1,7 +1,7 @@
 #pragma once
 
-// Defines material by winding numbers: those of one layer and a rule, or those of two layers and an
-// operation.
+// Defines material by the winding numbers of one layer and a rule, or by the winding numbers of two layers
+// and an operation.
 
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/fill.hpp"
@@ -21,8 +21,8 @@ class Material {
     [[nodiscard]] bool operator()(const Windings& w) const noexcept {
         return made_of(of_rule(w.first), of_rule(w.second - least_ + 1));
     }
-    /// Returns whether all winding numbers that differ from `around` by at most `rings` have material, or
-    /// none has.
+    /// Returns whether the winding numbers that differ from `around` by at most `rings` all have material, or
+    /// all have none.
     [[nodiscard]] bool alike(const Windings& around, const Windings& rings) const noexcept;
 
   private:

@@ -27,8 +27,8 @@ struct Ways {
         return ((right & first) != 0 ? way::right : 0) | ((left & first) != 0 ? way::left : 0) |
                ((up & first) != 0 ? way::up : 0) | ((down & first) != 0 ? way::down : 0);
     }
-    /// Returns the number of segments by which a chain with the directions `ways` can be extended; 64 if it
-    /// never reverses.
+    /// Returns the number of segments by which a chain with the directions `ways` can be extended; 64 if the
+    /// chain never reverses.
     [[nodiscard]] unsigned before_turn(unsigned ways) const noexcept {
         const auto first = [ways](std::uint64_t bits, unsigned way) {
             return (ways & way) != 0 ? 0 : std::countl_zero(bits);

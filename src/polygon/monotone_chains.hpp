@@ -33,8 +33,8 @@ constexpr unsigned all = right | left | up | down;
 }
 } // namespace way
 
-/// A monotone part of a ring, with one direction in x and one in y. Its box is that of its ends, and it does
-/// not intersect itself.
+/// A monotone part of a ring, with one direction in x and one in y. The box of a chain is the box of its
+/// ends, and a chain does not intersect itself.
 struct Chain {
     std::uint64_t first; ///< index of its first point in the layer
     std::uint32_t ring;

@@ -97,7 +97,7 @@ class NestingSearch {
         if (edge.ring != Nesting::none) {
             const bool inside = edge.rightwards == ends_[edge.ring].rightwards;
             parent = inside ? edge.ring : placement_.outside(edge.ring);
-            // The winding number inside of the parent is not used, because it is not constant if that ring
+            // The winding number inside of the parent is not used, because it is not constant if the parent
             // crosses itself.
             winding = inside ? placement_.winding_inside(edge.ring) : placement_.winding(edge.ring);
         }
@@ -143,7 +143,7 @@ class NestingSearch {
             by_area_[largest_first[i]] = i + 1;
     }
 
-    /// Orders rings so that the edges below a left end come before it.
+    /// Orders rings so that rings with edges below a left end come before the ring of this left end.
     void order_from_left_to_right() {
         const auto before = [&](std::uint32_t a, std::uint32_t b) {
             const Segment& s = ends_[a].line;

@@ -31,7 +31,7 @@ struct Segment {
            side(t, s.lo) * side(t, s.hi) <= 0;
 }
 
-/// Returns whether each segment has its ends strictly on both sides of the other. Exact.
+/// Returns whether the ends of each segment lie strictly on opposite sides of the other. Exact.
 [[nodiscard]] inline bool cross(const Segment& s, const Segment& t) noexcept {
     if (s.lo.x >= t.hi.x || t.lo.x >= s.hi.x)
         return false; // they meet at most on a vertical line where one of them ends
@@ -47,10 +47,10 @@ struct Segment {
 /// compare_heights cannot decide.
 [[nodiscard]] int exact_compare_heights(double x, const Segment& s, const Segment& t) noexcept;
 
-/// Returns the sign of the height of s minus that of t at x. Both must span x and neither may be vertical.
-/// Exact.
+/// Returns the sign of the height of s at x minus the height of t at x. Both must span x and neither may be
+/// vertical. Exact.
 ///
-/// The filter: with u = 2^-53, the fraction of s to the left of x has three roundings, its rise three more
+/// The filter: let u = 2^-53. The fraction of s to the left of x has three roundings, its rise three more,
 /// and the height another one. The height is off by less than 8u (|lo.y| + |hi.y|) if nothing overflows, and
 /// the difference of two heights by less than 10u of the sum of sizes. A fraction that underflows is off by
 /// less than 2^-1074.

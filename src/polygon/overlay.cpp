@@ -52,8 +52,8 @@ class Filler {
     Overlaid run() && {
         for (const std::vector<std::uint32_t>& group : groups_)
             fill_group(group);
-        // Rounding can move the boundary of a united group across rings of other groups that are closer to it
-        // than a unit of the grid.
+        // Rounding can move the boundary of a united group across rings of other groups, if they are closer
+        // to it than a unit of the grid.
         const bool others = result_.groups_united > 1 || count(Fate::kept) + count(Fate::reversed) > 0;
         if (!united_.empty() && others && has_crossings(put_together()))
             unite_all();

@@ -20,8 +20,7 @@
 
 namespace lamella {
 
-/// The result for a ring: it is kept, reversed, dropped, or replaced together with the rings in contact with
-/// it.
+/// The fate of a ring: it is kept, reversed, dropped, or replaced together with the rings in contact with it.
 enum class Fate : std::uint8_t { kept, reversed, dropped, united };
 
 /// Treatment of walls, where boundaries of material run along one another with nothing between them.

@@ -12,8 +12,8 @@ namespace lamella {
 
 namespace {
 
-/// Returns the corners of a ring from its smallest point on, in the direction in which the second corner is
-/// smaller. The result is the same for all rings that bound the same area, in either direction.
+/// Returns the corners of a ring from its smallest point on, in the direction that gives the smaller second
+/// corner. The result is the same for all rings that bound the same area, in either direction.
 std::vector<Point2> corners(std::span<const Point2> ring) {
     const std::size_t n = ring.size();
     const std::size_t start = smallest_rotation(ring);

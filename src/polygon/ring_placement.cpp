@@ -97,7 +97,7 @@ void RingPlacement::place_one(std::uint32_t ring, std::uint32_t parent, const Wi
 }
 
 /// Finds the body of a ring. `inside` must describe the area just outside of the ring; afterwards it
-/// describes that just inside.
+/// describes the area just inside.
 void RingPlacement::find_body(std::uint32_t ring, Inside& inside) {
     if (ends_[ring].rightwards) {
         if (inside.missing > 0) {

@@ -27,16 +27,16 @@ enum class SweepOrder : std::uint8_t { ends_first, begins_first };
 /// log n).
 [[nodiscard]] std::vector<SweepEvent> sweep_events(std::span<const Segment> segments, SweepOrder order);
 
-/// The segments on the sweep line, from below to above. They must not cross on the line or to its left: as
-/// soon as two neighbours are found to cross, one of them must be erased. (As long as no neighbours cross, no
-/// segments cross; Shamos and Hoey.) Of two coincident segments, the one with the smaller index is below.
+/// The segments on the sweep line, from below to above. Segments must not cross on the line or to its left:
+/// as soon as two neighbours are found to cross, one of them must be erased. (As long as no neighbours cross,
+/// no segments cross; Shamos and Hoey.) Of two coincident segments, the one with the smaller index is below.
 /// Exact. Every operation takes O(log n).
 class SweepStatus {
   public:
     static constexpr std::uint32_t none = 0xffffffff;
 
-    /// Returns the part of a segment at a point of the line, for segments that stand for a sequence of
-    /// segments from left to right.
+    /// Returns the part of a segment at a point of the line. A segment may stand for a sequence of segments
+    /// from left to right.
     using Piece = std::function<Segment(std::uint32_t segment, const Point2& at)>;
 
     /// The segments must outlive the status.

@@ -81,8 +81,8 @@ class Thinned {
         return i < end ? i : i - (end - layer_.offsets[contour]);
     }
 
-    /// Returns the point strictly between two that is farthest from the segment between them, or the middle
-    /// one if all lie on it.
+    /// Returns the point strictly between two points that is farthest from the segment between the two, or
+    /// the middle point if all lie on the segment.
     [[nodiscard]] std::pair<std::uint64_t, double> farthest_between(std::size_t contour, std::uint64_t begin,
                                                                     std::uint64_t end) const {
         const Point2& a = layer_.points[wrapped(contour, begin)];
@@ -121,7 +121,7 @@ class Thinned {
         kept_[begin] = true;
     }
 
-    /// Keeps the points that the tolerance requires. Where the farthest points repeatedly split very
+    /// Keeps the points that the tolerance requires. If the farthest points repeatedly split a contour very
     /// unevenly, as along spikes and spirals, middle points are kept instead, so that no point is examined
     /// more than O(log n) times.
     void thin(std::size_t contour, std::uint64_t first, std::uint64_t last) {

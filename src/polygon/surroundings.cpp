@@ -105,7 +105,7 @@ Surroundings SurroundingsSearch::find(std::uint32_t ring) const {
         result.winding += column.winding_below(x, left_edge);
         result.below_all += column.winding_below(x, lowest);
     });
-    // Edges of the ring itself that run back along its lowest edge precede that in the order.
+    // Edges of the ring itself that run back along its lowest edge precede the lowest edge in the order.
     result.winding += count_equal(x, opposite(left_edge)) * left_edge.step;
     RingEdge from = left_edge;
     while (true) {

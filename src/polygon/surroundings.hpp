@@ -25,9 +25,10 @@ struct Surroundings {
 /// rings are skipped, chain by chain. Exact except for `below` where edges cross.
 class SurroundingsSearch {
   public:
-    /// `turns` is the contribution of each ring; `by_area` the ranks of representatives in contact, the
-    /// largest first; `asked` the subset of `representatives` for which `find` will be called. All arguments
-    /// must outlive the search. O(n log c) for n edges that span left ends of the c rings in `asked`.
+    /// `turns` is the contribution of each ring to the winding numbers. `by_area` has the ranks of
+    /// representatives in contact, the largest first. `asked` is the subset of `representatives` for which
+    /// `find` will be called. All arguments must outlive the search. O(n log c) for n edges that span left
+    /// ends of the c rings in `asked`.
     SurroundingsSearch(const MonotoneChains& chains, std::span<const LeftEnd> ends, const RingCopies& copies,
                        std::span<const Windings> turns, std::span<const std::uint32_t> representatives,
                        std::span<const std::uint32_t> by_area, std::span<const std::uint32_t> asked);

@@ -18,8 +18,8 @@ namespace {
 // Let A and B be points of the moved ring, A' and B' the corners that they come from, S the section of the
 // moved ring from A to B, and T that section with loops cut off at their crossings. Let Q be the polygon from
 // A' over A along T to B, to B' and back along the old corners to A'.
-// 1. The pieces between A' and B' together add the winding number of the closed curve A' A S B B' A', which
-//    is that of Q plus that of the loops.
+// 1. The pieces between A' and B' together add the winding number of the closed curve A' A S B B' A'. It is
+//    the winding number of Q plus that of the loops.
 // 2. If Q is simple and has the orientation of the pieces, its winding number is 1 inside and 0 outside.
 // 3. If all loops lie inside of Q and have the same orientation, the pieces add 1 inside of Q, once more for
 //    each loop around the point, and 0 outside.

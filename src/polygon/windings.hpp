@@ -6,9 +6,9 @@
 
 namespace lamella {
 
-/// The winding numbers of the rings of each operand: how many times they run counter-clockwise around a
-/// point. For a ring: the amounts that it adds to those of its inside if it is counter-clockwise, and
-/// subtracts if it is clockwise.
+/// The winding numbers of the rings of each operand: how many times these rings run counter-clockwise around
+/// a point. For a ring: the amounts that it adds to the winding numbers of its inside if it is
+/// counter-clockwise, and subtracts if it is clockwise.
 struct Windings {
     std::int64_t first = 0;
     std::int64_t second = 0;

@@ -9,9 +9,9 @@
 
 namespace lamella {
 
-/// An edge prepared for cutting, from its base to its far end. The base is the end where a plane through it
-/// cuts the edge: the lower end under PlaneRule::section_above, the upper end under section_below. A plane
-/// through the far end does not cut the edge.
+/// An edge prepared for cutting, from its base to its far end. A plane through the base cuts the edge; a
+/// plane through the far end does not. The base is the lower end under PlaneRule::section_above, and the
+/// upper end under section_below.
 ///
 ///     t = min((z - z0) * inverse_dz, 1)      x = x0 + t * dx      y = y0 + t * dy
 ///

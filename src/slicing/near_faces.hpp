@@ -1,7 +1,7 @@
 #pragma once
 
 // Faces that would lie on a plane if coordinates were not rounded. Rounding decides on which side of the
-// plane they are.
+// plane such faces are.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
@@ -31,8 +31,8 @@ struct NearFaces {
 /// Finds the triangles whose corners all lie within rounding of a plane, but at least one of them on the side
 /// of the plane to which corners exactly on it do not belong (see PlaneRule).
 ///
-/// "Within rounding" means coordinate_rounding, but at most a thousandth of the smallest layer height; plans
-/// ignore as much at the top of a part.
+/// "Within rounding" means coordinate_rounding, but at most a thousandth of the smallest layer height. Plans
+/// ignore the same fraction of a layer at the top of a part.
 ///
 /// Areas are summed as integers, so the sums do not depend on the order of triangles and threads.
 class NearFaceFinder {

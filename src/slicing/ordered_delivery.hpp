@@ -1,7 +1,7 @@
 #pragma once
 
-// Accepts planes in any order and runs the sink's actions in ascending order. Workers can wait, so that they
-// do not get too far ahead.
+// Accepts planes in any order and runs the sink's actions in ascending order. Workers can wait here, so that
+// they do not get too far ahead.
 
 #include "core/executor.hpp"
 
@@ -16,7 +16,8 @@
 namespace lamella {
 
 /// Runs the functions that a sink returns for planes, one at a time and in the order of planes. The thread
-/// that delivers the next plane in order runs them. None is run once the executor is stopping.
+/// that delivers the next plane in order runs the functions that are then due. No function is run once the
+/// executor is stopping.
 class OrderedDelivery {
   public:
     OrderedDelivery(const Executor& executor, ProgressMeter& progress)

@@ -5,10 +5,10 @@
 //
 //     count      the triangles that begin and end on each plane, in one pass, in chunks of any size
 //     divide     the planes into ranges of equal work, or into ranges that fit into memory
-//     find       the ranges that a triangle touches: the layers of a range depend on these triangles only
+//     find       the ranges that a triangle touches: the layers of a range depend only on such triangles
 //     slice      each range alone: `slice_to` with its triangles, in any order, and its part of the plan
 //
-// The layers of all ranges are, bit for bit, those of the whole mesh on the whole plan.
+// The layers of all ranges are, bit for bit, the layers of the whole mesh on the whole plan.
 
 #include "lamella/mesh/triangle_soup.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -148,7 +148,7 @@ struct RangeMemory {
 
     /// Returns an upper bound on the bytes that slicing a range takes: its triangles (36 bytes each), the cut
     /// graph with its indices, and the points in flight through a sink that formats them as text. Meshes
-    /// whose triangles are in random order come close to it; others take about half.
+    /// whose triangles are in random order come close to this bound; other meshes take about half of it.
     [[nodiscard]] std::uint64_t bytes(const RangeNeeds& range) const noexcept;
 };
 

@@ -46,7 +46,7 @@ Ranks::Ranks(const Plan& plan) : rule_(plan.rule), snap_mm_(plan.snap_mm) {
     for (std::size_t c = 1; c < cells_.size(); ++c)
         cells_[c].below = cells_[c - 1].below + cells_[c - 1].planes;
     assert(cells_.back().below + cells_.back().planes == count());
-    // A vertex on a plane counts as above it or below it, according to the rule.
+    // The rule decides whether a vertex on a plane counts as above or below it.
     for ([[maybe_unused]] std::uint32_t plane = 0; plane < count(); ++plane)
         assert(rule_ == PlaneRule::section_below ? (*this)(z_[plane]) > plane : (*this)(z_[plane]) <= plane);
 }

@@ -52,8 +52,7 @@ std::vector<AreaMoments> section_moments(const Mesh& mesh, const Plan& plan, con
     const Ranks ranks(plan);
     Executor executor(execution);
     std::vector<AreaMoments> sections(ranks.count());
-    // Number and order of the chunks do not depend on the threads. Therefore the bits of the sums do not
-    // either.
+    // Number and order of the chunks do not depend on the threads, so the bits of the sums do not, either.
     constexpr std::uint64_t most = (std::uint64_t{32} << 20) / sizeof(AreaMoments); // 32 MB in all
     const std::uint64_t pieces = std::clamp<std::uint64_t>(most / (sections.size() + 1), 1, 64);
     const std::uint64_t n = mesh.size();

@@ -19,8 +19,8 @@ namespace lamella {
 
 namespace {
 
-/// Throws Error{usage} if the part has no height, or if there would be more layers (about `count`) than can
-/// be numbered.
+/// Throws Error{usage} if the part has no height, or if `count`, the approximate number of layers, is too
+/// large to number them.
 void require_stack(double z_min, double z_max, double count, double lowest_height) {
     require_part(z_min, z_max);
     if (count > static_cast<double>(max_layers))

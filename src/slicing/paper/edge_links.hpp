@@ -1,8 +1,8 @@
 #pragma once
 
 // Edge matching (King, Rennie and Bennett 2021, section 3.2): two triangles that share an edge on one plane
-// share it on every plane that cuts it. Of the planes that cut a triangle in the same two edges, therefore
-// only the first one needs a search. On each of the others, the IN is inserted at the position that
+// share it on every plane that cuts the edge. Therefore, among the planes that cut a triangle in the same two
+// edges, only the first one needs a search. On each of the others, the IN is inserted at the position that
 // corresponds to that of the IN on the plane above.
 
 #include "slicing/paper/intersection_lists.hpp"
@@ -26,7 +26,8 @@ struct LinkedIntersectionNode {
 /// on the plane above that has the same triangle and the same edges.
 ///
 /// A link is used only if it is still valid: the list that it refers to must end (or begin) with the required
-/// edge. It is always valid if no edge has more than two triangles. Otherwise the IN is inserted by search.
+/// edge. A link is always valid if no edge has more than two triangles. If it is not valid, the IN is
+/// inserted by search.
 class EdgeLinkedLists : public IntersectionLists<LinkedIntersectionNode> {
   public:
     using Node = LinkedIntersectionNode;

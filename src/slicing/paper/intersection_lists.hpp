@@ -81,7 +81,7 @@ class IntersectionLists {
         List* begins = nullptr; // the IN precedes its first IN
         for (List* list = active_[plane].first; list != nullptr; list = list->next) {
             ++counts_.comparisons;
-            // A complete list still has ends, which match each other.
+            // The ends of a complete list match each other.
             if (ends == nullptr && *list->last->to == *node->from && !list->complete)
                 ends = list;
             if (begins == nullptr && *list->first->from == *node->to && !list->complete)

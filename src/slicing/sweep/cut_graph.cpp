@@ -19,9 +19,9 @@
 //
 // Collect. Workers take chunks of consecutive triangles. Each worker looks edges up in a small private table
 // that stays in its second-level cache, because most files have the two triangles of an edge close together.
-// If the edge is found, its node is complete. If not, a new node, known from one side only, takes the slot;
-// the node that it replaces is left to the next step. No thread waits for another, and only appended nodes
-// are written to memory outside the cache.
+// If the edge is found, its node is complete. If not, a new node, known from one side only, takes the slot in
+// the table; the node that it replaces there is completed in the next step. No thread waits for another, and
+// only appended nodes are written to memory outside the cache.
 //
 // Join. Hashes bring nodes with equal ends together (core/key_groups.hpp). Two halves become one node.
 //
@@ -161,8 +161,8 @@ class CutNodePool {
     std::atomic<std::uint64_t> used_{0};
 };
 
-/// Collects the nodes of one worker. It copies the data that it reads all the time into memory of its own, so
-/// that writes of other workers nearby do not evict the data from its cache.
+/// Collects the nodes of one worker. The collector copies the data that it reads all the time into memory of
+/// its own, so that writes of other workers nearby do not evict the data from its cache.
 template <class Corners>
 class alignas(128) Collector {
     using Ends = typename Corners::Ends;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The cut graph: a node for every mesh edge that at least one plane cuts, linked to its successors. It
+// The cut graph: a node for every mesh edge that at least one plane cuts, linked to its successors. The graph
 // contains every contour of every layer. The contours of a layer are found by following links, without any
 // search.
 //

@@ -1,9 +1,9 @@
 #pragma once
 
-// Emitting layers: when all contours of a range of planes are known, they are sorted within each layer, each
-// gets its offset in the layer's array, and its points are computed again, directly into that array.
-// Computing twice is cheaper than moving once: arithmetic in the cache costs a fraction of an access to
-// memory.
+// Emitting layers: when all contours of a range of planes are known, they are sorted within each layer, and
+// each contour gets its offset in the layer's array. Then the points of each contour are computed again,
+// directly into that array. Computing twice is cheaper than moving once: arithmetic in the cache costs a
+// fraction of an access to memory.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/normal_form.hpp"

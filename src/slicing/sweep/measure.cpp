@@ -12,11 +12,11 @@
 #include <limits>
 
 // From plane to plane of a run, each point moves along a straight line. Hence a point that is the leftmost by
-// a clear margin on two planes is also the leftmost on the planes between them. Two neighbours lie on two
-// edges of a triangle, which meet in a corner outside the range of planes. Their distance grows with the
-// distance from the corner, so between two planes it is larger than on one of the two. If the first and last
-// plane of a run agree on the start, and all margins there exceed rounding errors, the planes between them
-// are not measured. Otherwise the range is halved.
+// a clear margin on two planes is also the leftmost on the planes between them. Two neighbouring points lie
+// on two edges of a triangle, which meet in a corner outside the range of planes. The distance of the points
+// grows with the distance from the corner, so between two planes it is larger than on one of the two. If the
+// first and last plane of a run agree on the start, and all margins there exceed rounding errors, the planes
+// between them are not measured. Otherwise the range is halved.
 
 namespace lamella {
 
@@ -51,7 +51,7 @@ class Measurement {
           scratch_(scratch) {}
 
     /// Computes the ring of a plane. Returns true if its start is the leftmost point by more than the
-    /// tolerance and all neighbours are farther apart than that; always false for tolerance 0.
+    /// tolerance and all neighbours are farther apart than the tolerance; always false for tolerance 0.
     bool measure_plane(std::uint32_t plane, double tolerance) {
         end_if_stopping(executor_);
         const bool closed = outline_.closed;

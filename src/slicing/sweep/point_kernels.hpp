@@ -2,7 +2,8 @@
 
 // The inner loops of the sweep, which compute points from prepared edges. Each is written once in plain code
 // and compiled for several vector widths; the widest one that the processor supports is chosen at run time.
-// All give the same bits: they perform the operations of EdgeCut::at without fusing or reordering them.
+// All versions give the same bits: they perform the operations of EdgeCut::at without fusing or reordering
+// them.
 
 #include "lamella/core/point.hpp"
 

@@ -1,9 +1,8 @@
 #pragma once
 
-// Runs: contours over the planes that one walk serves.
-//
-// A sequence of nodes remains valid up to its first event: a node that ends or changes to its other
-// successor. All planes up to there are a run, whose length is bounded.
+// Runs: contours over the planes that one walk serves. A sequence of nodes remains valid up to its first
+// event: a node ends or changes to its other successor. All planes before the first event are a run, whose
+// length is bounded.
 
 #include "lamella/core/point.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -40,8 +39,8 @@ struct Ring {
     std::uint64_t position; ///< offset in the layer's array
 };
 
-/// The runs of a task that are needed by later planes or by planes not yet written. They are in the order in
-/// which they were found, and so are their nodes and their rings.
+/// The runs of a task that are needed by later planes or by planes not yet written. Runs, their nodes and
+/// their rings are stored in the order in which the runs were found.
 class Runs {
   public:
     /// Must be called before the first plane of a task. Requires that no runs of the previous task are left.
@@ -97,8 +96,8 @@ class Runs {
     }
 
     /// Must be called when all runs that begin on a plane are known. Returns true if it is time to write and
-    /// forget runs: when the ended runs hold many nodes, and at least as many as were alive when runs were
-    /// last forgotten.
+    /// forget runs. This is when the ended runs hold many nodes, and at least as many as were alive when runs
+    /// were last forgotten.
     [[nodiscard]] bool end_plane(std::uint32_t plane) noexcept {
         constexpr std::uint64_t enough = 1U << 15; // nodes
         stale_ += ending_[plane + 1 - planes_.begin];

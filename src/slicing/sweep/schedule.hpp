@@ -25,14 +25,14 @@ struct SweepTask {
 /// flight together; 0: no bound.
 ///
 /// Usually tasks are of about equal work. A task has an additional cost: at its first plane it must walk over
-/// all nodes that are alive there. So there are few tasks if planes are few and large. If that cost is small,
-/// there are more tasks, which compensates for errors in the estimated work.
+/// all nodes that are alive there. So there are few tasks if planes are few and large. If this cost is small,
+/// there are more tasks, so that errors in the estimated work even out.
 ///
 /// There is a single shared task in two cases. In the first, the bound on points in flight leaves no space
 /// for a task of each worker. In the second, separate tasks would take as long for their walks as one worker
 /// that walks alone, as on upright parts; with a shared task the work after the walk is divided evenly. If
-/// the bound still permits tasks of many planes, these are preferred, because some workers slice while others
-/// deliver.
+/// the bound still permits tasks of many planes, separate tasks are preferred, because some workers slice
+/// while others deliver.
 [[nodiscard]] std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers,
                                               std::uint64_t points_in_flight);
 

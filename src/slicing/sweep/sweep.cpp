@@ -85,8 +85,8 @@ class alignas(128) Sweep {
     }
 
   private:
-    /// Stored columns must fit into the cache of one core. If all workers share the work, they would have to
-    /// leave it; then none are stored.
+    /// Stored columns must fit into the cache of one core. If all workers share the work, columns would have
+    /// to leave this cache, so none are stored.
     static std::uint64_t room_for_columns(const PlaneLoads& loads, bool shared) {
         constexpr std::uint64_t most = 1U << 16; // edges: 3 MB
         return shared ? 0 : std::min(most, EdgeColumns::padded(8 * loads.all_points));

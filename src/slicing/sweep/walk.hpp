@@ -1,8 +1,8 @@
 #pragma once
 
 // Reads contours from the cut graph: from a node that begins on a plane, follows `next` until it reaches the
-// start. If no node of a contour begins on a plane, the contour continues one from the plane below and is not
-// walked again, except once every `longest_run` planes, from any one of its nodes.
+// start. If no node of a contour begins on a plane, the contour continues a contour of the plane below and is
+// not walked again, except once every `longest_run` planes, from any one of its nodes.
 
 #include "lamella/slicing/plan.hpp"
 
@@ -19,8 +19,8 @@
 
 namespace lamella {
 
-/// The nodes of a contour, in the order in which the contour visits them. They are the same, and link to one
-/// another, on all planes from the one that was walked to the one before `valid_until`.
+/// The nodes of a contour, in the order in which the contour visits them. On all planes from the walked plane
+/// to the plane before `valid_until`, the nodes are the same and link to one another.
 struct NodeSequence {
     std::span<const std::uint32_t> nodes;
     std::uint32_t valid_until;
@@ -142,7 +142,7 @@ class Walk {
         return false;
     }
 
-    /// Visits one node. Returns false if the walk is over.
+    /// Visits one node. Returns false when the walk ends.
     template <class Found>
     bool step(Walker& walker, std::uint32_t plane, const Found& found) {
         const std::uint32_t id = walker.node;
@@ -235,8 +235,8 @@ class Walk {
         if (sequence.valid_until < planes_.end) {
             std::vector<std::uint32_t>& again = restarts_[sequence.valid_until - planes_.begin];
             // If something changes where the sequence of a closed contour ends, the contour continues through
-            // a node that begins there. If nothing changes, any node serves as the start. Open contours have
-            // no such guarantee.
+            // a node that begins there. If nothing changes, any node serves as the start. This does not hold
+            // for open contours.
             if (!sequence.closed)
                 again.insert(again.end(), sequence.nodes.begin(), sequence.nodes.end());
             else if (sequence.valid_until == end_of_run(plane))
