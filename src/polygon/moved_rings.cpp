@@ -24,11 +24,11 @@ namespace {
 // two strips separate sweeps a wedge between them. Growing adds all strips and wedges to the material;
 // shrinking removes them.
 //
-// Loops. Let C be a corner between sides s and t whose strips overlap: C is concave as seen from the moving
-// side. Let N be the end of moved side s, P the beginning of moved side t, and M the intersection of both.
-// Consider a ring that follows each moved side, goes around each wedge, and goes N C P at each such corner.
-// It winds around a point as often as the old ring, plus once for each strip and wedge that contains the
-// point (minus once, when shrinking). So the material is exactly where the winding number is above 0,
+// Loops. Let C be a corner between sides s and t whose strips overlap: C is concave on the side to which s
+// and t move. Let N be the end of moved side s, P the beginning of moved side t, and M the intersection of
+// both. Consider a ring that follows each moved side, goes around each wedge, and goes N C P at each such
+// corner. It winds around a point as often as the old ring, plus once for each strip and wedge that contains
+// the point (minus once, when shrinking). So the material is exactly where the winding number is above 0,
 // whatever overlaps.
 //
 // Kites. Such loops would make every ring with a concave corner meet itself. So the ring goes through M
@@ -37,16 +37,18 @@ namespace {
 // strip of t. The sign of the winding stays right everywhere:
 // 1. A point loses at most what its strips have added, because the triangles within one strip do not overlap.
 // 2. A point q in strips or wedges, outside of the old material (inside, when shrinking), does not lose all
-//    of them. Let s be the side or corner nearest to q, whose strip or wedge then contains q. A wedge has no
-//    triangles. If s is a side and q were inside of CNM, then t would be nearer: let f be the distance to t
-//    and g that to the line of s. On CNM f is convex and g linear. At C both are 0, at M both are the offset
-//    distance, at N g is that and f is less. So f < g inside. The same holds for CMP with s and t exchanged.
+//    of them. Let s be the side or corner nearest to q, whose strip or wedge then contains q. If s is a
+//    corner, its wedge keeps q, because no triangle is cut from a wedge. If s is a side and q were inside of
+//    CNM, then t would be nearer: let d be the offset distance, f the distance to t, and g the distance to
+//    the line of s. On CNM f is convex and g linear. At C, f = g = 0; at M, f = g = d; at N, f < g = d. So
+//    inside, f < g. The same holds for CMP with s and t exchanged.
 //
 // Short sides. A side can be too short for the lengths cut off at its ends, such as those of a fillet whose
-// radius is below the distance. It is dropped and its neighbours are extended to their intersection, if this
-// lies beyond the dropped moved side: its strip is then covered by the strips of the neighbours and the area
-// between these and the intersection. In a row of concave corners, one pass with a stack finds the remaining
-// sides, as for the lower envelope of lines. If that fails, the ring makes the loops N C P.
+// radius is below the distance. Such a side is dropped, and its neighbours are extended to their intersection
+// X. This requires that X lies beyond the moved side that is dropped: its strip is then covered by the strips
+// of the neighbours and the area between these strips and X. In a row of concave corners, one pass with a
+// stack finds the remaining sides, as for the lower envelope of lines. If that fails, the ring makes the
+// loops N C P.
 
 /// A side between two different points.
 struct MovedSide {
@@ -117,7 +119,8 @@ MovedSide side_between(const Point2& a, const Point2& b) noexcept {
 }
 
 /// Returns the tolerance of chords. Chords finer than the grid to which crossings are rounded would only add
-/// points. Its unit is at least 2^-37 of the layer's extent, which is at least twice the distance.
+/// points. The unit of the grid is at least 2^-37 of the layer's extent, which is at least twice the
+/// distance.
 double arc_tolerance(double reach, const OffsetCorners& corners) noexcept {
     return std::max(corners.arc_tolerance_mm, reach * 0x1p-36);
 }
@@ -226,8 +229,8 @@ class RingSides {
     }
 
   private:
-    /// The sign of a fold's sine decides whether strips separate, so it must be exact, and 1 + cosine has no
-    /// digits left.
+    /// At a fold, the sign of the sine decides whether strips separate, so it is computed exactly. The mitre
+    /// is computed from the sine, because 1 + cosine has lost all digits by cancellation.
     void look_at_fold(std::size_t i) {
         const std::size_t next = after(i);
         const int side = orientation(sides_[i].from, sides_[next].from, sides_[after(next)].from);
@@ -383,7 +386,8 @@ class RingMover {
         return SideIntersection{b.from + m + along_b * b.direction, a.length + along_a, along_b};
     }
 
-    /// Returns whether each dropped side of the row lies below the intersection of its remaining neighbours.
+    /// Returns whether the intersection of the remaining neighbours lies beyond each dropped moved side, in
+    /// the direction of the move.
     [[nodiscard]] bool swallowed_lie_below() const noexcept {
         for (std::size_t k = 0; k + 1 < row_.size(); ++k)
             for (std::size_t i = after(row_[k].side); i != row_[k + 1].side; i = after(i)) {
@@ -396,7 +400,8 @@ class RingMover {
         return true;
     }
 
-    /// Appends the ring, from the middle of the longest side if that remains, so that no loop is at its ends.
+    /// Appends the ring, from the middle of the longest side if this middle remains, so that no loop is at
+    /// the ends of the ring.
     void put_ends(std::vector<Point2>& out) {
         const std::size_t longest = sides_.longest();
         const MovedSide& side = sides_[longest];
@@ -491,7 +496,7 @@ class RingMover {
     OffsetCorner shape_;
     Wedges wedges_;
     double rounding_;
-    std::vector<double> cuts_; ///< length cut off both sides after a side, where strips overlap
+    std::vector<double> cuts_; ///< by side: length cut off its end and the beginning of the next side
     std::vector<SideEnd> ends_;
     std::vector<Point2> intersections_; ///< for sides that end in one
     std::vector<RowSide> row_;
@@ -500,7 +505,8 @@ class RingMover {
     std::vector<Point2> ends_points_; ///< of one side
 };
 
-/// Removes repeated points of a ring from `begin` on. Both ends of sides that shrank to length 0 are there.
+/// Removes repeated points of a ring from `begin` on. A side that shrank to length 0 has two equal end
+/// points.
 void drop_repeats(std::vector<Point2>& points, std::size_t begin) {
     points.erase(std::unique(points.begin() + static_cast<std::ptrdiff_t>(begin), points.end()),
                  points.end());
