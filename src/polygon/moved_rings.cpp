@@ -24,31 +24,31 @@ namespace {
 // two strips separate sweeps a wedge between them. Growing adds all strips and wedges to the material;
 // shrinking removes them.
 //
-// Loops. Let C be a corner between sides s and t whose strips overlap: C is concave on the side to which s
-// and t move. Let N be the end of moved side s, P the beginning of moved side t, and M the intersection of
-// both. Consider a ring that follows each moved side, goes around each wedge, and goes N C P at each such
-// corner. It winds around a point as often as the old ring, plus once for each strip and wedge that contains
-// the point (minus once, when shrinking). So the material is exactly where the winding number is above 0,
-// whatever overlaps.
+// Loops (letters as in docs/algorithms/offset.md). Let P be a corner between sides s and t whose strips
+// overlap: P is concave on the side to which s and t move. Let A be the end of moved side s, B the beginning
+// of moved side t, and M the intersection of both. Consider a ring that follows each moved side, goes around
+// each wedge, and goes A P B at each such corner. It winds around a point as often as the old ring, plus once
+// for each strip and wedge that contains the point (minus once, when shrinking). So the material is exactly
+// where the winding number is above 0, whatever overlaps.
 //
 // Kites. Such loops would make every ring with a concave corner meet itself. So the ring goes through M
-// instead of N C P, if the lengths cut off at both ends of each side do not overlap. This removes the winding
-// of the kite C N M P, which consists of the right-angled triangles CNM in the strip of s and CMP in the
+// instead of A P B, if the lengths cut off at both ends of each side do not overlap. This removes the winding
+// of the kite P A M B, which consists of the right-angled triangles PAM in the strip of s and PMB in the
 // strip of t. The sign of the winding stays right everywhere:
 // 1. A point loses at most what its strips have added, because the triangles within one strip do not overlap.
 // 2. A point q in strips or wedges, outside of the old material (inside, when shrinking), does not lose all
 //    of them. Let s be the side or corner nearest to q, whose strip or wedge then contains q. If s is a
 //    corner, its wedge keeps q, because no triangle is cut from a wedge. If s is a side and q were inside of
-//    CNM, then t would be nearer: let d be the offset distance, f the distance to t, and g the distance to
-//    the line of s. On CNM f is convex and g linear. At C, f = g = 0; at M, f = g = d; at N, f < g = d. So
-//    inside, f < g. The same holds for CMP with s and t exchanged.
+//    PAM, then t would be nearer: let d be the offset distance, f the distance to t, and g the distance to
+//    the line of s. On PAM f is convex and g linear. At P, f = g = 0; at M, f = g = d; at A, f < g = d. So
+//    inside, f < g. The same holds for PMB with s and t exchanged.
 //
 // Short sides. A side can be too short for the lengths cut off at its ends, such as those of a fillet whose
 // radius is below the distance. Such a side is dropped, and its neighbours are extended to their intersection
 // X. This requires that X lies beyond the moved side that is dropped: its strip is then covered by the strips
 // of the neighbours and the area between these strips and X. In a row of concave corners, one pass with a
 // stack finds the remaining sides, as for the lower envelope of lines. If that fails, the ring makes the
-// loops N C P.
+// loops A P B.
 
 /// A side between two different points.
 struct MovedSide {
