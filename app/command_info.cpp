@@ -26,6 +26,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,6 +46,25 @@ struct InfoArguments {
     ReadLimits limits;
     RunOptions run;
 };
+
+/// Warns of defects of negative volumes, which are no part of the mesh that is described. Returns whether
+/// there are none.
+bool negatives_are_sound(const Plate& plate, const std::string& name, Messages& messages,
+                         const Execution& execution) {
+    std::set<std::size_t> shapes;
+    for (const PlateNegative& negative : plate.negatives)
+        shapes.insert(negative.shape);
+    bool sound = true;
+    for (const std::size_t shape : shapes) {
+        const Inspection found = inspect(weld(plate.shapes[shape].mesh, execution), execution);
+        if (found.sound())
+            continue;
+        sound = false;
+        messages.warn(fmt::format("{}: a negative volume of {} triangles has defects: {}", name,
+                                  found.triangles, describe_defects(found)));
+    }
+    return sound;
+}
 
 int describe_mesh(const InfoArguments& arguments, const MeshFile& file, const Context& context,
                   const Execution& execution) {
@@ -67,7 +87,8 @@ int describe_mesh(const InfoArguments& arguments, const MeshFile& file, const Co
         context.messages.note(text);
     else
         context.messages.result(text);
-    if (arguments.strict && !found.counts.sound())
+    const bool sound = negatives_are_sound(plate, input_name(file.path), context.messages, execution);
+    if (arguments.strict && !(sound && found.counts.sound()))
         throw Error(ErrorKind::defect, fmt::format("{}: the mesh has defects", input_name(file.path)));
     return 0;
 }

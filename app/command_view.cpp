@@ -11,6 +11,7 @@
 #include "commands.hpp"
 #include "diagnosis_report.hpp"
 #include "layer_file.hpp"
+#include "layering_options.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "page_notes.hpp"
@@ -35,6 +36,7 @@ struct ViewArguments {
     std::string output;
     std::optional<double> layer_height;
     std::string slice_at; ///< "" if not given
+    std::optional<double> snap;
     PlacementOptions placement;
     LayerStepOptions making;
     ReadLimits limits;
@@ -66,6 +68,7 @@ std::uint64_t view_mesh(const ViewArguments& arguments, MeshFile mesh, const std
         UniformLayers{.layer_height = arguments.layer_height.value_or(UniformLayers{}.layer_height)};
     if (!arguments.slice_at.empty())
         job.layering.at = slice_at_named(arguments.slice_at);
+    job.layering.snap_mm = arguments.snap.value_or(0);
     job.max_memory = arguments.limits.max_memory.value_or(0);
     job.steps = arguments.making.steps();
     job.layer_statistics = job.steps.any(); // the page shows the changes of each layer
@@ -85,7 +88,8 @@ std::uint64_t view_mesh(const ViewArguments& arguments, MeshFile mesh, const std
 /// Writes the page of layers; returns their number.
 std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const std::string& output,
                           Messages& messages, const Execution& execution) {
-    if (arguments.placement.given() || arguments.layer_height || !arguments.slice_at.empty())
+    if (arguments.placement.given() || arguments.layer_height || !arguments.slice_at.empty() ||
+        arguments.snap)
         throw Error(ErrorKind::usage,
                     fmt::format("{}: holds layers, and these stay where they are; options of "
                                 "where a part stands and how it is cut are for meshes",
@@ -148,7 +152,7 @@ OptionGroup cutting_options(ViewArguments& target) {
     Option slice_at = choice("slice-at", "WHERE", "where in its thickness a layer is cut", slice_at_names(),
                              target.slice_at);
     slice_at.preset = "middle";
-    return {"How a mesh is cut", {std::move(layer_height), std::move(slice_at)}};
+    return {"How a mesh is cut", {std::move(layer_height), std::move(slice_at), snap_option(target.snap)}};
 }
 
 } // namespace

@@ -42,13 +42,16 @@ bool has_roles(const MeshFile& file) {
                        [](const MeshBody& body) { return body.role != MeshRole::part; });
 }
 
+bool subtracts(const MeshFile& file) {
+    return std::any_of(file.instances.begin(), file.instances.end(),
+                       [](const MeshInstance& instance) { return instance.negative; });
+}
+
 /// Returns "subtracted", "left out" or "read".
 std::string_view use_of(const MeshFile& file, const MeshBody& body) {
     if (body.left_out)
         return "left out";
-    const bool subtracts = std::any_of(file.instances.begin(), file.instances.end(),
-                                       [](const MeshInstance& instance) { return instance.negative; });
-    return body.role == MeshRole::negative && subtracts ? "subtracted" : "read";
+    return body.role == MeshRole::negative && subtracts(file) ? "subtracted" : "read";
 }
 
 std::string bodies_text(const MeshFile& file) {
@@ -248,11 +251,16 @@ Json intersections_json(const SelfIntersections& found) {
     return json;
 }
 
-/// Returns the figures, with the number of triangles as the file stores them.
+/// Returns the figures, with the number of triangles as the file stores them. What negative volumes remove
+/// is known for each layer only, so the volume and the area are those of the parts.
 Figures figures_of(const MeshFile& file, const Diagnosis& found) {
     Inspection counts = found.counts;
     counts.triangles = file.stored_triangles;
-    return mesh_figures(counts);
+    Figures figures = mesh_figures(counts);
+    for (Figure& figure : figures)
+        if (subtracts(file) && ((figure.key == "volume_mm3" && counts.closed()) || figure.key == "area_mm2"))
+            figure.text += " of the parts; negative volumes are not subtracted here, but from layers";
+    return figures;
 }
 
 } // namespace

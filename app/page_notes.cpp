@@ -79,6 +79,12 @@ PageNotes mesh_notes(const MeshFile& file, const Diagnosis& found) {
     if (file.unit_mm)
         section.facts.push_back({"Unit", fmt::format("{} mm, as the file says", brief(*file.unit_mm))});
     section.facts.push_back({"Triangles in it", grouped(file.stored_triangles)});
+    if (const auto negatives = std::count_if(file.instances.begin(), file.instances.end(),
+                                             [](const MeshInstance& instance) { return instance.negative; });
+        negatives > 0)
+        section.facts.push_back({"Negative volumes", fmt::format("{}, subtracted from layers, but not from "
+                                                                 "this mesh, its volume and its area",
+                                                                 negatives)});
     for (const std::string& warning : file.warnings)
         section.facts.push_back({"Remark", warning, Tone::warning});
     PageSection mesh = mesh_section(found.counts);

@@ -37,9 +37,14 @@ struct Candidate {
 constexpr std::size_t most_candidates_of_an_end = 64;
 
 std::vector<Candidate> find_candidates(const Layer& layer, double within) {
+    std::vector<std::size_t> chains; // without those of a layer made by hand that have no points
     std::vector<Point2> first_points;
-    for (std::size_t c = layer.rings; c < layer.contours(); ++c)
+    for (std::size_t c = layer.rings; c < layer.contours(); ++c) {
+        if (layer.contour(c).empty())
+            continue;
+        chains.push_back(c);
         first_points.push_back(layer.contour(c).front());
+    }
     const NearestPoints starts(std::move(first_points));
     // Rounding may place a point slightly outside of its box in the tree, so the search reaches slightly
     // farther.
@@ -48,13 +53,13 @@ std::vector<Candidate> find_candidates(const Layer& layer, double within) {
     };
     std::vector<Candidate> all;
     std::vector<Candidate> of_end; // a heap with the worst on top
-    for (std::size_t c = layer.rings; c < layer.contours(); ++c) {
+    for (const std::size_t c : chains) {
         const Point2& end = layer.contour(c).back();
         of_end.clear();
         starts.for_each_closer(end, reach(within), [&](std::size_t start, double length, double& below) {
             if (length > within)
                 return;
-            const std::size_t next = layer.rings + start;
+            const std::size_t next = chains[start];
             of_end.push_back({length, end, layer.contour(next).front(), c, next});
             std::push_heap(of_end.begin(), of_end.end());
             if (of_end.size() > most_candidates_of_an_end) {
@@ -147,7 +152,7 @@ class Rows {
             const std::span<const Point2> points = layer.contour(c);
             for (std::size_t i = 0; i + 1 < points.size(); ++i)
                 visit(Piece{points[i], points[i + 1]});
-            if (layer.closed(c))
+            if (layer.closed(c) && !points.empty())
                 visit(Piece{points.back(), points.front()});
         }
     }
@@ -344,8 +349,8 @@ ClosedGaps close_gaps(const Layer& layer, double within_mm) {
         builder.add_contour(points, contour.closed);
     });
     result.layer = builder.finish(layer.index, layer.z, layer.bottom, layer.top);
-    // Each join makes one chain of two, or a ring of one.
-    assert(result.layer.open_chains() + result.joins.size() == layer.open_chains());
+    // Each join makes one chain of two, or a ring of one; chains without points are dropped.
+    assert(result.layer.open_chains() + result.joins.size() <= layer.open_chains());
     result.layer.hatches = layer.hatches;
     return result;
 }

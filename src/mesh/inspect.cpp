@@ -1,5 +1,6 @@
 #include "lamella/mesh/inspect.hpp"
 
+#include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "mesh/edge_survey.hpp"
 #include "mesh/edge_uses.hpp"
@@ -83,6 +84,14 @@ Survey survey(Executor& executor, const IndexedMesh& mesh, bool with_locations) 
             ++(all.cavity[s] ? found.cavities : found.inverted_shells);
         }
     return all;
+}
+
+std::string describe_defects(const Inspection& found) {
+    std::string text;
+    for (const DefectKind& kind : defect_kinds)
+        if (const std::uint64_t count = found.*kind.count; count > 0)
+            text += (text.empty() ? "" : ", ") + counted(count, kind.words.one, kind.words.many);
+    return text;
 }
 
 Inspection inspect(const IndexedMesh& mesh, const Execution& execution) {

@@ -15,6 +15,7 @@
 #include "pipeline/job_output.hpp"
 #include "pipeline/layer_totals.hpp"
 #include "pipeline/layer_window.hpp"
+#include "pipeline/material_surface.hpp"
 #include "pipeline/packed.hpp"
 #include "pipeline/plane_scan.hpp"
 #include "pipeline/plate_builder.hpp"
@@ -146,7 +147,7 @@ Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution)
     Plan plan;
     try {
         plan = plan_of(
-            job.layering, plate.box, [&] { return joined(plate, execution); }, execution);
+            job.layering, plate.box, [&] { return material_surface(plate, execution); }, execution);
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::usage && error.kind() != ErrorKind::limit)
             throw;
@@ -228,29 +229,6 @@ LayerFileInfo file_info(const FileJob& job, const Plate& plate, const Plan& plan
     info.rule = plan.rule;
     info.known_finite = true;
     return job.scan ? with_exposures(info, *job.scan) : info;
-}
-
-/// Returns a text such as "2 boundary edges, 1 inverted shell".
-std::string describe_defects(const Inspection& found) {
-    struct Count {
-        std::uint64_t n;
-        std::string_view one;
-        std::string_view many;
-    };
-    const std::array<Count, 6> counts{{
-        {found.boundary_edges, "boundary edge", "boundary edges"},
-        {found.nonmanifold_edges, "edge with more than two triangles", "edges with more than two triangles"},
-        {found.orientation_conflicts, "orientation conflict", "orientation conflicts"},
-        {found.duplicate_triangles, "duplicate triangle", "duplicate triangles"},
-        {found.degenerate_triangles, "degenerate triangle", "degenerate triangles"},
-        {found.inverted_shells, "inverted shell", "inverted shells"},
-    }};
-    std::string text;
-    for (const Count& count : counts)
-        if (count.n != 0)
-            text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count.n,
-                                count.n == 1 ? count.one : count.many);
-    return text;
 }
 
 /// Inspects every shape. With `keep_welded` the shapes stay welded, so that an engine that welds need not do

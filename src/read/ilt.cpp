@@ -152,13 +152,15 @@ constexpr NameWord codes[] = {
     {"uk", ScanRegion::downskin, VectorKind::contour}, {"kvu", ScanRegion::downskin, VectorKind::contour, 2},
     {"sx", ScanRegion::support, VectorKind::hatch},    {"skin", ScanRegion::upskin, VectorKind::hatch}};
 
-/// Names of regions in 3DXpert, which are alone for hatches, and follow the number of a contour as in "c1md".
+/// Names of regions in 3DXpert, as in a single example; no description is known. They are alone for hatches,
+/// and follow the number of a contour as in "c1md".
 constexpr NameWord short_regions[] = {{"md", ScanRegion::core},
                                       {"up", ScanRegion::upskin},
                                       {"dn", ScanRegion::downskin},
                                       {"sp", ScanRegion::support}};
 
-/// Common words, and those of netfabb, which names files like stacks of slices.
+/// Common words. netfabb is said to name files like its stacks of slices, whose names its users choose. That
+/// rests on neither a description nor a file of netfabb: the words are taken at their meaning.
 constexpr NameWord plain_words[] = {
     {"hatch", {}, VectorKind::hatch},      {"hatches", {}, VectorKind::hatch},
     {"hatching", {}, VectorKind::hatch},   {"hatchings", {}, VectorKind::hatch},

@@ -15,6 +15,12 @@ class CommandLine(ProgramTest):
             self.assertIn("lamella slice rook.stl -o rook.cli", text)
             self.assertIn("130", text)
 
+    def test_every_command_that_cuts_a_mesh_snaps(self):
+        cutting = [name for name in self.commands() if "--slice-at" in self.succeed(name, "--help").text]
+        self.assertEqual(sorted(cutting), ["slice", "verify", "view"])
+        for name in cutting:
+            self.assertIn("--snap MM", self.succeed(name, "--help").text)
+
     def test_every_command_has_help(self):
         commands = self.commands()
         self.assertEqual(commands, ["slice", "info", "verify", "compare", "convert", "scan", "strategy", "merge", "view", "make", "completion", "help"])

@@ -127,6 +127,17 @@ class Compare(ProgramTest):
         self.assertEqual([d["height_distance_mm"] for d in found["differences"]], [0.25])
         self.assertIn("bottom or top 0.25 mm apart", self.differ("torus.json", "thicker.json").text)
 
+    def test_the_order_of_exposures_is_compared_between_files_of_one_format(self):
+        self.write("before.toml", "[contours]\nbefore_hatch = true\n")
+        job = ["slice", self.box(), "--layer-height", "2", "-o"]
+        self.succeed(*job, "after.ovf", "--scan")
+        for name in "before.ovf", "before.ilt":
+            self.succeed(*job, name, "--strategy", "before.toml")
+        same = self.run_program("compare", "after.ovf", "before.ovf", "--json")
+        self.assertEqual((same.code, json.loads(same.out)["exposures_in_order"]), (4, False))
+        other = self.succeed("compare", "after.ovf", "before.ilt", "--json").json()
+        self.assertEqual((other["agree"], other["exposures_in_order"]), (True, True))
+
     def test_what_cannot_be(self):
         self.fail_with(3, "missing.cli", "compare", "torus.json", "missing.cli")
         self.fail_with(2, "needs SECOND", "compare", "torus.json")

@@ -142,6 +142,48 @@ class Roles(ProgramTest):
         self.assertIn("2 bodies were left out as no material: 1 support (\"foot\"), 1 support blocker (\"block\"); --include "
                       "support,support-blocker to read them as solids", result.err)
 
+    def test_info_describes_the_parts_and_not_what_negative_volumes_remove(self):
+        self.file("part.3mf", "NegativeVolume", BODY, ABOVE)
+        result = self.succeed("info", "part.3mf", "--json", "--report", "page.html").json()
+        self.assertEqual((result["bbox"], result["volume_mm3"]), ([[0, 0, 0], [30, 30, 30]], 27000))
+        self.assertIn(b"subtracted from layers, but not from this mesh", self.bytes_of("page.html"))
+        text = self.succeed("info", "part.3mf").text
+        for name, figure in ("volume", "27000 mm3"), ("area", "5400 mm2"):
+            self.assertRegex(text, f"{name} +{figure} of the parts; negative volumes are not subtracted here, but from layers")
+        self.assertNotIn("of the parts", self.succeed("info", "part.3mf", "--include", "negative").text)
+        stats = self.succeed("slice", "part.3mf", "--layer-height", "1", "--stats", "-").json()
+        self.assertEqual((stats["input"]["volume_mm3"], stats["volume_mm3"]), (27000, 13500))
+        self.assertEqual(stats["input"]["bbox"], result["bbox"])
+
+    def test_info_finds_the_defects_of_negative_volumes(self):
+        self.file("part.3mf", "NegativeVolume", BODY, HOLE, flipped=(1,))
+        found = "part.3mf: a negative volume of 12 triangles has defects: 1 inverted shell"
+        self.assertIn(found, self.succeed("info", "part.3mf").err)
+        strict = self.run_program("info", "part.3mf", "--strict")
+        self.assertEqual(strict.code, 4, strict.err)
+        self.assertIn(found, strict.err)
+        self.file("whole.3mf", "NegativeVolume", BODY, HOLE)
+        self.succeed("info", "whole.3mf", "--strict")
+
+    def test_adaptive_layers_follow_the_slopes_of_negative_volumes(self):
+        # A pyramid is a negative volume of the block; outside of it, its slopes do not count.
+        self.file("block.3mf", "NegativeVolume", BODY)
+        stats = self.succeed("slice", "block.3mf", "--adaptive", "0.1:1", "--stats", "-").json()
+        layers = {"none": [layer["thickness"] for layer in stats["layers"]]}
+        for name, z in ("inside", 15), ("above", 60):
+            tip, rim = (15, 15, z + 8), [(5, 5, z), (25, 5, z), (25, 25, z), (5, 25, z)]
+            vertices = "".join('<vertex x="{}" y="{}" z="{}"/>'.format(*p) for p in [*rim, tip])
+            faces = [(0, 2, 1), (0, 3, 2), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)]
+            block = mesh(BODY).replace("</vertices>", vertices + "</vertices>").replace("</triangles>", "".join(
+                '<triangle v1="{}" v2="{}" v3="{}"/>'.format(*(8 + i for i in face)) for face in faces) + "</triangles>")
+            marks = config("ModelPart", "NegativeVolume").replace('lastid="23"', 'lastid="17"')
+            self.write("part.3mf", package(f'<object id="1" name="block">{block}</object>', ITEM, {CONFIG: marks}))
+            stats = self.succeed("slice", "part.3mf", "--adaptive", "0.1:1", "--stats", "-").json()
+            layers[name] = [layer["thickness"] for layer in stats["layers"]]
+            self.assertAlmostEqual(sum(layers[name]), 30)
+        self.assertEqual(layers["above"], layers["none"])
+        self.assertGreater(len(layers["inside"]), 2 * len(layers["none"]))
+
     def test_instances_that_double_stay_within_the_memory_that_is_allowed(self):
         if "LAMELLA_SANITIZED" in os.environ:
             self.skipTest("what a sanitizer takes is not the program's")

@@ -171,6 +171,12 @@ class Slice(ProgramTest):
                  for at in ["bottom", "middle", "top"]}
         self.assertEqual(first, {"bottom": 0, "middle": 0.5, "top": 1})
 
+    def test_a_page_snaps_level_faces_like_a_slice_file(self):
+        self.write("tilted.stl", binary_stl(tilted_steps()))
+        view = ["view", "tilted.stl", "--rotate-x", "-30", "--layer-height", "0.5", "--slice-at", "bottom"]
+        self.assertRegex(self.succeed(*view).err, "level faces lie within rounding of a plane .*--snap")
+        self.assertEqual(self.succeed(*view, "--snap", "1e-5").err, "")
+
     def test_level_faces_that_rounding_has_bent_are_warned_of_and_cut_as_faces_where_it_snaps(self):
         self.write("tilted.stl", binary_stl(tilted_steps()))
         options = ["tilted.stl", "--rotate-x", "-30", "--layer-height", "0.5", "--slice-at", "bottom"]

@@ -2,7 +2,9 @@
 escapes and programs get valid JSON, and what errors quote of a file is short. Errors name the file."""
 
 import json
+import os
 import re
+import resource
 import unittest
 
 from program import ProgramTest, binary_stl, box_triangles, main
@@ -108,6 +110,23 @@ class Texts(ProgramTest):
                 errors = [one for one in objects if "error" in one]
                 self.assertEqual(len(errors), 1, objects)
                 self.assertEqual(errors[0]["exit_code"], result.code)
+
+    def test_help_says_what_is_checked_and_joined_in_whole_sentences(self):
+        verify = " ".join(self.succeed("verify", "--help").text.split())
+        self.assertIn("Scan vectors are checked alike. All must lie inside the mesh, or without --mesh inside the part's outermost "
+                      "contour. With --strategy or --scan: distance from the edge, missing contours, spacing, angle and length of "
+                      "hatch lines, and whether they fill the area.", verify)
+        merge = " ".join(self.succeed("merge", "--help").text.split())
+        self.assertIn("Files that overlap, leave gaps or come from different jobs are refused. An exposure may be missing in some; "
+                      "in ilt, ovf and 3mf-toolpath a whole part.", merge)
+
+    @unittest.skipIf("LAMELLA_SANITIZED" in os.environ, "a sanitizer needs more address space")
+    def test_copies_that_exhaust_memory_are_named_as_what_to_reduce(self):
+        self.write("box.stl", binary_stl(box_triangles(1, 1, 1)))
+        limit = 200 << 20
+        self.fail_with(5, "error: box.stl: memory ran out; free some, or work on less at once: fewer parts, copies, layers or files", "slice", "box.stl", "--copies", "100000",
+                       "--layer-height", "0.5", "--threads", "1", "-o", "a.3mf",
+                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
 
     def test_errors_of_limits_name_the_file_and_the_part(self):
         self.write("far.cli", cli(units="1000", geometry="$$POLYLINE/1,1,5,0,0,5e6,0,5e6,5e6,0,5e6,0,0\n"))

@@ -238,6 +238,7 @@ class View(ProgramTest):
         self.succeed("slice", "box.stl", "-o", "box.cli")
         self.fail_with(2, "are for meshes", "view", "box.cli", "--layer-height", "0.2")
         self.fail_with(2, "are for meshes", "view", "box.cli", "--slice-at", "middle")
+        self.fail_with(2, "are for meshes", "view", "box.cli", "--snap", "0.001")
         self.fail_with(2, "are for meshes", "info", "box.cli", "--report", "r.html")
         self.fail_with(2, "--output and --report", "slice", "box.stl", "-o", "a.html", "--report", "a.html")
 

@@ -31,6 +31,22 @@ TEST(CloseGaps, PassesThroughWhatHasNoChains) {
     EXPECT_EQ(close_gaps(normal_layer({}, {}), 1).layer.contours(), 0U);
 }
 
+TEST(CloseGaps, IgnoresContoursWithoutPoints) {
+    // As somebody may fill the members of a layer: an empty ring, and empty chains around one that is open.
+    const Points open{{0, 0.25}, {0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0.75}};
+    Layer layer;
+    layer.points = PointArray(open);
+    layer.offsets = {0, 0, 0, 6, 6};
+    layer.rings = 1;
+    const ClosedGaps closed = close_gaps(layer, 0.5);
+    EXPECT_EQ(closed.joins.size(), 1U);
+    EXPECT_EQ(closed.layer.open_chains(), 0U);
+    EXPECT_EQ(measure(closed.layer).area_mm2, 100);
+    layer.points = PointArray(Points{});
+    layer.offsets = {0, 0, 0};
+    EXPECT_TRUE(close_gaps(layer, 0.5).joins.empty());
+}
+
 TEST(CloseGaps, ClosesAChainWhoseEndsMeet) {
     Layer layer = normal_layer({}, {{{0, 0.25}, {0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0.75}}});
     layer.index = 7;

@@ -218,6 +218,24 @@ TEST(Scan, LeavesNothingBareInWallsOfAnyThickness) {
         }
 }
 
+// Lines along the middle have the parameters of contours, and there are none.
+TEST(Scan, CountsWhatAHatchWithoutContoursLeavesBare) {
+    ScanStrategy strategy;
+    strategy.contours.count = 0; // the border of the hatch leaves 0.05 mm of the wall
+    std::size_t bare_layers = 0;
+    for (std::uint64_t index = 0; index < 12; ++index) {
+        const Layer wall = wall_at(0, 10, 0.15, index);
+        const std::vector<Layer> vectors = scan(wall, {}, {}, strategy);
+        ASSERT_EQ(vectors.size(), 1U);
+        const bool bare = vectors[0].hatches.empty();
+        bare_layers += bare ? 1 : 0;
+        if (bare) {
+            EXPECT_NEAR(unreached(wall, strategy), 0.05 * 9.9, 1e-3) << index; // inside of the border
+        }
+    }
+    EXPECT_GT(bare_layers, 0U);
+}
+
 TEST(Scan, GivesALineOnlyToWallsThatItsHatchLeavesBare) {
     ScanStrategy strategy;
     Layer layer = normal_layer({rectangle(0, 0, 10, 10), rectangle(20, 0, 30, 0.25)});

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 LAMELLA_API_BEGIN
@@ -92,6 +93,9 @@ inline constexpr std::array<DefectKind, 6> defect_kinds{
         ++kind;
     return kind->words;
 }
+
+/// Returns a text such as "2 boundary edges, 1 inverted shell"; "" if the mesh is sound.
+[[nodiscard]] std::string describe_defects(const Inspection& found);
 
 inline bool Inspection::sound() const noexcept {
     return std::all_of(defect_kinds.begin(), defect_kinds.end(),

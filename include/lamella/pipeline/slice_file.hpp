@@ -82,7 +82,8 @@ struct FileJob {
     bool inspect = false;
     /// Inspects the meshes. Throws Error{defect}, and writes no file, if there is any of these: a defect of a
     /// mesh, horizontal faces within rounding of a plane, open chains, rings that bound no material, material
-    /// that no scan vector reaches, or steps that leave no contour in any layer.
+    /// that no scan vector reaches, or steps that leave no contour in any layer. Layers that were
+    /// already written to standard output or a pipe remain there.
     bool strict = false;
     /// Measures and hashes every layer.
     bool layer_statistics = false;

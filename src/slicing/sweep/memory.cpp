@@ -6,10 +6,11 @@
 namespace lamella {
 
 std::uint64_t RangeMemory::bytes(const RangeNeeds& range) const noexcept {
-    // While nodes are joined, 20 bytes are allowed for the record of each. Later each node has an entry in
-    // the order of starts and at most one in the lists of tasks that it reaches into. Each worker has an
-    // array with one entry per node.
-    constexpr std::uint64_t joining = sizeof(std::uint64_t) + 12;
+    // While nodes are joined, each has a record of 8 bytes; 12 more are allowed because an edge whose triangles
+    // different workers collect has two nodes until then. Later each node has an entry in the order of starts
+    // and at most one in the lists of tasks that it reaches into. Each worker has an array with one entry per
+    // node.
+    constexpr std::uint64_t joining = 8 + 12;
     const std::uint64_t walking = 8 + 4 * std::uint64_t{threads};
     const std::uint64_t node = (placed ? sizeof(CutNode<DoubleEnds>) : sizeof(CutNode<FloatEnds>)) +
                                sizeof(PlaneSpan) + std::max(joining, walking);
