@@ -215,6 +215,9 @@ class CrossingSearch {
     }
 
     void test(const Box2& cell, SegmentId a, SegmentId b) {
+        // Clear crossings first: where segments nearly coincide, exact predicates take long.
+        if (clear_ > 0 && !clearly_cross(segments_[a], segments_[b]))
+            return;
         if (!cross(segments_[a], segments_[b]))
             return;
         const Pair pair(std::min(a, b), std::max(a, b));
@@ -224,8 +227,6 @@ class CrossingSearch {
     }
 
     void found(const Pair& pair) {
-        if (clear_ > 0 && !clearly_cross(segments_[pair.first], segments_[pair.second]))
-            return;
         ++count_;
         first_.push_back(pair);
         if (first_.size() / 2 >= keep_)
@@ -237,7 +238,7 @@ class CrossingSearch {
         const auto apart = [this](const Segment& line, const Segment& other) {
             const double dx = line.hi.x - line.lo.x;
             const double dy = line.hi.y - line.lo.y;
-            const double least = clear_ * std::hypot(dx, dy);
+            const double least = clear_ * std::sqrt(dx * dx + dy * dy);
             return std::abs(dx * (other.lo.y - line.lo.y) - dy * (other.lo.x - line.lo.x)) > least &&
                    std::abs(dx * (other.hi.y - line.lo.y) - dy * (other.hi.x - line.lo.x)) > least;
         };
