@@ -194,10 +194,26 @@ std::string cut_apart_text(const LayerFile& first, const LayerFile& second) {
         first.path, second.path, height(one.bottom), height(one.top), height(one.z), height(other.z));
 }
 
+/// Returns the bytes that a file takes while it is compared: several parts are put together, too.
+std::uint64_t memory_to_compare(const LayerFile& file) {
+    return memory_of(file) * (file.parts.size() > 1 ? 2 : 1);
+}
+
+void check_memory(const LayerFile& first, const LayerFile& second, std::optional<std::uint64_t> most) {
+    const std::uint64_t bytes = memory_to_compare(first) + memory_to_compare(second);
+    if (most && bytes > *most)
+        throw Error(ErrorKind::limit,
+                    fmt::format("{} and {}: to compare them takes {} bytes, above the {} of --max-memory",
+                                input_name(first.path), input_name(second.path), bytes, *most));
+}
+
 int run_compare(const CompareArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
+    arguments.limits.prepare_memory();
     const LayerFile first = read_layers(arguments.inputs[0], arguments.limits.of_layers(), execution);
-    const LayerFile second = read_layers(arguments.inputs[1], arguments.limits.of_layers(), execution);
+    const LayerFile second =
+        read_layers(arguments.inputs[1], arguments.limits.of_layers(memory_to_compare(first)), execution);
+    check_memory(first, second, arguments.limits.max_memory);
     for (const LayerFile* file : {&first, &second})
         context.messages.warn_of(input_name(file->path), file->warnings);
 
@@ -304,7 +320,7 @@ Command compare_command() {
                           arguments->area_difference),
                      flag("json", "print JSON", arguments->json)}},
                    run_options(arguments->run,
-                               {max_memory_option(arguments->limits, "the layers of one of the files take")}),
+                               {max_memory_option(arguments->limits, "the layers of both files take")}),
                    common_options(true)},
         .examples = {{"lamella compare part.cli part.svg", "is it the same part?"},
                      {"lamella compare old.cli new.cli --tolerance 0.01 --json", "for programs"}},

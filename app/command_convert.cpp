@@ -49,6 +49,7 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     LayerWriteOptions options = arguments.writing.write_options(format);
     options.strict = arguments.strict;
     const Execution execution = arguments.run.execution(context);
+    arguments.limits.prepare_memory();
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     options.page.title = title_of(arguments.input);
     warn_about(file, file.warnings, arguments.strict, context.messages);

@@ -235,6 +235,7 @@ int describe_layers(const InfoArguments& arguments, const LayerFile& file, const
 int run_info(const InfoArguments& arguments, const Context& context) {
     check_outputs(context.command);
     const Execution execution = arguments.run.execution(context);
+    arguments.limits.prepare_memory();
     MeshReadOptions options = arguments.limits.of_meshes();
     options.strict = arguments.strict;
     const auto file = read_any(arguments.input, options, execution);

@@ -31,6 +31,7 @@ int run_merge(const MergeArguments& arguments, const Context& context) {
     LayerWriteOptions options = arguments.writing.write_options(format);
     options.page.title = title_of(arguments.output);
     const Execution execution = arguments.run.execution(context);
+    arguments.limits.prepare_memory();
     check_stamps(arguments.shards, execution);
     const MergeResult result = merge_layer_files(arguments.shards, arguments.output, format.name, options,
                                                  arguments.limits.of_layers(), execution);

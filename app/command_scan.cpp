@@ -113,6 +113,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     options.page.title = title_of(arguments.input);
     const ScanStrategy strategy = arguments.scanning.strategy();
     const Execution execution = arguments.run.execution(context);
+    arguments.limits.prepare_memory();
     if (!arguments.stats.empty())
         check_writable(arguments.stats);
     const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);

@@ -202,6 +202,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
                                       "--mesh part.stl");
     const Transform pose = arguments.placement.pose();
     const Execution execution = arguments.run.execution(context);
+    arguments.limits.prepare_memory();
 
     LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     for (std::string& warning : file.warnings)
@@ -217,11 +218,12 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (!arguments.mesh.empty()) {
         const std::array inputs{
             PlateInput{.path = arguments.mesh, .unit_mm = arguments.placement.unit_mm(), .placement = pose}};
-        plate = load_plate(inputs, arguments.limits.of_meshes(), execution);
+        plate = load_plate(inputs, arguments.limits.of_meshes(memory_of(file)), execution);
         context.messages.warn_of(input_name(arguments.mesh), plate->files.front().warnings);
         constexpr std::uint64_t bytes_per_triangle = 64; // for joining all parts into one mesh
         if (plate->parts.size() > 1)
-            check_memory(*plate, bytes_per_triangle, arguments.limits.max_memory.value_or(0));
+            check_memory(*plate, bytes_per_triangle, arguments.limits.max_memory.value_or(0),
+                         memory_of(file));
         mesh = joined(*plate, execution);
     }
 
@@ -342,7 +344,7 @@ Command verify_command() {
                              arguments->scan)}),
                    run_options(arguments->run,
                                {include_option(arguments->limits), max_triangles_option(arguments->limits),
-                                max_memory_option(arguments->limits, "each of the files takes")}),
+                                max_memory_option(arguments->limits, "the files take together")}),
                    common_options(true)},
         .examples = {{"lamella verify part.cli", "is the file sound in itself?"},
                      {"lamella verify part.cli --mesh part.stl --rotate-x 90", "and true to its mesh?"},

@@ -133,6 +133,7 @@ int run_view(const ViewArguments& arguments, const Context& context) {
     check_outputs(context.command, arguments.output.empty() ? std::vector<NamedFile>{{"the page", output}}
                                                             : std::vector<NamedFile>{});
     const Execution execution = arguments.run.execution(context);
+    arguments.limits.prepare_memory();
     auto read = read_any(arguments.input, arguments.limits.of_meshes(), execution);
     auto* const file = std::get_if<LayerFile>(&read);
     const std::uint64_t layers =

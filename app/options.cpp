@@ -4,6 +4,7 @@
 #include "lamella/core/printable.hpp"
 
 #include "crash.hpp"
+#include "heap.hpp"
 #include "names.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
@@ -240,13 +241,20 @@ Execution RunOptions::execution(const Context& context) const {
             .cancel = context.cancel};
 }
 
-MeshReadOptions ReadLimits::of_meshes() const {
-    return {
-        .include = include, .max_triangles = max_triangles.value_or(0), .max_memory = max_memory.value_or(0)};
+void ReadLimits::prepare_memory() const noexcept {
+    if (max_memory)
+        return_freed_memory();
 }
 
-LayerReadOptions ReadLimits::of_layers() const {
-    return {.max_memory = max_memory.value_or(0)};
+MeshReadOptions ReadLimits::of_meshes(std::uint64_t held) const {
+    return {.include = include,
+            .max_triangles = max_triangles.value_or(0),
+            .max_memory = max_memory.value_or(0),
+            .held = held};
+}
+
+LayerReadOptions ReadLimits::of_layers(std::uint64_t held) const {
+    return {.max_memory = max_memory.value_or(0), .held = held};
 }
 
 Option include_option(ReadLimits& target) {

@@ -86,8 +86,12 @@ struct ReadLimits {
     std::optional<std::uint64_t> max_triangles;
     std::optional<std::uint64_t> max_memory; ///< bytes
 
-    [[nodiscard]] MeshReadOptions of_meshes() const;
-    [[nodiscard]] LayerReadOptions of_layers() const;
+    /// Where memory is limited, lets the process return to the system what it frees. Call it before files are
+    /// read: lists that grow would leave gaps.
+    void prepare_memory() const noexcept;
+    /// `held`: bytes that files read before still take.
+    [[nodiscard]] MeshReadOptions of_meshes(std::uint64_t held = 0) const;
+    [[nodiscard]] LayerReadOptions of_layers(std::uint64_t held = 0) const;
 };
 [[nodiscard]] Option include_option(ReadLimits& target);
 [[nodiscard]] Option max_triangles_option(ReadLimits& target);

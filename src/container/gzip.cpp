@@ -92,7 +92,8 @@ ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes, const Exe
             throw Error(
                 ErrorKind::limit,
                 max_bytes != 0
-                    ? fmt::format("{}: unpacks to more than the {} bytes of `max_memory`", source.name, most)
+                    ? fmt::format("{}: unpacks to more than the {} bytes that `max_memory` leaves it",
+                                  source.name, most)
                     : fmt::format(
                           "{}: unpacks to more than {} bytes, {} times its size; `max_memory` allows more",
                           source.name, most, most / source.bytes.size()));

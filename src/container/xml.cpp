@@ -19,7 +19,7 @@ namespace {
 
 constexpr int deepest_element = 256;
 constexpr std::size_t most_attributes = 1000;
-constexpr std::size_t chunk = std::size_t{4} << 20;
+constexpr std::size_t chunk = std::size_t{1} << 20; // Expat copies it, and keeps room for two
 constexpr std::size_t longest_token = std::size_t{64} << 20;
 constexpr char namespace_end = '\n'; // Expat's separator between namespace and name; no URI contains it
 
@@ -152,6 +152,8 @@ class Parse {
         do {
             const std::string_view part =
                 bytes_.substr(at_, waiting() == 0 ? std::min(end - at_, chunk) : more_of_token());
+            if (waiting() != 0 && handlers_.hold)
+                handlers_.hold(waiting() + part.size());
             at_ += part.size();
             fed_ += static_cast<XML_Index>(part.size());
             const XML_Status status = XML_Parse(parser_.get(), part.data(), static_cast<int>(part.size()),

@@ -43,6 +43,8 @@ struct XmlHandlers {
     /// Called every few megabytes with the number of bytes read since the last call; may throw to stop the
     /// parser.
     std::function<void(std::size_t bytes)> progress = {};
+    /// Called with the size of an incomplete tag or text before the parser takes memory for more of it.
+    std::function<void(std::size_t bytes)> hold = {};
     /// Text between tags; one text may take several calls.
     std::function<void(std::string_view text)> text = {};
     /// Called with a prefix (empty for the default namespace) and its namespace, before `start` of the

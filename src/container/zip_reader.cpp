@@ -333,7 +333,7 @@ const ZipEntry* ZipReader::find(std::string_view name) const noexcept {
     return similar != nullptr && !before_in_any_case(name, similar->name) ? similar : nullptr;
 }
 
-ByteSource ZipReader::read(const ZipEntry& entry) const {
+ByteSource ZipReader::read(const ZipEntry& entry, const std::function<void(std::uint64_t)>& count) const {
     const std::string shown = printable(entry.name, longest_shown_name);
     const auto fail = [&](const std::string& what) {
         throw Error(ErrorKind::input, fmt::format("{}: zip entry '{}' {}", source_.name, shown, what));
@@ -360,6 +360,8 @@ ByteSource ZipReader::read(const ZipEntry& entry) const {
     if (entry.method == ZipMethod::stored) {
         content.bytes = compressed;
     } else {
+        if (count)
+            count(entry.size);
         const auto room = std::make_shared<PageArray<std::byte>>(entry.size);
         const Inflated inflated =
             inflate(source_.text().substr(entry.offset, entry.compressed_size), room->span());

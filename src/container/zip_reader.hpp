@@ -8,6 +8,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,8 +41,10 @@ class ZipReader {
     /// Returns the bytes of an entry, which may be empty, after verifying their CRC. The bytes of a stored
     /// entry are a view of the archive. The name of the source contains those of archive and entry. May be
     /// called from several threads. Throws Error{input} if the entry is damaged or differs from its record,
-    /// and Error{limit} if the bytes exceed the limit.
-    [[nodiscard]] ByteSource read(const ZipEntry& entry) const;
+    /// and Error{limit} if the bytes exceed the limit. `count` is called with the number of bytes before
+    /// memory is allocated for them.
+    [[nodiscard]] ByteSource read(const ZipEntry& entry,
+                                  const std::function<void(std::uint64_t)>& count = {}) const;
 
     /// Returns at most `most` of the first bytes of an entry, to detect its format; "" if the entry cannot be
     /// read. They are not verified and do not count towards the limit.

@@ -37,12 +37,13 @@ Mesh joined(const Plate& plate, const Execution& execution) {
     return joined(meshes, execution);
 }
 
-void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uint64_t max_memory) {
+void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uint64_t max_memory,
+                  std::uint64_t held) {
     std::uint64_t triangles = 0;
     for (const PlatePart& part : plate.parts)
         triangles += plate.shapes[part.shape].mesh.size();
     const std::uint64_t limit = memory_limit(max_memory);
-    if (const std::uint64_t bytes = triangles * bytes_per_triangle; bytes > limit)
+    if (const std::uint64_t bytes = held + triangles * bytes_per_triangle; bytes > limit)
         throw Error(
             ErrorKind::limit,
             fmt::format("{}: holds {} of {} in all, which take up to {} of memory here, above the {} {}",

@@ -54,7 +54,7 @@ class AmfReader {
     }
 
     ByteSource unpacked(const ByteSource& archive, const MeshReadOptions& options) {
-        const ZipReader zip(archive, options.max_memory);
+        const ZipReader zip(archive, most_unpacked(options));
         for (const std::string& warning : zip.counted_warnings())
             remarks_.add(warning);
         const ZipEntry* found = nullptr;
@@ -72,9 +72,7 @@ class AmfReader {
         if (count > 1)
             remarks_.add(fmt::format("the archive holds {} AMF files; took the first, '{}'", count,
                                      printable(found->name, longest_quote)));
-        ByteSource part = zip.read(*found);
-        limits_.add_bytes(zip.unpacked());
-        return part;
+        return unpacked_entry(zip, *found, limits_);
     }
 
     void read_document() {

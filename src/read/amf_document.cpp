@@ -193,8 +193,7 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
     }
 
     Where start_object(const AmfElement& element) {
-        count(sizeof(AmfObject));
-        document().objects.push_back({required(element, "id"), {}, line(), false, {}, {}, {}});
+        append(document().objects, AmfObject{required(element, "id"), {}, line(), false, {}, {}, {}});
         return Where::object;
     }
 
@@ -205,9 +204,8 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
     }
 
     Where start_volume(const AmfElement& element) {
-        count(sizeof(VolumeRange));
         const MeshRole role = lower_case(element["type"]) == "support" ? MeshRole::support : MeshRole::part;
-        object().volumes.push_back({triangles_of_object(), 0, role});
+        append(object().volumes, VolumeRange{triangles_of_object(), 0, role});
         return Where::triangles;
     }
 
@@ -224,14 +222,12 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
     }
 
     Where start_constellation(const AmfElement& element) {
-        count(sizeof(AmfConstellation));
-        document().constellations.push_back({required(element, "id"), {}, line(), {}});
+        append(document().constellations, AmfConstellation{required(element, "id"), {}, line(), {}});
         return Where::constellation;
     }
 
     Where start_instance(const AmfElement& element) {
-        count(sizeof(AmfInstance));
-        constellation().instances.push_back({required(element, "objectid"), line(), {}});
+        append(constellation().instances, AmfInstance{required(element, "objectid"), line(), {}});
         return Where::instance;
     }
 
@@ -350,10 +346,11 @@ class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
             constellation().name = printable(text, longest_label);
     }
 
-    std::string required(const AmfElement& element, std::string_view attribute) const {
+    std::string required(const AmfElement& element, std::string_view attribute) {
         const std::string_view text = element[attribute];
         if (text.empty())
             fail(fmt::format("found an element without {}, expected one", attribute));
+        count(text.size());
         return std::string(text);
     }
 

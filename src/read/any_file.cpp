@@ -4,6 +4,7 @@
 #include "container/zip_reader.hpp"
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
+#include "read/read_limits.hpp"
 #include "system/byte_source.hpp"
 #include "system/memory_size.hpp"
 
@@ -13,12 +14,12 @@ namespace {
 
 std::variant<MeshFile, LayerFile> read_opened(const ByteSource& opened, const std::string& path,
                                               const MeshReadOptions& options, const Execution& execution) {
-    const ByteSource source = unpacked(opened, options.max_memory, execution);
+    const ByteSource source = unpacked(opened, most_unpacked(options), execution);
     const MeshFormatRow* const format = recognised_format(source, options);
     if ((format != nullptr && format->read_layers != nullptr) || is_zip(source.text())) {
         try {
             return read_unpacked_layers(whole(source, execution, memory_of_file(options.max_memory)),
-                                        {.max_memory = options.max_memory}, execution);
+                                        {.max_memory = options.max_memory, .held = options.held}, execution);
         } catch (const NoLayers&) {
             // The package contains meshes only. If its layers are damaged its meshes are not read, because
             // they may only represent the layers.

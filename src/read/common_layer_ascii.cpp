@@ -56,15 +56,21 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
     std::size_t reported = 0;
     std::size_t layer_at = 0; // offset of the last layer
     std::uint64_t layer_line = 1;
+    const auto line_of_command = [&](std::size_t command_at) {
+        return layer_line + line_at(bytes.substr(layer_at), command_at - layer_at) - 1;
+    };
+    const auto report_progress = [&] {
+        if (text.at() - reported <= (1U << 20))
+            return;
+        executor.check_cancelled();
+        progress.add(text.at() - reported);
+        reported = text.at();
+    };
     for (;;) {
         text.skip_blanks();
         if (text.done())
             text.fail("the end of the file", "the geometry must end with $$GEOMETRYEND");
-        if (text.at() - reported > (1U << 20)) {
-            executor.check_cancelled();
-            progress.add(text.at() - reported);
-            reported = text.at();
-        }
+        report_progress();
         if (!text.take("$$"))
             text.fail(fmt::format("'{}'", printable(text.rest().substr(0, 20), 40)),
                       "a command must start with $$");
@@ -75,7 +81,7 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
         if (command == "LAYER") {
             text.expect('/', "the layer's height");
             const double z = text.number("the layer's height");
-            layer_line += line_at(bytes.substr(layer_at), command_at - layer_at) - 1;
+            layer_line = line_of_command(command_at);
             layer_at = command_at;
             geometry.start_layer(z, fmt::format("line {}", layer_line));
         } else if (command == "POLYLINE" || command == "HATCHES") {
@@ -99,11 +105,12 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
                 text.fail(fmt::format("a count of {}", count),
                           fmt::format("{} bytes are left in the file", text.rest().size()));
             const auto location = [&] {
-                return fmt::format("line {}", line_at(bytes, command_at));
+                return fmt::format("line {}", line_of_command(command_at));
             };
             const auto number_of_points = static_cast<std::uint64_t>(points_each * count);
             std::vector<Point2>& points = geometry.expect_points(hatches, number_of_points, location);
             for (std::uint64_t i = 0; i < number_of_points; ++i) {
+                report_progress();
                 std::array<double, 2> p{};
                 for (double& value : p) {
                     text.expect(',', "the next coordinate");
@@ -122,7 +129,7 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
         } else {
             // Extensions such as $$POWER/100.0 occur between polylines.
             const auto location = [&] {
-                return fmt::format("line {}", line_at(bytes, command_at));
+                return fmt::format("line {}", line_of_command(command_at));
             };
             geometry.take_setting(command, take_only_number(text), location);
             text.skip_to_command();

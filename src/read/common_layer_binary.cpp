@@ -102,13 +102,16 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());
     std::size_t reported = 0;
+    const auto report_progress = [&](std::size_t at) {
+        if (at <= reported + (1U << 22))
+            return;
+        executor.check_cancelled();
+        progress.add(at - reported);
+        reported = at;
+    };
     while (in.left() > 0 && !in.only_padding_left()) {
         const std::size_t at = in.at();
-        if (at - reported > (1U << 22)) {
-            executor.check_cancelled();
-            progress.add(at - reported);
-            reported = at;
-        }
+        report_progress(at);
         const auto command = static_cast<CommonLayerCommand>(in.take<std::uint16_t>("a command"));
         const auto offset = at_byte(at);
         switch (command) {
@@ -149,6 +152,7 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             const auto number_of_points = static_cast<std::uint64_t>(points_each * count);
             std::vector<Point2>& points = geometry.expect_points(hatches, number_of_points, offset);
             for (std::uint64_t i = 0; i < number_of_points; ++i, from += size) {
+                report_progress(at + i * size);
                 if (!is_long) {
                     geometry.add_point(points, short_number(from), short_number(from + 2));
                     continue;

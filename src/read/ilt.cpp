@@ -337,7 +337,7 @@ bool is_ilt(const ZipReader& zip) {
 }
 
 LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
-    const ByteSource list = zip.read(*zip.find(ilt_parameters));
+    const ByteSource list = unpacked_entry(zip, *zip.find(ilt_parameters), limits);
     std::vector<CommonLayerContent> contents;
     LayerFile result{.path = zip.name(), .format = "ilt", .warnings = zip.counted_warnings()};
     std::uint64_t bytes = 0;
@@ -368,7 +368,7 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
             pulsed.note(at_line(section.line));
         if (section.has_speed != section.has_power)
             one_of_two.note(at_line(section.line));
-        const ByteSource source = zip.read(*entry);
+        const ByteSource source = unpacked_entry(zip, *entry, limits);
         bytes += source.bytes.size();
         if (!is_common_layer(source.text()))
             throw Error(

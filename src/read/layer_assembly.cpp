@@ -1,5 +1,6 @@
 #include "read/layer_assembly.hpp"
 
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 
 #include "container/text_position.hpp"
@@ -56,6 +57,30 @@ void report_changed_order(std::span<const RawLayer> layers, LayerFile& file) {
             fmt::format("vectors of {}, the lowest at z = {:.6g} mm, are executed in another order in "
                         "the file; they were put into that of the parts",
                         counted(changed, "layer"), lowest));
+}
+
+/// What a plane of the file has of one part.
+struct PartOfLayer {
+    std::size_t points = 0;
+    std::size_t contours = 0;
+    std::size_t hatches = 0; ///< ends of lines
+    Layer layer = {};
+};
+
+/// Calls take(begin, piece) for consecutive pieces that know only their ends.
+template <class Piece, class Take>
+void for_pieces(const std::vector<Piece>& pieces, const Take& take) {
+    std::size_t begin = 0;
+    for (const Piece& piece : pieces) {
+        take(begin, piece);
+        begin = piece.end;
+    }
+}
+
+/// Appends points; -0 becomes +0.
+void append(std::vector<Point2>& to, std::span<const Point2> points) {
+    for (const Point2& p : points)
+        to.push_back({p.x + 0.0, p.y + 0.0});
 }
 
 } // namespace
@@ -120,39 +145,58 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
     for (LayerPart& part : file.parts)
         limits.make_room(part.layers, 1, location);
     limits.add_bytes_at(file.parts.size() * of_empty_layer, location);
-    std::vector<LayerBuilder> builders(file.parts.size());
-    std::size_t next = 0;
-    for (const auto& [end, closed, part] : raw.ends) {
-        LayerBuilder& builder = builders[part];
-        for (; next < end; ++next)
-            builder.add_point(raw.points[next]);
-        builder.end_contour(closed);
+    // Until `raw` is freed there are two copies of its contents, and a third one of contours while they are
+    // put into normal form.
+    constexpr std::uint64_t of_contour = 64;
+    const std::uint64_t copies =
+        (2 * raw.points.size() + raw.hatches.size()) * sizeof(Point2) + raw.ends.size() * of_contour;
+    limits.add_bytes_at(copies, location);
+    std::vector<PartOfLayer> parts(file.parts.size());
+    for_pieces(raw.ends, [&](std::size_t begin, const RawLayer::Contour& contour) {
+        PartOfLayer& part = parts[contour.part];
+        part.points += contour.end - begin;
+        part.contours += 1;
+        part.layer.rings += contour.closed ? 1 : 0;
+    });
+    for_pieces(raw.hatch_ends, [&](std::size_t begin, const RawLayer::Hatches& hatches) {
+        parts[hatches.part].hatches += hatches.end - begin;
+    });
+    std::vector<std::vector<Point2>> points(parts.size());
+    std::vector<std::vector<Point2>> hatches(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        points[i].reserve(parts[i].points);
+        hatches[i].reserve(parts[i].hatches);
+        parts[i].layer.offsets.reserve(parts[i].contours + 1);
     }
-    std::vector<std::vector<Point2>> hatches(file.parts.size());
-    std::vector<std::size_t> ends_of_hatches(file.parts.size()); // used to reserve exactly the memory that
-                                                                 // each part needs
-    next = 0;
-    for (const auto& [end, part, behind] : raw.hatch_ends)
-        ends_of_hatches[part] += end - std::exchange(next, end);
-    for (std::size_t part = 0; part < hatches.size(); ++part)
-        hatches[part].reserve(ends_of_hatches[part]);
-    next = 0;
-    for (const auto& [end, part, behind] : raw.hatch_ends)
-        for (; next < end; ++next)
-            hatches[part].push_back({raw.hatches[next].x + 0.0, raw.hatches[next].y + 0.0});
-    for (std::size_t part = 0; part < builders.size(); ++part) {
-        LayerPart& to = file.parts[part];
-        Layer& layer =
-            to.layers.emplace_back(to.exposure ? builders[part].finish_as_added(index, z, bottom, top)
-                                               : builders[part].finish(index, z, bottom, top));
-        if (!hatches[part].empty())
-            layer.hatches = PointArray(std::move(hatches[part]));
-    }
-    // The points are freed, but not the height, which the following layers need.
+    for (const bool closed : {true, false})
+        for_pieces(raw.ends, [&](std::size_t begin, const RawLayer::Contour& contour) {
+            if (contour.closed != closed)
+                return;
+            append(points[contour.part], std::span(raw.points).subspan(begin, contour.end - begin));
+            parts[contour.part].layer.offsets.push_back(points[contour.part].size());
+        });
+    for_pieces(raw.hatch_ends, [&](std::size_t begin, const RawLayer::Hatches& some) {
+        append(hatches[some.part], std::span(raw.hatches).subspan(begin, some.end - begin));
+    });
+    // Layers that follow still need the height, so `raw` itself stays.
     let_go(raw.points);
     let_go(raw.ends);
     let_go(raw.hatches);
     let_go(raw.hatch_ends);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Layer& layer = parts[i].layer;
+        layer.index = index;
+        layer.z = z;
+        layer.bottom = bottom;
+        layer.top = top;
+        if (!points[i].empty())
+            layer.points = PointArray(std::move(points[i]));
+        if (!hatches[i].empty())
+            layer.hatches = PointArray(std::move(hatches[i]));
+        LayerPart& to = file.parts[i];
+        to.layers.push_back(to.exposure ? std::move(layer) : normal_form(std::move(layer)));
+    }
+    limits.give_back(0, copies);
 }
 
 void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits) {

@@ -5,6 +5,7 @@
 #include "container/gzip.hpp"
 #include "container/text_position.hpp"
 #include "container/zip_reader.hpp"
+#include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/read_limits.hpp"
@@ -23,7 +24,7 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
                       const Execution& execution) {
     const std::string_view bytes = source.text();
     if (is_zip(bytes)) {
-        const ZipReader package(source, options.max_memory);
+        const ZipReader package(source, most_unpacked(options));
         if (is_npz(package))
             return read_npz(package, limits, execution);
         if (is_ilt(package))
@@ -32,7 +33,8 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
             return read_toolpath_3mf(package, limits, execution);
         if (is_3mf(package))
             return read_slices_3mf(package, limits, execution);
-        if (const MeshFormatRow* const other = recognised_format(source, {.max_memory = options.max_memory});
+        if (const MeshFormatRow* const other =
+                recognised_format(source, {.max_memory = most_unpacked(options)});
             !other->advice.empty())
             throw NoLayers(fmt::format("{}: {}", source.name, other->advice));
         throw NoLayers(
@@ -42,7 +44,7 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
     }
     if (const MeshFormatRow* const format = layer_format_of(source))
         return format->read_layers(bytes, source.name, limits, execution);
-    if (const MeshFormatRow* const other = recognised_format(source, {.max_memory = options.max_memory});
+    if (const MeshFormatRow* const other = recognised_format(source, {.max_memory = most_unpacked(options)});
         other != nullptr && other->read != nullptr)
         throw Error(ErrorKind::input,
                     fmt::format("{}: found a mesh; a slice file is expected: slice it first", source.name));
@@ -63,7 +65,16 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
 LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions& options,
                                const Execution& execution) {
     ReadLimits limits(source, options);
-    return read_source(source, options, limits, execution);
+    return read_source(source, options, limits, releasing(source, execution));
+}
+
+std::uint64_t memory_of(const LayerFile& file) noexcept {
+    std::uint64_t bytes = 0;
+    for (const LayerPart& part : file.parts)
+        for (const Layer& layer : part.layers)
+            bytes += sizeof(Layer) + of_empty_layer + layer.offsets.size() * sizeof(std::uint64_t) +
+                     (layer.points.size() + layer.hatches.size()) * sizeof(Point2);
+    return bytes;
 }
 
 LayerStack LayerFile::merged() const {
@@ -89,12 +100,12 @@ LayerStack LayerFile::merged() const {
 
 LayerFile read_layers(const std::string& path, const LayerReadOptions& options, const Execution& execution) {
     const ByteSource opened = open_bytes(path, execution, memory_of_file(options.max_memory));
-    return read_unpacked_layers(unpacked(opened, options.max_memory, execution), options, execution);
+    return read_unpacked_layers(unpacked(opened, most_unpacked(options), execution), options, execution);
 }
 
 LayerFile read_layers(std::span<const std::byte> bytes, const std::string& name,
                       const LayerReadOptions& options, const Execution& execution) {
-    return read_unpacked_layers(unpacked(copy_bytes(bytes, name), options.max_memory, execution), options,
+    return read_unpacked_layers(unpacked(copy_bytes(bytes, name), most_unpacked(options), execution), options,
                                 execution);
 }
 

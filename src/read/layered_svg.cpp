@@ -111,8 +111,11 @@ void place_groups(std::vector<Group>& groups, std::vector<std::string>& warnings
         group.bottom = std::min(group.bottom, group.cut);
         group.top = std::max(group.top, group.cut);
     }
-    std::stable_sort(groups.begin(), groups.end(),
-                     [](const Group& a, const Group& b) { return a.cut < b.cut; });
+    const auto below = [](const Group& a, const Group& b) {
+        return a.cut < b.cut;
+    };
+    if (!std::is_sorted(groups.begin(), groups.end(), below)) // sorting takes memory
+        std::stable_sort(groups.begin(), groups.end(), below);
     // Heights and thicknesses are rounded separately. A layer within this distance of the one below counts as
     // adjoining it.
     constexpr double rounding = 1e-3;
@@ -392,6 +395,7 @@ LayerFile read_layered_svg(std::string_view bytes, const std::string& name, Read
     SvgReader reader(name, bytes.size(), file, limits);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, bytes.size());
+    std::uint64_t held = 0; // counted for the longest attribute
     parse_xml(bytes, name,
               {[&](XmlName element, const XmlAttributes& attributes, std::size_t line) {
                    reader.start(element.local, attributes, line);
@@ -400,6 +404,14 @@ LayerFile read_layered_svg(std::string_view bytes, const std::string& name, Read
                [&](std::size_t read) {
                    executor.check_cancelled();
                    progress.add(read);
+               },
+               [&](std::size_t token) {
+                   // The parser's buffer, the one before it, and the values of attributes.
+                   const std::uint64_t taken = 4 * std::uint64_t{token};
+                   if (taken <= held)
+                       return;
+                   limits.add_bytes_at(taken - held, [] { return std::string_view("a long attribute"); });
+                   held = taken;
                }});
     reader.finish();
     progress.finish();

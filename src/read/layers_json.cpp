@@ -152,6 +152,10 @@ class LayersJsonReader {
                        fmt::format("the file has {}", file_.parts.size()));
         check_part_planes(file_, before.size() + 1, bytes_);
         add_layer(file_, raw, static_cast<std::uint64_t>(index), *z, *bottom, *top, limits_);
+        report_progress();
+    }
+
+    void report_progress() {
         progress_.add(text_.at() - reported_);
         reported_ = text_.at();
     }
@@ -192,6 +196,11 @@ class LayersJsonReader {
         bool half = false;
         text_.array([&] {
             const double value = length();
+            constexpr std::size_t stretch = std::size_t{1} << 22;
+            if (text_.at() - reported_ > stretch) {
+                executor_.check_cancelled();
+                report_progress();
+            }
             if (half) {
                 to.back().y = value;
             } else {

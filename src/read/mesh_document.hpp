@@ -106,19 +106,29 @@ class MeshDocumentReader {
         constexpr std::uint64_t stretch = 1 << 16;
         open_triangles_ += triangles;
         open_bytes_ += bytes;
-        if (open_bytes_ >= stretch)
+        if (open_bytes_ >= stretch || open_triangles_ >= stretch)
             count_open();
+    }
+
+    /// Appends an item to a list of the document. Counts the memory of the list as it grows.
+    template <class T>
+    void append(std::vector<T>& items, T item) {
+        if (items.size() == items.capacity()) {
+            const std::size_t room = items.capacity();
+            limits_.make_room(items, 1, [this] { return here(); });
+            bytes_ += (items.capacity() - room) * sizeof(T);
+        }
+        items.push_back(std::move(item));
     }
 
     void add(const Point3& vertex) {
         require_all_by_parser();
-        count(sizeof vertex);
-        object().mesh.vertices.push_back(vertex);
+        append(object().mesh.vertices, vertex);
     }
     void add(const TriangleIndices& triangle) {
         require_all_by_parser();
-        count(sizeof triangle, 1);
-        object().mesh.triangles.push_back(triangle);
+        count(0, 1);
+        append(object().mesh.triangles, triangle);
     }
 
   private:

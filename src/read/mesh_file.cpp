@@ -7,6 +7,7 @@
 #include "container/zip_reader.hpp"
 #include "read/mesh_formats.hpp"
 #include "read/mesh_readers.hpp"
+#include "read/read_limits.hpp"
 #include "system/byte_source.hpp"
 #include "system/memory_size.hpp"
 
@@ -38,9 +39,9 @@ MeshFile read_unpacked_mesh(const ByteSource& source, const MeshReadOptions& opt
                             const Execution& execution) {
     const MeshFormatRow& format = mesh_format_of(source, options);
     // Readers of other formats need the whole file.
-    MeshFile file = format.read(
-        format.stream != nullptr ? source : whole(source, execution, memory_of_file(options.max_memory)),
-        options, execution);
+    const ByteSource readable =
+        format.stream != nullptr ? source : whole(source, execution, memory_of_file(options.max_memory));
+    MeshFile file = format.read(readable, options, releasing(readable, execution));
     if (file.format.empty()) // STL sets which of its two forms the file has
         file.format = format.extension;
     return file;
@@ -48,14 +49,15 @@ MeshFile read_unpacked_mesh(const ByteSource& source, const MeshReadOptions& opt
 
 MeshFile read_mesh(const std::string& path, const MeshReadOptions& options, const Execution& execution) {
     const ByteSource opened = open_mesh(path, execution, memory_of_file(options.max_memory));
-    MeshFile file = read_unpacked_mesh(unpacked(opened, options.max_memory, execution), options, execution);
+    MeshFile file =
+        read_unpacked_mesh(unpacked(opened, most_unpacked(options), execution), options, execution);
     file.path = path;
     return file;
 }
 
 MeshFile read_mesh(std::span<const std::byte> bytes, const std::string& name, const MeshReadOptions& options,
                    const Execution& execution) {
-    MeshFile file = read_unpacked_mesh(unpacked(copy_bytes(bytes, name), options.max_memory, execution),
+    MeshFile file = read_unpacked_mesh(unpacked(copy_bytes(bytes, name), most_unpacked(options), execution),
                                        options, execution);
     file.path = name;
     return file;
@@ -84,7 +86,8 @@ std::optional<std::uint64_t> MeshInput::records() const {
 }
 
 MeshFile MeshInput::read(const MeshReadOptions& options, const Execution& execution) const {
-    MeshFile file = read_unpacked_mesh(unpacked(*source_, options.max_memory, execution), options, execution);
+    MeshFile file =
+        read_unpacked_mesh(unpacked(*source_, most_unpacked(options), execution), options, execution);
     file.path = path_;
     return file;
 }

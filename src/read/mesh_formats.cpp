@@ -5,6 +5,7 @@
 #include "container/zip_reader.hpp"
 #include "core/lower_case.hpp"
 #include "read/layer_readers.hpp"
+#include "read/read_limits.hpp"
 #include "read/text_chunks.hpp"
 
 #include <fmt/format.h>
@@ -28,7 +29,7 @@ bool by_text(const ByteSource& source, const MeshReadOptions&) {
 
 template <bool (*recognises)(const ZipReader&)>
 bool by_archive(const ByteSource& source, const MeshReadOptions& options) {
-    return is_zip(source.text()) && recognises(ZipReader(source, options.max_memory));
+    return is_zip(source.text()) && recognises(ZipReader(source, most_unpacked(options)));
 }
 
 bool is_any_stl(const ByteSource& source, const MeshReadOptions&) {
@@ -49,7 +50,7 @@ bool holds_model(const ZipReader& zip) {
 bool is_plain_or_compressed_amf(const ByteSource& source, const MeshReadOptions& options) {
     if (!is_zip(source.text()))
         return is_amf(source.text());
-    const ZipReader zip(source, options.max_memory);
+    const ZipReader zip(source, most_unpacked(options));
     if (holds_model(zip))
         return false;
     return holds(zip, ".amf") || holds(zip, ".amf.xml") ||

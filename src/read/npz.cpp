@@ -27,7 +27,7 @@ static_assert(std::endian::native == std::endian::little, "numbers are read as m
 /// One array of the archive.
 class Array {
   public:
-    Array(const ZipReader& zip, const ZipEntry& entry) : source_(zip.read(entry)) {
+    explicit Array(ByteSource source) : source_(std::move(source)) {
         bytes_ = source_.text();
         read_header();
     }
@@ -265,10 +265,7 @@ class NpzReader {
                         fmt::format("{}: found no array '{}'; the arrays of layers are points, offsets, "
                                     "closed, layer, part, index, z, bottom, top and labels",
                                     zip_.name(), name));
-        const std::uint64_t unpacked = zip_.unpacked();
-        Array result(zip_, *entry);
-        limits_.add_bytes_at(zip_.unpacked() - unpacked, [&] { return fmt::format("array '{}'", name); });
-        return result;
+        return Array(unpacked_entry(zip_, *entry, limits_));
     }
     /// Returns an array of one dimension.
     [[nodiscard]] Array list(const std::string& name) const {

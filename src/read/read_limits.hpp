@@ -3,9 +3,11 @@
 // Limits on the size of a file's contents, which are checked before memory is allocated.
 
 #include "lamella/core/error.hpp"
+#include "lamella/core/printable.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
 
+#include "container/zip_reader.hpp"
 #include "system/byte_source.hpp"
 #include "system/memory_size.hpp"
 
@@ -15,6 +17,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -37,15 +40,21 @@ inline constexpr std::uint64_t node_bytes = 80;
     };
 }
 
+/// Returns the limit of what a compressed file unpacks to; 0: the usual one.
+template <class Options>
+[[nodiscard]] std::uint64_t most_unpacked(const Options& options) {
+    return options.max_memory == 0 ? 0 : memory_left(options.max_memory, options.held);
+}
+
 /// Counts, from any thread, the triangles and bytes that a reader is about to create. Throws Error{limit} if
 /// a limit is exceeded, with the position in the file if it is given.
 class ReadLimits {
   public:
     /// The bytes of the file that are in memory are counted at once.
     ReadLimits(const ByteSource& source, const MeshReadOptions& options)
-        : ReadLimits(source, options.max_triangles, options.max_memory) {}
+        : ReadLimits(source, options.max_triangles, options.max_memory, options.held) {}
     ReadLimits(const ByteSource& source, const LayerReadOptions& options)
-        : ReadLimits(source, 0, options.max_memory) {}
+        : ReadLimits(source, 0, options.max_memory, options.held) {}
 
     void add_triangles(std::uint64_t count, std::string_view location = {}) {
         check_triangles(triangles_.fetch_add(count) + count, location);
@@ -67,15 +76,17 @@ class ReadLimits {
         if (before > max_memory_ || count > max_memory_ - before)
             refuse_bytes(location());
     }
-    /// Reserves space for `more` items, after counting its memory. The capacity grows as by push_back.
+    /// Reserves space for `more` items, after counting its memory. The capacity grows as by push_back. While
+    /// the items are moved, their old memory counts, too.
     template <class T, class Location>
     void make_room(std::vector<T>& items, std::uint64_t more, const Location& location) {
         const std::uint64_t room = items.capacity();
         if (room - items.size() >= more)
             return;
         const std::uint64_t wanted = std::max(items.size() + more, 2 * room);
-        add_bytes_at((wanted - room) * sizeof(T), location);
+        add_bytes_at(wanted * sizeof(T), location);
         items.reserve(wanted);
+        give_back(0, room * sizeof(T));
     }
     /// Subtracts triangles and bytes that were counted and are not kept.
     void give_back(std::uint64_t triangles, std::uint64_t bytes) noexcept {
@@ -89,19 +100,23 @@ class ReadLimits {
     }
 
   private:
-    ReadLimits(const ByteSource& source, std::uint64_t max_triangles, std::uint64_t max_memory)
+    ReadLimits(const ByteSource& source, std::uint64_t max_triangles, std::uint64_t max_memory,
+               std::uint64_t held)
         : file_name_(source.name), max_triangles_(max_triangles), asked_(max_memory != 0),
-          max_memory_(asked_ ? max_memory : usual_memory()) {
+          limit_(memory_limit(max_memory)), max_memory_(memory_left(limit_, held)), held_(held) {
         add_bytes(source.bytes_in_memory());
     }
 
     [[noreturn]] void refuse_bytes(std::string_view location) const {
+        const std::string others =
+            held_ == 0 ? std::string()
+                       : fmt::format(" together with the files read before, which take {}", held_);
         throw Error(ErrorKind::limit,
-                    asked_ ? fmt::format("{}: takes more than the {} bytes of `max_memory`{}", file_name_,
-                                         max_memory_, up_to(location))
+                    asked_ ? fmt::format("{}: takes more than the {} bytes of `max_memory`{}{}", file_name_,
+                                         limit_, others, up_to(location))
                            : fmt::format("{}: takes more than {} bytes, three quarters of the memory there "
-                                         "is{}; `max_memory` allows more",
-                                         file_name_, max_memory_, up_to(location)));
+                                         "is{}{}; `max_memory` allows more",
+                                         file_name_, limit_, others, up_to(location)));
     }
     static std::string up_to(std::string_view location) {
         return location.empty() ? std::string() : fmt::format(" (counted up to {})", location);
@@ -110,9 +125,27 @@ class ReadLimits {
     std::string file_name_;
     std::uint64_t max_triangles_;
     bool asked_;
-    std::uint64_t max_memory_;
+    std::uint64_t limit_;
+    std::uint64_t max_memory_; ///< what the limit leaves this file
+    std::uint64_t held_;
     std::atomic<std::uint64_t> triangles_{0};
     std::atomic<std::uint64_t> bytes_{0};
 };
+
+/// Unpacks an entry of an archive. Its bytes count before they are unpacked, and until the last copy of the
+/// result is gone; the limits must live as long.
+[[nodiscard]] inline ByteSource unpacked_entry(const ZipReader& zip, const ZipEntry& entry,
+                                               ReadLimits& limits) {
+    std::uint64_t taken = 0;
+    ByteSource source = zip.read(entry, [&](std::uint64_t bytes) {
+        limits.add_bytes_at(bytes, [&] { return fmt::format("zip entry '{}'", printable(entry.name, 100)); });
+        taken = bytes;
+    });
+    if (taken != 0)
+        source.owner = std::shared_ptr<const void>(
+            source.bytes.data(),
+            [owner = source.owner, taken, &limits](const void*) { limits.give_back(0, taken); });
+    return source;
+}
 
 } // namespace lamella

@@ -135,6 +135,13 @@ class SlcReader {
         Executor executor(execution);
         ProgressMeter progress(execution, Stage::read, bytes_.size());
         std::size_t reported = 0;
+        const auto report_progress = [&] {
+            if (at_ - reported <= (std::size_t{1} << 22))
+                return;
+            executor.check_cancelled();
+            progress.add(at_ - reported);
+            reported = at_;
+        };
         for (;;) {
             if (left() == 0) {
                 file_.warnings.emplace_back("the file ends without the mark of its end");
@@ -159,17 +166,13 @@ class SlcReader {
             layer.z = z;
             layer.location = fmt::format("byte {}", at);
             for (std::uint32_t i = 0; i < contours; ++i)
-                read_contour(layer);
-            if (at_ - reported > (std::size_t{1} << 22)) {
-                executor.check_cancelled();
-                progress.add(at_ - reported);
-                reported = at_;
-            }
+                read_contour(layer, report_progress);
         }
         progress.finish();
     }
 
-    void read_contour(RawLayer& layer) {
+    template <class Report>
+    void read_contour(RawLayer& layer, const Report& report_progress) {
         const std::size_t at = at_;
         const auto position = at_byte(at);
         const auto count = take<std::uint32_t>("a contour");
@@ -182,6 +185,7 @@ class SlcReader {
             gaps_.note(position);
         limits_.make_room(layer.points, count, position);
         for (std::uint32_t i = 0; i < count; ++i) {
+            report_progress();
             std::array<float, 2> p{};
             std::memcpy(p.data(), bytes_.data() + at_, sizeof p);
             if (!std::isfinite(p[0]) || !std::isfinite(p[1]))

@@ -148,10 +148,7 @@ SlicerConfig read_slicer_config(const ZipReader& package, Remarks& remarks, Read
     for (const ZipEntry& entry : package.entries()) {
         if (!is_config(entry))
             continue;
-        const std::uint64_t before = package.unpacked();
-        const ByteSource part = package.read(entry);
-        const std::uint64_t unpacked = package.unpacked() - before;
-        limits.add_bytes_at(unpacked, [&] { return fmt::format("part '{}'", printable(entry.name, 100)); });
+        const ByteSource part = unpacked_entry(package, entry, limits);
         SlicerConfig read;
         Occurrences unknown;
         std::string first_unknown;
@@ -175,7 +172,6 @@ SlicerConfig read_slicer_config(const ZipReader& package, Remarks& remarks, Read
                 fmt::format("what volumes are for cannot be read, all are taken as parts: {}", error.what()));
             continue;
         }
-        limits.give_back(0, unpacked);
         if (unknown.count != 0)
             remarks.add(fmt::format("part '{}', line {}: {} of an unknown type ('{}'), taken as {}",
                                     printable(entry.name, longest_name), unknown.first,

@@ -272,25 +272,11 @@ class PackageReader {
         std::unique_ptr<SliceModelReader> reader;
     };
 
-    ByteSource unpack(const std::string& part) {
-        const std::uint64_t before = zip_.unpacked();
-        ByteSource source = unpack_part(zip_, part);
-        limits_.add_bytes_at(zip_.unpacked() - before,
-                             [&] { return fmt::format("part '{}'", printable(part, 100)); });
-        return source;
-    }
-
-    void let_go(ByteSource& source) {
-        limits_.give_back(0, source.bytes.size());
-        source = {};
-    }
-
-    std::unique_ptr<SliceModelReader> read_model(ByteSource source, SliceModelReader::FindStack find) {
+    std::unique_ptr<SliceModelReader> read_model(const ByteSource& source, SliceModelReader::FindStack find) {
         auto model = std::make_unique<SliceModelReader>(std::move(find), limits_);
         parse_part(
             source, [&](const ThreeMfElement& element) { model->start(element); },
             [&](XmlName name) { model->end(name); }, executor_);
-        let_go(source);
         model->append_to(file_.warnings);
         return model;
     }
@@ -300,9 +286,9 @@ class PackageReader {
         Model& model = models_[part];
         if (!model.reader) {
             model.part = part;
-            model.reader = read_model(unpack(part), [&, part](const ThreeMfElement& reference) {
-                return referred(reference, part);
-            });
+            model.reader =
+                read_model(unpack_part(zip_, part, limits_),
+                           [&, part](const ThreeMfElement& reference) { return referred(reference, part); });
         }
         return model;
     }
@@ -318,10 +304,7 @@ class PackageReader {
         return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) {
             if (zip_.find(part) == nullptr)
                 return false; // reading the meshes reports this
-            ByteSource source = unpack(part);
-            const bool found = source.text().find(three_mf::slices) != std::string_view::npos;
-            let_go(source);
-            return found;
+            return unpack_part(zip_, part, limits_).text().find(three_mf::slices) != std::string_view::npos;
         });
     }
 
@@ -332,10 +315,11 @@ class PackageReader {
         const std::uint32_t id = reference["slicestackid"].index();
         auto& model = parts_[part];
         if (!model)
-            model =
-                read_model(unpack(part), [](const ThreeMfElement& second) -> std::shared_ptr<const Stack> {
-                    second.fail("a reference to slices within slices that are referred to", "slices");
-                });
+            model = read_model(unpack_part(zip_, part, limits_),
+                               [](const ThreeMfElement& second) -> std::shared_ptr<const Stack> {
+                                   second.fail("a reference to slices within slices that are referred to",
+                                               "slices");
+                               });
         const auto found = model->stacks().find(id);
         if (found == model->stacks().end())
             reference.fail(fmt::format("a reference to slice stack {} of '{}'", id, printable(part, 100)),

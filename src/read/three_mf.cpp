@@ -162,13 +162,11 @@ class PartLoader {
 
     /// Decompresses and reads parts in parallel: first their structure, then the numbers of all meshes.
     void load_parts_from(std::size_t first) {
-        const std::uint64_t unpacked = package_.unpacked();
         executor_.for_chunks(parts_.size() - first, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
             Part& part = parts_[first + i];
-            part.bytes = package_.read(*package_.find(part.model.part));
+            part.bytes = unpacked_entry(package_, *package_.find(part.model.part), limits_);
             part.model = skimmed_or_parsed([&](bool skim) { return parsed(part, skim); });
         });
-        limits_.add_bytes(package_.unpacked() - unpacked);
         read_meshes(first);
     }
 
@@ -206,7 +204,7 @@ class PartLoader {
 class ThreeMfReader {
   public:
     ThreeMfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
-        : package_(source, options.max_memory), remarks_(source.name, options.strict),
+        : package_(source, most_unpacked(options)), remarks_(source.name, options.strict),
           selection_(options.include), limits_(source, options), executor_(execution),
           loader_(package_, remarks_, limits_, executor_, execution) {}
 

@@ -249,11 +249,10 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
     }
 
     void add_volume(const ThreeMfElement& element) {
-        count(sizeof(VolumeRange));
         const std::uint64_t begin = element["ts"].index();
-        object().volumes.push_back({begin,
-                                    std::max<std::uint64_t>(begin, element["te"].index() + std::uint64_t{1}),
-                                    element["modifier"].text == "1" ? MeshRole::modifier : MeshRole::part});
+        append(object().volumes,
+               VolumeRange{begin, std::max<std::uint64_t>(begin, element["te"].index() + std::uint64_t{1}),
+                           element["modifier"].text == "1" ? MeshRole::modifier : MeshRole::part});
     }
 
     void end(Where ended) override {
@@ -312,8 +311,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
     }
 
     Where start_object(const ThreeMfElement& element) {
-        count(sizeof(ThreeMfObject));
-        document().objects.push_back(object_of(element));
+        append(document().objects, object_of(element));
         if (element["pindex"].is_there && !element["pid"].is_there)
             remark("found pindex without pid");
         seen_.erase(Where::vertices);
@@ -355,7 +353,6 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
     }
 
     [[nodiscard]] ThreeMfUse use_of(const ThreeMfElement& element) {
-        count(sizeof(ThreeMfUse));
         ThreeMfUse use = element.use(document().unit_mm);
         if (!is_root_ && !use.part.empty())
             element.fail(fmt::format("path '{}' in a part that is not the root", printable(use.part, 100)),
@@ -364,12 +361,12 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
     }
 
     Where add_component(const ThreeMfElement& element) {
-        object().components.push_back(use_of(element));
+        append(object().components, use_of(element));
         return Where::elsewhere;
     }
 
     Where add_item(const ThreeMfElement& element) {
-        document().items.push_back(use_of(element));
+        append(document().items, use_of(element));
         return Where::elsewhere;
     }
 

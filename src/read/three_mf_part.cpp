@@ -6,6 +6,7 @@
 #include "core/executor.hpp"
 #include "read/decimal_text.hpp"
 #include "read/mesh_text.hpp"
+#include "read/read_limits.hpp"
 #include "read/three_mf_terms.hpp"
 
 #include <fmt/format.h>
@@ -186,12 +187,12 @@ std::string root_model(const ZipReader& package) {
     return std::string(three_mf::usual_root);
 }
 
-ByteSource unpack_part(const ZipReader& package, const std::string& name) {
+ByteSource unpack_part(const ZipReader& package, const std::string& name, ReadLimits& limits) {
     const ZipEntry* const entry = package.find(name);
     if (entry == nullptr)
         throw Error(ErrorKind::input, fmt::format("{}: found no part '{}', to which the package refers",
                                                   package.name(), printable(name, 100)));
-    return package.read(*entry);
+    return unpacked_entry(package, *entry, limits);
 }
 
 void parse_part(const ByteSource& part, const std::function<void(const ThreeMfElement&)>& start,

@@ -20,6 +20,8 @@
 
 namespace lamella {
 
+class ReadLimits;
+
 class Executor;
 struct ThreeMfElement;
 
@@ -89,8 +91,9 @@ struct ThreeMfElement {
 /// none.
 [[nodiscard]] std::string root_model(const ZipReader& package);
 
-/// Decompresses a part. Throws Error{input} if there is no part with this name.
-[[nodiscard]] ByteSource unpack_part(const ZipReader& package, const std::string& name);
+/// Unpacks a part within the limits (see `unpacked_entry`). Throws Error{input} if there is no part with this
+/// name.
+[[nodiscard]] ByteSource unpack_part(const ZipReader& package, const std::string& name, ReadLimits& limits);
 
 /// Parses a part. Calls `start` for each element, and `end` with the name of each element that ends.
 void parse_part(const ByteSource& part, const std::function<void(const ThreeMfElement&)>& start,

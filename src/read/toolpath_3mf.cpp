@@ -299,7 +299,7 @@ class ToolpathReader {
 
     void read() {
         const std::string root = root_model(package_);
-        const ByteSource source = unpack_part(package_, root);
+        const ByteSource source = unpack_part(package_, root, limits_);
         ToolpathModelReader reader(limits_);
         parse_part(
             source, [&](const ThreeMfElement& element) { reader.start(element); }, [](XmlName) {}, executor_);
@@ -343,7 +343,7 @@ class ToolpathReader {
 
     void read_layer(const std::string& name, const Toolpath& toolpath, RawLayer& raw) {
         executor_.check_cancelled();
-        const ByteSource source = unpack_part(package_, name);
+        const ByteSource source = unpack_part(package_, name, limits_);
         raw.location = source.name;
         LayerReader reader(source.name, model_, toolpath, kinds_, other_lasers_, raw, limits_);
         parse_part(

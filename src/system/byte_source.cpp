@@ -286,6 +286,18 @@ void release(const ByteSource& source, std::span<const std::byte> stretch) noexc
         madvise(const_cast<std::byte*>(base) + first, last - first, MADV_DONTNEED);
 }
 
+Execution releasing(const ByteSource& source, const Execution& execution) {
+    if (!source.on_disk)
+        return execution;
+    Execution result = execution;
+    result.progress = [source, wished = execution.progress](const Progress& progress) {
+        release(source, source.bytes.first(std::min<std::uint64_t>(progress.done, source.bytes.size())));
+        if (wished)
+            wished(progress);
+    };
+    return result;
+}
+
 ByteSource copy_bytes(std::span<const std::byte> bytes, std::string name) {
     if (bytes.empty())
         fail(name, "is empty, expected a file with content");

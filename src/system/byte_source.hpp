@@ -66,6 +66,10 @@ void copy_out(const ByteSource& source, std::uint64_t offset, std::span<std::byt
 /// Files larger than memory can thus be traversed. Does nothing for bytes in memory.
 void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept;
 
+/// Returns an execution whose progress also releases the bytes that were read. For readers that go from front
+/// to back and report the bytes they have read; any others read released bytes from the disk again.
+[[nodiscard]] Execution releasing(const ByteSource& source, const Execution& execution);
+
 /// Copies bytes in memory; `name` replaces the path in errors. Throws Error{input} if there are no bytes.
 [[nodiscard]] ByteSource copy_bytes(std::span<const std::byte> bytes, std::string name);
 

@@ -16,6 +16,10 @@ namespace lamella {
 [[nodiscard]] inline std::uint64_t memory_limit(std::uint64_t wished) {
     return wished != 0 ? wished : usual_memory();
 }
+/// Returns what is left of a limit if `held` bytes are in use, at least 1: 0 would mean the default.
+[[nodiscard]] inline std::uint64_t memory_left(std::uint64_t limit, std::uint64_t held) {
+    return limit > held ? limit - held : 1;
+}
 /// Returns the part of that limit that the copy of a file may take; a longer file is copied to a temporary
 /// file.
 [[nodiscard]] inline std::uint64_t memory_of_file(std::uint64_t wished) {

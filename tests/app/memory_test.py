@@ -1,6 +1,7 @@
 """lamella slice --max-memory: files that do not fit give the same bytes range by range, and leave nothing behind."""
 
 import json
+import math
 import os
 import resource
 import signal
@@ -8,6 +9,7 @@ import struct
 import subprocess
 import sys
 import threading
+import zipfile
 
 from program import PROGRAM, ProgramTest, binary_stl, main, open_box
 
@@ -174,6 +176,53 @@ class Memory(ProgramTest):
         self.slice("lattice.stl", "--layer-height", "10", "-o", "few.cli")
         file = self.path("layers.cli").stat().st_size  # of which there is a copy
         self.assertLess(self.peak("info", "layers.cli") - self.peak("info", "few.cli"), file + 1.7 * 16 * points)
+
+    def large_layers(self):
+        """Four layers of a ring of 400,000 points each, as JSON."""
+        points = [round(50 * f(2 * math.pi * k / 400_000), 6) for k in range(400_000) for f in (math.cos, math.sin)]
+        layers = [{"index": i, "z": 0.1 * i + 0.05, "bottom": 0.1 * i, "top": 0.1 * i + 0.1, "parts": [{"rings": [points]}]}
+                  for i in range(4)]
+        self.write("large.json", json.dumps({"format": "lamella layers", "version": 1, "units": "mm", "parts": [{"label": "part"}],
+                                             "layers": layers}).encode())
+        return "large.json"
+
+    def test_reading_layers_keeps_within_what_is_allowed(self):
+        names = [self.large_layers()]
+        for name, *options in [("a.cli",), ("text.cli", "--format", "cli-ascii"), ("a.svg",), ("a.slc",), ("a.ovf",), ("a.ilt",), ("a.3mf",)]:
+            self.succeed("convert", "large.json", name, *options)
+            names.append(name)
+        for name in names:
+            for limit in (20, 34, 50):
+                with self.subTest(name=name, limit=limit):
+                    self.assertLess(self.peak("info", name, "--max-memory", f"{limit}M", "--threads", 2, codes=(0, 5)),
+                                    1e6 * (limit + 25))
+
+    def test_placements_of_a_3mf_file_are_counted_as_they_are_held(self):
+        mesh = ("<mesh><vertices>" + "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
+                + "</vertices><triangles>" + "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in
+                                                     [(0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)]) + "</triangles></mesh>")
+        components = '<components>' + '<component objectid="1"/>' * 300_000 + '</components>'
+        for name, objects, items in [("items", "", '<item objectid="1"/>' * 300_000),
+                                     ("components", f'<object id="2">{components}</object>', '<item objectid="1"/>')]:
+            with zipfile.ZipFile(self.path(f"{name}.3mf"), "w", zipfile.ZIP_DEFLATED) as archive:
+                archive.writestr("3D/3dmodel.model", '<model unit="millimeter" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">'
+                                 f'<resources><object id="1">{mesh}</object>{objects}</resources><build>{items}</build></model>')
+            for command in (["info"], ["slice", "-o", "a.cli"]):
+                with self.subTest(name=name, command=command):
+                    self.assertLess(self.peak(*command, f"{name}.3mf", "--max-memory", "100M", "--threads", 2, codes=(5,)), 110e6)
+
+    def test_files_that_are_held_together_share_the_limit(self):
+        self.succeed("convert", self.large_layers(), "a.cli")
+        self.succeed("convert", "large.json", "b.cli")
+        for name in "a.cli", "b.cli":
+            self.succeed("info", name, "--max-memory", "64M")
+        self.assertLess(self.peak("compare", "a.cli", "b.cli", "--max-memory", "64M", codes=(5,)), 89e6)
+        self.fail_with(5, r"b\.cli: takes more than the 64000000 bytes of --max-memory together with the files read before, which "
+                       r"take 2560\d{4} ", "compare", "a.cli", "b.cli", "--max-memory", "64M")
+        self.succeed("compare", "a.cli", "b.cli", "--max-memory", "150M")
+        self.lattice("mesh.ply", "--cells", 12)
+        self.fail_with(5, r"mesh\.ply: takes more than the 45000000 bytes .* files read before", "verify", "a.cli", "--mesh", "mesh.ply",
+                       "--max-memory", "45M")
 
     def test_ranges_give_the_same_bytes(self):
         self.check(self.lattice(), least_ranges=3)

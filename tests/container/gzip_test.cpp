@@ -79,7 +79,7 @@ TEST(Gzip, StopsAtTheLimit) {
     const std::string bomb = compressed(std::string(8'000'000, '\0'));
     EXPECT_LT(bomb.size(), 80'000U);
     EXPECT_EQ(error_of(bomb, 1'000'000, ErrorKind::limit),
-              "part.gz: unpacks to more than the 1000000 bytes of `max_memory`");
+              "part.gz: unpacks to more than the 1000000 bytes that `max_memory` leaves it");
     EXPECT_EQ(content(bomb, 8'000'000).size(), 8'000'000U);
 }
 

@@ -96,9 +96,10 @@ struct Plate {
 [[nodiscard]] Mesh joined(const Plate& plate, const Execution& execution = {});
 
 /// Throws Error{limit} that reports the numbers of parts and triangles if `bytes_per_triangle` times the
-/// number of triangles of all parts exceeds `max_memory` (0: three quarters of the physical memory). Should
-/// be called before parts are joined and inspected.
-void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uint64_t max_memory);
+/// number of triangles of all parts and the `held` bytes together exceed `max_memory` (0: three quarters of
+/// the physical memory). Should be called before parts are joined and inspected.
+void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uint64_t max_memory,
+                  std::uint64_t held = 0);
 
 /// Slices all parts together, and subtracts negative volumes, as `slice` and `slice_to` do for a mesh.
 [[nodiscard]] LayerStack slice(const Plate& plate, const Plan& plan, const Execution& execution = {},

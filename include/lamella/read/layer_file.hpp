@@ -22,6 +22,8 @@ struct LayerReadOptions {
     /// Largest number of bytes that the decompressed file and the layers may take; otherwise Error{limit} is
     /// thrown before they are allocated. 0: three quarters of the available memory.
     std::uint64_t max_memory = 0;
+    /// Bytes of `max_memory` that files read before still take (see `memory_of`).
+    std::uint64_t held = 0;
 };
 
 /// A part of a slice file.
@@ -54,6 +56,9 @@ struct LayerFile {
     /// layers differ.
     [[nodiscard]] LayerStack merged() const;
 };
+
+/// Returns the bytes that the layers of a file take. O(layers).
+[[nodiscard]] std::uint64_t memory_of(const LayerFile& file) noexcept;
 
 /// Reads a slice file, whose format is recognised by its content: Common Layer Interface (binary or ASCII),
 /// layered SVG, SLC, 3MF with slice stacks, layers as JSON, NumPy arrays, ILT, Open Vector Format or 3MF with

@@ -41,6 +41,8 @@ struct MeshReadOptions {
     /// uncompressed binary STL files of at least 64 KiB, files copied to a temporary file (see `read_mesh`),
     /// and data computed from a mesh afterwards.
     std::uint64_t max_memory = 0;
+    /// Bytes of `max_memory` that files read before still take.
+    std::uint64_t held = 0;
 };
 
 /// A mesh of a file as stored: in the file's unit, without placement.
