@@ -64,11 +64,11 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
                         fmt::format("--label names one part, and {} holds {}", file.path, file.parts.size()));
         info.parts.front().label = arguments.label;
     }
-    std::vector<LayerStack> stacks;
-    for (const LayerPart& part : file.parts)
-        stacks.push_back(part.layers);
-    context.messages.warn_of(output_name(arguments.output),
-                             write_layers(arguments.output, format, stacks, info, options, execution));
+    const std::unique_ptr<LayerWriter> writer = open_layer_writer(arguments.output, format, info, options);
+    write_planes(
+        *writer, info.layers, [&](std::size_t i) { return file.plane(i); }, execution);
+    writer->finish();
+    context.messages.warn_of(output_name(arguments.output), writer->warnings());
 
     std::string text =
         fmt::format("{}: {} from {} ({}) as {}\n", one_line(output_name(arguments.output)),

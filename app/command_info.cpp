@@ -110,7 +110,8 @@ std::vector<ExposureResult> exposures_of(const LayerFile& file) {
         auto exposure = exposures.begin();
         for (const LayerPart& part : file.parts)
             if (part.exposure) {
-                exposure->figures += measure_vectors(part.layers[i], part.exposure->parameters, beam);
+                exposure->figures +=
+                    measure_vectors(part.layers[i], part.hatches_of(i), part.exposure->parameters, beam);
                 ++exposure;
             }
     }
@@ -143,13 +144,14 @@ Figures figures_of(const LayerFile& file, const std::vector<ExposureResult>& exp
     LayerMeasure all;
     double volume_mm3 = 0;
     std::uint64_t other_hatches = 0; // without an exposure
-    for (const LayerPart& part : file.parts)
+    for (const LayerPart& part : file.parts) {
+        other_hatches += part.exposure ? 0 : part.hatch_lines();
         for (const Layer& layer : part.layers) {
-            other_hatches += part.exposure ? 0 : layer.hatches.size() / 2;
             const LayerMeasure measured = measure(layer);
             all.add(measured);
             volume_mm3 += measured.area_mm2 * layer.thickness();
         }
+    }
     const LayerStack& layers = file.parts.front().layers;
     Figures figures = layer_figures(layers.size(), all, volume_mm3);
     Figure range{"z_range", Json(), "from"};

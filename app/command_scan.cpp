@@ -119,10 +119,14 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
     check_layers(file);
     std::vector<LayerStack> stacks;
-    for (const LayerPart& part : file.parts)
+    std::uint64_t hatch_lines = 0;
+    for (const LayerPart& part : file.parts) {
         stacks.push_back(part.layers);
+        hatch_lines += part.hatch_lines();
+    }
     const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
-    const ScanLosses losses = scan_losses(stacks, file.rounding, execution, max_memory);
+    ScanLosses losses = scan_losses(stacks, file.rounding, execution, max_memory);
+    losses.hatches = hatch_lines;
     for (const std::vector<std::string>& warnings : {file.warnings, losses.texts()})
         warn_about(file, warnings, arguments.strict, context.messages);
     const LayerFileInfo info = info_of(file);

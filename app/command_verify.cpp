@@ -244,6 +244,8 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
                               .steps = steps,
                               .rounding = file.rounding,
                               .tolerance_mm = arguments.tolerance};
+        for (const LayerPart& part : plain.parts)
+            options.hatch_lines += part.hatch_lines();
         const LayerStack several = plain.parts.size() > 1 ? plain.merged() : LayerStack();
         const Verification found =
             verify(plain.parts.size() > 1 ? several : plain.parts.front().layers, options, execution);

@@ -104,13 +104,8 @@ std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const 
             notes.changes.push_back({file.parts.front().layers[i].index, planes[i]});
     const LayerFileInfo info = info_of(file);
     const auto page = open_layer_page(output, info, page_options(arguments.input));
-    const auto parts_of = [&](std::size_t i) {
-        std::vector<Layer> plane;
-        for (const LayerPart& part : file.parts)
-            plane.push_back(part.layers[i]);
-        return plane;
-    };
-    write_planes(*page, info.layers, parts_of, execution);
+    write_planes(
+        *page, info.layers, [&](std::size_t i) { return file.plane(i); }, execution);
     page->add_notes(std::move(notes));
     page->finish();
     messages.warn_of(output_name(output), page->warnings());

@@ -1,5 +1,6 @@
 #include "layer_file.hpp"
 
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
@@ -56,8 +57,8 @@ LayerFileInfo info_of(const LayerFile& file) {
     LayerFileInfo info{
         .box = {}, .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}, .rule = file.rule};
     for (const LayerPart& part : file.parts)
-        info.parts.push_back({part.label.empty() ? PartInfo{}.label : part.label, part_box(part.layers),
-                              part.exposure, part.support});
+        info.parts.push_back({part.label.empty() ? PartInfo{}.label : part.label,
+                              part_box(part.layers, part.hatches), part.exposure, part.support});
     info.box = box_of(info, layers);
     return info;
 }
@@ -89,19 +90,27 @@ StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Me
                             : fmt::format("{}, part \"{}\"", file.path, excerpt(part.label)));
     }
     StepChanges changes;
+    const std::vector<LayerStack> before = parts; // shares their points
     parts = lamella::take_steps(steps, std::move(parts), changes.planes, execution, max_memory, names);
     std::uint64_t contours = 0;
+    std::uint64_t hatches_dropped = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        for (const Layer& layer : parts[i])
-            contours += layer.contours();
-        file.parts[i].layers = std::move(parts[i]);
+        LayerPart& part = file.parts[i];
+        for (std::size_t plane = 0; plane < parts[i].size(); ++plane) {
+            contours += parts[i][plane].contours();
+            if (!part.hatches_of(plane).empty() && !same_contours(before[i][plane], parts[i][plane])) {
+                hatches_dropped += part.hatches[plane].size() / 2;
+                part.hatches[plane] = {};
+            }
+        }
+        part.layers = std::move(parts[i]);
     }
     for (const LayerChanges& plane : changes.planes)
         changes.all += plane;
-    if (changes.all.hatches_dropped > 0)
+    if (hatches_dropped > 0)
         warn_about(file,
                    {fmt::format("{} left out: the contours that they fill were changed",
-                                counted(changes.all.hatches_dropped, "hatch line"))},
+                                counted(hatches_dropped, "hatch line"))},
                    strict, messages);
     if (const std::string nothing = nothing_left(changes.planes.size(), contours, changes.all);
         !nothing.empty())

@@ -348,13 +348,12 @@ Timed move_by(const Layer& layer, double by, OffsetCorner shape = OffsetCorner::
 Timed make_vectors(const Layer& layer, double area_mm2) {
     const ScanStrategy strategy;
     const auto start = Clock::now();
-    const std::vector<Layer> vectors = scan(layer, {}, {}, strategy);
+    const ScanVectors vectors = scan(layer, {}, {}, strategy).vectors;
     const double seconds = seconds_since(start);
     double length = 0;
-    for (const Layer& exposed : vectors)
-        for (std::size_t i = 0; i < exposed.hatches.size(); i += 2)
-            length += std::hypot(exposed.hatches[i + 1].x - exposed.hatches[i].x,
-                                 exposed.hatches[i + 1].y - exposed.hatches[i].y);
+    for (const PointArray& hatches : vectors.hatches)
+        for (std::size_t i = 0; i < hatches.size(); i += 2)
+            length += std::hypot(hatches[i + 1].x - hatches[i].x, hatches[i + 1].y - hatches[i].y);
     const double hatched = length * strategy.hatch.distance;
     const double most = area_mm2 * (1 + strategy.hatch.overlap / strategy.hatch.cell); // stripes overlap
     return {seconds, layer.points.size(), hatched > 0.9 * area_mm2 && hatched <= most};

@@ -41,9 +41,10 @@ ScanStrategy lines_only(HatchPattern pattern) {
     return strategy;
 }
 
-double length_of(const Layer& vectors) {
+/// Returns the length of the vectors of the first exposure.
+double length_of(const ScanVectors& vectors) {
     std::optional<Point2> beam;
-    return measure_vectors(vectors, {}, beam).marked_mm;
+    return measure_vectors(vectors.polylines.front(), vectors.hatches.front().span(), {}, beam).marked_mm;
 }
 
 /// Lines of Clipper across a layer.
@@ -113,13 +114,13 @@ Hatched hatch_layers(const Part& part, HatchPattern pattern, bool compare) {
     const std::size_t step = std::max<std::size_t>(1, layers.size() / 5);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const auto begin = Clock::now();
-        const Layer vectors = scan(layers[i], {}, {}, strategy).front();
+        const ScanVectors vectors = scan(layers[i], {}, {}, strategy).vectors;
         const double seconds = seconds_since(begin);
         result.seconds += seconds;
-        result.vectors += vectors.hatches.size() / 2;
+        result.vectors += vectors.hatches.front().size() / 2;
         const bool crossed = pattern == HatchPattern::chessboard || pattern == HatchPattern::hexagons;
         if (!crossed && i % step == step / 2) {
-            const Layer plain = scan(layers[i], {}, {}, lines_only(HatchPattern::lines)).front();
+            const ScanVectors plain = scan(layers[i], {}, {}, lines_only(HatchPattern::lines)).vectors;
             result.right =
                 result.right && std::abs(length_of(vectors) - length_of(plain)) <= 1e-9 * length_of(plain);
         }
@@ -156,9 +157,12 @@ Job whole_job(const Part& part, const ScanStrategy& strategy) {
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const std::size_t below = std::min<std::size_t>(i, strategy.downskin.layers);
         const std::size_t above = std::min<std::size_t>(layers.size() - 1 - i, strategy.upskin.layers);
-        for (const Layer& vectors : scan(layers[i], std::span(reversed).subspan(layers.size() - i, below),
-                                         std::span(layers).subspan(i + 1, above), strategy, &memory))
-            job.vectors += vectors.points.size() + vectors.hatches.size() / 2;
+        const ScanVectors vectors =
+            scan(layers[i], std::span(reversed).subspan(layers.size() - i, below),
+                 std::span(layers).subspan(i + 1, above), strategy, {.cache = &memory})
+                .vectors;
+        for (std::size_t e = 0; e < vectors.exposures(); ++e)
+            job.vectors += vectors.polylines[e].points.size() + vectors.hatches[e].size() / 2;
     }
     job.scan = seconds_since(scanning);
     return job;

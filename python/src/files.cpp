@@ -44,9 +44,10 @@ bool holds_scan_vectors(const Stack& stack) {
                                          [](const StackPointer& part) { return holds_scan_vectors(*part); });
 }
 
-StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layers) {
+StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layers,
+                      std::vector<PointArray> hatches) {
     auto stack = std::make_shared<Stack>();
-    stack->layers = shared(std::move(layers), file.rule);
+    stack->layers = shared(std::move(layers), file.rule, std::move(hatches));
     stack->label = std::move(label);
     stack->box = box_of(stack->layers);
     stack->planned = stack->layers.empty() ? 0 : stack->layers.back()->get().index + 1;
@@ -57,13 +58,29 @@ StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layer
     return stack;
 }
 
+/// Returns the hatch lines of all parts on each plane.
+std::vector<PointArray> merged_hatches(const LayerFile& file) {
+    std::vector<PointArray> merged(file.parts.front().layers.size());
+    for (std::size_t plane = 0; plane < merged.size(); ++plane) {
+        std::vector<Point2> ends;
+        for (const LayerPart& part : file.parts) {
+            const std::span<const Point2> hatches = part.hatches_of(plane);
+            ends.insert(ends.end(), hatches.begin(), hatches.end());
+        }
+        if (!ends.empty())
+            merged[plane] = PointArray(std::move(ends));
+    }
+    return merged;
+}
+
 /// Returns the stack of the file, with a stack of each part if there are several.
 StackPointer stack_of(LayerFile file) {
     const bool several = file.parts.size() > 1;
-    const StackPointer together = several ? stack_of(file, {}, file.merged()) : nullptr;
+    const StackPointer together = several ? stack_of(file, {}, file.merged(), merged_hatches(file)) : nullptr;
     std::vector<StackPointer> parts;
     for (LayerPart& part : file.parts) {
-        const StackPointer& stack = parts.emplace_back(stack_of(file, part.label, std::move(part.layers)));
+        const StackPointer& stack =
+            parts.emplace_back(stack_of(file, part.label, std::move(part.layers), std::move(part.hatches)));
         stack->exposure = std::move(part.exposure);
         stack->support = part.support;
     }
@@ -115,15 +132,14 @@ class StackWriter {
 
     /// Writes the layers of each part, plane by plane.
     void write(const std::vector<std::vector<LayerPointer>>& planes, unsigned threads) {
-        const auto parts_of = [&](std::size_t i) {
-            std::vector<Layer> layers;
-            layers.reserve(planes[i].size());
+        const auto plane_of = [&](std::size_t i) {
+            ScanVectors plane;
             for (const LayerPointer& part : planes[i])
-                layers.push_back(part->get());
-            return layers;
+                plane.add(part->get(), part->hatches());
+            return plane;
         };
         run(threads, py::none(),
-            [&](const Execution& execution) { write_planes(writer(), planes.size(), parts_of, execution); });
+            [&](const Execution& execution) { write_planes(writer(), planes.size(), plane_of, execution); });
     }
 
     py::list finish() {
@@ -250,6 +266,8 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
                 options.plate = mesh->source().plate(execution);
         }
         LayerStack layers = plain(stack.layers);
+        for (const LayerPointer& layer : stack.layers)
+            options.hatch_lines += layer->hatches().size() / 2;
         if (!at.empty())
             options.rule = place_cuts(layers, slice_at_named(at));
         return verify(layers, options, execution);

@@ -146,14 +146,14 @@ LayerPointer layer_of_arrays(const LayerHeader& header, const Doubles& points, c
     Layer layer{.index = header.index, .z = header.z, .bottom = header.bottom, .top = header.top};
     layer.points = points_of(points);
     layer.offsets = offsets_of(offsets, layer.points.size());
-    layer.hatches = points_of(hatches);
-    if (layer.hatches.size() % 2 != 0)
+    PointArray lines = points_of(hatches);
+    if (lines.size() % 2 != 0)
         throw Error(ErrorKind::input, "hatch lines of a layer must have two points each");
     layer.rings = rings;
     if (rings > layer.contours())
         throw Error(ErrorKind::input, "there are more closed contours than contours");
     // Not converted to normal form, because the order of scan vectors is significant.
-    return std::make_shared<SharedLayer>(std::move(layer), rule);
+    return std::make_shared<SharedLayer>(std::move(layer), rule, std::move(lines));
 }
 
 /// Adds a contour by the rules of docs/conventions.md: drops points equal to the one before them, and the
@@ -198,7 +198,7 @@ bool same(const SharedLayer& first, const SharedLayer& second) {
     const Layer& a = first.get();
     const Layer& b = second.get();
     return a.index == b.index && a.z == b.z && a.bottom == b.bottom && a.top == b.top &&
-           same_contours(a, b) && std::ranges::equal(a.hatches, b.hatches);
+           same_contours(a, b) && std::ranges::equal(first.hatches(), second.hatches());
 }
 
 std::string layer_text(const SharedLayer& layer) {
@@ -210,12 +210,13 @@ std::string layer_text(const SharedLayer& layer) {
     return text.data();
 }
 
-/// Returns the layer after the steps.
+/// Returns the layer after the steps. Its hatch lines remain only if the contours that they fill do.
 LayerPointer after(const LayerPointer& layer, const LayerSteps& steps) {
     return result_of_points(layer->get().points.size(), [layer, steps](const Execution& execution) {
         LayerChanges changes;
-        return std::make_shared<SharedLayer>(
-            take_steps(steps, layer->get(), changes, layer_limits(execution)), layer->rule());
+        Layer made = take_steps(steps, layer->get(), changes, layer_limits(execution));
+        PointArray hatches = same_contours(layer->get(), made) ? layer->hatches() : PointArray();
+        return std::make_shared<SharedLayer>(std::move(made), layer->rule(), std::move(hatches));
     });
 }
 
@@ -230,12 +231,13 @@ LayerPointer combined(const LayerPointer& layer, const LayerPointer& other) {
 }
 
 py::tuple layer_state(const py::object& self) {
-    const Layer& layer = layer_of(self);
+    const auto& shared = self.cast<const SharedLayer&>();
+    const Layer& layer = shared.get();
     std::optional<std::string_view> rule;
-    if (const auto known = self.cast<const SharedLayer&>().rule())
+    if (const auto known = shared.rule())
         rule = plane_rule_name(*known);
     return py::make_tuple(layer.index, layer.z, layer.bottom, layer.top, view_of(layer.points.span(), self),
-                          offsets_of(self), layer.rings, view_of(layer.hatches.span(), self), rule);
+                          offsets_of(self), layer.rings, view_of(shared.hatches().span(), self), rule);
 }
 
 LayerPointer layer_of_state(const py::tuple& state) {
@@ -486,7 +488,7 @@ void bind_layer(py::module_& module) {
         .def_property_readonly(
             "hatches",
             [](const py::object& self) {
-                const std::span<const Point2> points = layer_of(self).hatches.span();
+                const std::span<const Point2> points = self.cast<const SharedLayer&>().hatches().span();
                 const auto* first = reinterpret_cast<const double*>(points.data());
                 return view(first, {static_cast<py::ssize_t>(points.size() / 2), 2, 2}, self);
             },

@@ -119,13 +119,6 @@ std::vector<ScanLayer> layers_of(const std::vector<LayerPointer>& shared, const 
     return layers;
 }
 
-LayerStack layers_of(const Stack& stack) {
-    LayerStack layers;
-    for (const LayerPointer& layer : stack.layers)
-        layers.push_back(layer->get());
-    return layers;
-}
-
 /// Returns the rounding of the file that the layers come from, if any.
 Rounding rounding_of(const Stack* stack) {
     return stack != nullptr ? stack->rounding : Rounding{};
@@ -134,8 +127,10 @@ Rounding rounding_of(const Stack* stack) {
 /// Layers of vectors, and the area of material that no vector reaches, in mm^2.
 using Scanned = std::pair<std::vector<LayerPointer>, double>;
 
-double sum_of(const std::vector<double>& areas) {
-    return std::accumulate(areas.begin(), areas.end(), 0.0);
+Scanned shared_vectors(ScannedLayer scanned, const LayerPointer& layer) {
+    ScanVectors& vectors = scanned.vectors;
+    return {shared(std::move(vectors.polylines), layer->rule(), std::move(vectors.hatches)),
+            std::accumulate(scanned.unreached_mm2.begin(), scanned.unreached_mm2.end(), 0.0)};
 }
 
 Scanned scanned(const LayerPointer& layer, const std::vector<LayerPointer>& below,
@@ -147,11 +142,10 @@ Scanned scanned(const LayerPointer& layer, const std::vector<LayerPointer>& belo
     const auto work = [layer, below, above, strategy,
                        rounding = rounding_of(stack)](const Execution& execution) {
         const LayerLimits limits = layer_limits(execution);
-        std::vector<double> unreached;
-        std::vector<Layer> vectors =
-            scan(ScanLayer(layer->get(), rounding, limits), layers_of(below, rounding, limits),
-                 layers_of(above, rounding, limits), strategy, nullptr, &unreached, limits);
-        return Scanned{shared(std::move(vectors), layer->rule()), sum_of(unreached)};
+        return shared_vectors(scan(ScanLayer(layer->get(), rounding, limits),
+                                   layers_of(below, rounding, limits), layers_of(above, rounding, limits),
+                                   strategy, {.limits = limits}),
+                              layer);
     };
     return result_of_points(points, work);
 }
@@ -159,10 +153,8 @@ Scanned scanned(const LayerPointer& layer, const std::vector<LayerPointer>& belo
 Scanned scanned_support(const LayerPointer& layer, const ScanStrategy& strategy, const Stack* stack) {
     const auto work = [layer, strategy, rounding = rounding_of(stack)](const Execution& execution) {
         const LayerLimits limits = layer_limits(execution);
-        std::vector<double> unreached;
-        std::vector<Layer> vectors =
-            scan_support(ScanLayer(layer->get(), rounding, limits), strategy, nullptr, &unreached, limits);
-        return Scanned{shared(std::move(vectors), layer->rule()), sum_of(unreached)};
+        return shared_vectors(
+            scan_support(ScanLayer(layer->get(), rounding, limits), strategy, {.limits = limits}), layer);
     };
     return result_of_points(layer->get().points.size(), work);
 }
@@ -173,7 +165,8 @@ std::vector<ScanFigures> measured(const std::vector<LayerPointer>& vectors,
     std::vector<ScanFigures> figures;
     std::optional<Point2> beam;
     for (std::size_t i = 0; i < vectors.size(); ++i)
-        figures.push_back(measure_vectors(vectors[i]->get(), exposures.at(i).parameters, beam));
+        figures.push_back(measure_vectors(vectors[i]->get(), vectors[i]->hatches().span(),
+                                          exposures.at(i).parameters, beam));
     return figures;
 }
 
@@ -182,6 +175,7 @@ void bind_losses(py::module_& module) {
         .def(py::init())
         .def("add",
              [](ScanLosses& self, const LayerPointer& layer) {
+                 self.hatches += layer->hatches().size() / 2;
                  self.add({&layer->get(), 1},
                           result_of_points(layer->get().points.size(), [layer](const Execution& execution) {
                               return inverted_rings(layer->get(), {}, InversionSearch::full,
@@ -191,13 +185,16 @@ void bind_losses(py::module_& module) {
         .def("texts", &ScanLosses::texts);
     module.def("scan_losses", [](const Stack& stack) {
         return result_of(0, py::none(), [&](const Execution& execution) {
-            const LayerStack layers = layers_of(stack);
-            return scan_losses({&layers, 1}, stack.rounding, execution).texts();
+            const LayerStack layers = plain(stack.layers);
+            ScanLosses losses = scan_losses({&layers, 1}, stack.rounding, execution);
+            for (const LayerPointer& layer : stack.layers)
+                losses.hatches += layer->hatches().size() / 2;
+            return losses.texts();
         });
     });
     module.def("inverted_layers", [](const Stack& stack, unsigned threads, const py::object& progress) {
         return result_of(threads, progress, [&](const Execution& execution) -> std::vector<std::string> {
-            const LayerStack layers = layers_of(stack);
+            const LayerStack layers = plain(stack.layers);
             const InvertedLayers inverted =
                 inverted_layers({&layers, 1}, stack.rounding, InversionSearch::quick, execution);
             if (inverted.rings == 0)

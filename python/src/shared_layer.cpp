@@ -28,12 +28,17 @@ const std::vector<std::int64_t>& SharedLayer::parents() const {
 }
 
 std::uint64_t SharedLayer::hash() const {
-    std::call_once(hashed_, [&] { hash_ = content_hash(layer_); });
+    std::call_once(hashed_, [&] {
+        hash_ = hatches_.empty() ? content_hash(layer_) : content_hash(ScanVectors{{layer_}, {hatches_}});
+    });
     return hash_;
 }
 
 Box3 box_of(const std::vector<LayerPointer>& layers) {
-    return part_box(plain(layers));
+    std::vector<PointArray> hatches;
+    for (const LayerPointer& layer : layers)
+        hatches.push_back(layer->hatches());
+    return part_box(plain(layers), hatches);
 }
 
 Box3 shown_box(const Stack& stack) {
@@ -44,11 +49,13 @@ Box3 shown_box(const Stack& stack) {
     return {{0, 0, stack.layers.front()->get().bottom}, {0, 0, stack.layers.back()->get().top}};
 }
 
-std::vector<LayerPointer> shared(LayerStack layers, std::optional<PlaneRule> rule) {
+std::vector<LayerPointer> shared(LayerStack layers, std::optional<PlaneRule> rule,
+                                 std::vector<PointArray> hatches) {
+    hatches.resize(layers.size());
     std::vector<LayerPointer> pointers;
     pointers.reserve(layers.size());
-    for (Layer& layer : layers)
-        pointers.push_back(std::make_shared<SharedLayer>(std::move(layer), rule));
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        pointers.push_back(std::make_shared<SharedLayer>(std::move(layers[i]), rule, std::move(hatches[i])));
     return pointers;
 }
 

@@ -24,10 +24,12 @@ namespace lamella::python {
 /// the interpreter lock, because another thread may be computing the same property.
 class SharedLayer {
   public:
-    explicit SharedLayer(Layer layer, std::optional<PlaneRule> rule = {})
-        : layer_(std::move(layer)), rule_(rule) {}
+    explicit SharedLayer(Layer layer, std::optional<PlaneRule> rule = {}, PointArray hatches = {})
+        : layer_(std::move(layer)), hatches_(std::move(hatches)), rule_(rule) {}
 
     [[nodiscard]] const Layer& get() const noexcept { return layer_; }
+    /// Returns the hatch lines of a slice file, or of scan vectors: two points for each line.
+    [[nodiscard]] const PointArray& hatches() const noexcept { return hatches_; }
     /// Returns the rule by which this layer, or the layer from which it was made, was cut; nullopt if it was
     /// made from arrays.
     [[nodiscard]] std::optional<PlaneRule> rule() const noexcept { return rule_; }
@@ -40,6 +42,7 @@ class SharedLayer {
 
   private:
     Layer layer_;
+    PointArray hatches_;
     std::optional<PlaneRule> rule_;
     mutable std::once_flag measured_;
     mutable std::once_flag nested_;
@@ -80,13 +83,15 @@ struct Stack {
 /// Returns the box of the stack or, if it is empty, the origin at the heights of its layers.
 [[nodiscard]] Box3 shown_box(const Stack& stack);
 
-[[nodiscard]] std::vector<LayerPointer> shared(LayerStack layers, std::optional<PlaneRule> rule);
+/// `hatches` has the hatch lines of each layer, or none.
+[[nodiscard]] std::vector<LayerPointer> shared(LayerStack layers, std::optional<PlaneRule> rule,
+                                               std::vector<PointArray> hatches = {});
 /// Returns the layer with its own copy of its points. Slicing stores the points of many layers in one
 /// allocation, which each of them would keep in memory.
 [[nodiscard]] Layer with_own_points(Layer layer);
 /// Returns the rule of this name. Throws Error{usage} for an unknown name.
 [[nodiscard]] PlaneRule rule_named(const std::string& name);
-/// Returns the layers without copying their points.
+/// Returns the layers without copying their points, and without their hatch lines.
 [[nodiscard]] LayerStack plain(const std::vector<LayerPointer>& shared);
 
 } // namespace lamella::python

@@ -351,7 +351,6 @@ ClosedGaps close_gaps(const Layer& layer, double within_mm) {
     result.layer = builder.finish(layer.index, layer.z, layer.bottom, layer.top);
     // Each join makes one chain of two, or a ring of one; chains without points are dropped.
     assert(result.layer.open_chains() + result.joins.size() <= layer.open_chains());
-    result.layer.hatches = layer.hatches;
     return result;
 }
 

@@ -1,5 +1,6 @@
 #include "lamella/contour/layer.hpp"
 
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 
@@ -22,36 +23,56 @@ PointArray::PointArray(std::vector<Point2> points) {
     owner_ = shared;
 }
 
+namespace {
+
+/// Compares absolute values as integers, which ascend with them, NaN beyond all: no branches, and several
+/// numbers at a time.
+bool any_too_far(std::span<const Point2> points) {
+    constexpr std::uint64_t farthest = std::bit_cast<std::uint64_t>(farthest_mm);
+    constexpr std::uint64_t absolute = ~(std::uint64_t{1} << 63);
+    std::uint64_t below_0 = 0;
+    for (const Point2& p : points)
+        below_0 |= (farthest - (std::bit_cast<std::uint64_t>(p.x) & absolute)) |
+                   (farthest - (std::bit_cast<std::uint64_t>(p.y) & absolute));
+    return (below_0 >> 63) != 0;
+}
+
+[[noreturn]] void refuse(const Layer& layer, const std::string& thing, double length) {
+    throw Error(ErrorKind::usage,
+                fmt::format("layer {}, {}: found {}; coordinates must be finite and within {} mm",
+                            layer.index, thing, length, farthest_mm));
+}
+
+void refuse_first_of(std::span<const Point2> points, const Layer& layer, const std::string& thing) {
+    for (const Point2& p : points)
+        if (is_too_far(p.x) || is_too_far(p.y))
+            refuse(layer, thing, is_too_far(p.x) ? p.x : p.y);
+}
+
+} // namespace
+
 void check(const Layer& layer) {
-    // Numbers are compared as integers, which have the same order as their absolute values, with NaN above
-    // all. This needs no branches and handles several numbers at a time.
-    const auto any_too_far = [](std::span<const Point2> points) {
-        constexpr std::uint64_t farthest = std::bit_cast<std::uint64_t>(farthest_mm);
-        constexpr std::uint64_t absolute = ~(std::uint64_t{1} << 63);
-        std::uint64_t below_0 = 0;
-        for (const Point2& p : points)
-            below_0 |= (farthest - (std::bit_cast<std::uint64_t>(p.x) & absolute)) |
-                       (farthest - (std::bit_cast<std::uint64_t>(p.y) & absolute));
-        return (below_0 >> 63) != 0;
-    };
-    const auto refuse = [&](const std::string& thing, double length) {
-        throw Error(ErrorKind::usage,
-                    fmt::format("layer {}, {}: found {}; coordinates must be finite and within {} mm",
-                                layer.index, thing, length, farthest_mm));
-    };
-    const auto refuse_first_of = [&](const std::string& thing, std::span<const Point2> points) {
-        for (const Point2& p : points)
-            if (is_too_far(p.x) || is_too_far(p.y))
-                refuse(thing, is_too_far(p.x) ? p.x : p.y);
-    };
     for (const double height : {layer.z, layer.bottom, layer.top})
         if (is_too_far(height))
-            refuse("its heights", height);
+            refuse(layer, "its heights", height);
     if (any_too_far(layer.points.span()))
         for (std::size_t i = 0; i < layer.contours(); ++i)
-            refuse_first_of(fmt::format("contour {}", i), layer.contour(i));
-    if (any_too_far(layer.hatches.span()))
-        refuse_first_of("its hatches", layer.hatches.span());
+            refuse_first_of(layer.contour(i), layer, fmt::format("contour {}", i));
+}
+
+void check(const ScanVectors& vectors) {
+    assert(vectors.polylines.size() == vectors.hatches.size());
+    for (std::size_t i = 0; i < vectors.exposures(); ++i) {
+        const Layer& layer = vectors.polylines[i];
+        const PointArray& hatches = vectors.hatches[i];
+        check(layer);
+        if (hatches.size() % 2 != 0)
+            throw Error(ErrorKind::usage,
+                        fmt::format("layer {} has {} points of hatch lines; each line has two", layer.index,
+                                    hatches.size()));
+        if (any_too_far(hatches.span()))
+            refuse_first_of(hatches.span(), layer, "its hatches");
+    }
 }
 
 void LayerBuilder::end_contour(bool closed) {

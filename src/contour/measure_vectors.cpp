@@ -17,8 +17,8 @@ ScanFigures& ScanFigures::operator+=(const ScanFigures& other) noexcept {
     return *this;
 }
 
-ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters,
-                            std::optional<Point2>& beam) {
+ScanFigures measure_vectors(const Layer& polylines, std::span<const Point2> hatches,
+                            const ParameterSet& parameters, std::optional<Point2>& beam) {
     ScanFigures figures;
     std::uint64_t marks = 0; // polylines: consecutive lines without a jump
     std::uint64_t jumps = 0;
@@ -37,19 +37,19 @@ ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters
         ++figures.vectors;
         beam = to;
     };
-    for (std::size_t i = 0; i < vectors.contours(); ++i) {
-        const std::span<const Point2> contour = vectors.contour(i);
+    for (std::size_t i = 0; i < polylines.contours(); ++i) {
+        const std::span<const Point2> contour = polylines.contour(i);
         if (contour.empty())
             continue;
         jump(contour.front());
         for (const Point2& p : contour.subspan(1))
             mark(p);
-        if (vectors.closed(i))
+        if (polylines.closed(i))
             mark(contour.front());
     }
-    for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
-        jump(vectors.hatches[i]);
-        mark(vectors.hatches[i + 1]);
+    for (std::size_t i = 0; i + 1 < hatches.size(); i += 2) {
+        jump(hatches[i]);
+        mark(hatches[i + 1]);
     }
     const auto seconds = [](double mm, double speed_mm_s) {
         return speed_mm_s > 0 ? mm / speed_mm_s : 0;

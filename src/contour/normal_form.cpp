@@ -1,5 +1,6 @@
 #include "lamella/contour/normal_form.hpp"
 
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/stack_hash.hpp"
 
 #include "core/pages.hpp"
@@ -107,7 +108,7 @@ class ContourSet {
         }
     }
 
-    // Returns the normal form; index, z, bottom and top are those of `header`; no hatches.
+    // Returns the normal form; index, z, bottom and top are those of `header`.
     Layer laid_out(const Layer& header) && {
         std::size_t size = 0;
         for (std::vector<Rotated>* const group : {&rings_, &chains_}) {
@@ -175,23 +176,16 @@ Layer normal_form(Layer layer) {
 
     ContourSet contours;
     contours.add(layer);
-    Layer result = std::move(contours).laid_out(layer);
-    result.hatches = std::move(layer.hatches);
-    return result;
+    return std::move(contours).laid_out(layer);
 }
 
 Layer merged(std::span<const Layer> layers) {
     if (layers.empty())
         return {};
     ContourSet contours;
-    std::vector<Point2> hatches;
-    for (const Layer& layer : layers) {
+    for (const Layer& layer : layers)
         contours.add(layer);
-        hatches.insert(hatches.end(), layer.hatches.begin(), layer.hatches.end());
-    }
-    Layer all = std::move(contours).laid_out(layers.front());
-    all.hatches = PointArray(std::move(hatches));
-    return all;
+    return std::move(contours).laid_out(layers.front());
 }
 
 bool same_contours(const Layer& a, const Layer& b) noexcept {
@@ -202,7 +196,9 @@ bool same_contours(const Layer& a, const Layer& b) noexcept {
            std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(Point2)) == 0;
 }
 
-std::uint64_t content_hash(const Layer& layer) noexcept {
+namespace {
+
+std::uint64_t hash_of(const Layer& layer, std::span<const Point2> hatches) noexcept {
     assert(layer.offsets.front() == 0 && layer.offsets.back() == layer.points.size());
     XXH3_state_t state;
     XXH3_64bits_reset(&state);
@@ -210,9 +206,23 @@ std::uint64_t content_hash(const Layer& layer) noexcept {
     XXH3_64bits_update(&state, counts.data(), sizeof counts);
     XXH3_64bits_update(&state, layer.offsets.data() + 1, layer.contours() * sizeof(std::uint64_t));
     XXH3_64bits_update(&state, layer.points.data(), layer.points.size() * sizeof(Point2));
-    if (!layer.hatches.empty())
-        XXH3_64bits_update(&state, layer.hatches.data(), layer.hatches.size() * sizeof(Point2));
+    if (!hatches.empty())
+        XXH3_64bits_update(&state, hatches.data(), hatches.size() * sizeof(Point2));
     return XXH3_64bits_digest(&state);
+}
+
+} // namespace
+
+std::uint64_t content_hash(const Layer& layer) noexcept {
+    return hash_of(layer, {});
+}
+
+std::uint64_t content_hash(const ScanVectors& vectors) noexcept {
+    assert(vectors.polylines.size() == vectors.hatches.size());
+    std::vector<std::uint64_t> hashes;
+    for (std::size_t i = 0; i < vectors.exposures(); ++i)
+        hashes.push_back(hash_of(vectors.polylines[i], vectors.hatches[i].span()));
+    return stack_hash(hashes);
 }
 
 std::uint64_t stack_hash(std::span<const std::uint64_t> layer_hashes) noexcept {

@@ -28,8 +28,7 @@ namespace {
 std::vector<std::string> hatched_labels(const LayerFile& file) {
     std::vector<std::string> labels;
     for (const LayerPart& part : file.parts)
-        if (std::any_of(part.layers.begin(), part.layers.end(),
-                        [](const Layer& layer) { return !layer.hatches.empty(); }))
+        if (part.hatch_lines() > 0)
             labels.push_back(part.label);
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
@@ -53,8 +52,10 @@ HatchedParts hatched_parts(const LayerFile& file, const std::vector<std::string>
 
 std::vector<Point2> ends_of(const std::vector<const LayerPart*>& parts, std::size_t plane) {
     std::vector<Point2> ends;
-    for (const LayerPart* const part : parts)
-        ends.insert(ends.end(), part->layers[plane].hatches.begin(), part->layers[plane].hatches.end());
+    for (const LayerPart* const part : parts) {
+        const std::span<const Point2> hatches = part->hatches_of(plane);
+        ends.insert(ends.end(), hatches.begin(), hatches.end());
+    }
     return ends;
 }
 
@@ -62,8 +63,8 @@ std::vector<Point2> ends_of(const std::vector<const LayerPart*>& parts, std::siz
 double moved_ends(const LayerFile& file) {
     double most = 0;
     for (const LayerPart& part : file.parts)
-        for (const Layer& layer : part.layers)
-            most = std::max(most, moved_point(layer.hatches.span(), file.rounding));
+        for (const PointArray& hatches : part.hatches)
+            most = std::max(most, moved_point(hatches.span(), file.rounding));
     return most;
 }
 
@@ -102,9 +103,9 @@ void compare_parameters(const LayerPart& first, const LayerPart& second, bool on
 std::vector<const LayerPart*> exposed_parts(const LayerFile& file) {
     std::vector<const LayerPart*> parts;
     for (const LayerPart& part : file.parts)
-        if (part.exposure && std::any_of(part.layers.begin(), part.layers.end(), [](const Layer& layer) {
-                return layer.contours() > 0 || !layer.hatches.empty();
-            }))
+        if (part.exposure &&
+            (part.hatch_lines() > 0 || std::any_of(part.layers.begin(), part.layers.end(),
+                                                   [](const Layer& layer) { return layer.contours() > 0; })))
             parts.push_back(&part);
     return parts;
 }
@@ -170,11 +171,20 @@ std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile&
     return pairs;
 }
 
+/// Returns the number of hatch lines of all parts on each plane; empty if there are none.
+std::vector<std::uint64_t> hatch_lines_of(const LayerFile& file) {
+    std::vector<std::uint64_t> lines;
+    for (const LayerPart& part : file.parts) {
+        lines.resize(std::max(lines.size(), part.hatches.size()));
+        for (std::size_t plane = 0; plane < part.hatches.size(); ++plane)
+            lines[plane] += part.hatches[plane].size() / 2;
+    }
+    return lines;
+}
+
 bool has_other_hatches(const LayerFile& file) {
-    return std::any_of(file.parts.begin(), file.parts.end(), [](const LayerPart& part) {
-        return !part.exposure && std::any_of(part.layers.begin(), part.layers.end(),
-                                             [](const Layer& layer) { return !layer.hatches.empty(); });
-    });
+    return std::any_of(file.parts.begin(), file.parts.end(),
+                       [](const LayerPart& part) { return !part.exposure && part.hatch_lines() > 0; });
 }
 
 /// Returns whether each exposure of a plane has the contours of its partner.
@@ -213,8 +223,9 @@ bool FileComparison::agree() const noexcept {
 FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                              std::optional<double> tolerance_mm, const Execution& execution) {
     const LayerStack stacks[2] = {first.merged(), second.merged()};
-    FileComparison result{.layers = compare(RoundedLayers{stacks[0], first.rounding},
-                                            {stacks[1], second.rounding}, tolerance_mm, execution),
+    const std::vector<std::uint64_t> lines[2] = {hatch_lines_of(first), hatch_lines_of(second)};
+    FileComparison result{.layers = compare(RoundedLayers{stacks[0], first.rounding, lines[0]},
+                                            {stacks[1], second.rounding, lines[1]}, tolerance_mm, execution),
                           .details = {},
                           .parameters = {},
                           .only_first = {},
@@ -271,8 +282,8 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                            details.hatch_distance_mm == 0 && details.exposed_alike &&
                            details.followed_alike && result.exposures_in_order;
         } else {
-            details.first_hatches = plane.first ? stacks[0][*plane.first].hatches.size() / 2 : 0;
-            details.second_hatches = plane.second ? stacks[1][*plane.second].hatches.size() / 2 : 0;
+            details.first_hatches = plane.first && !lines[0].empty() ? lines[0][*plane.first] : 0;
+            details.second_hatches = plane.second && !lines[1].empty() ? lines[1][*plane.second] : 0;
         }
     }
     return result;

@@ -27,7 +27,7 @@ bool can_be_shared(const std::string& path) {
     return path != "-" && (!std::filesystem::exists(status) || std::filesystem::is_regular_file(status));
 }
 
-std::string packed(std::span<const Layer> parts) {
+std::string packed(std::span<const Layer> parts, std::span<const PointArray> hatches) {
     Packer packer;
     packer.put(std::uint64_t{parts.size()});
     for (const Layer& layer : parts)
@@ -37,15 +37,19 @@ std::string packed(std::span<const Layer> parts) {
             .put(layer.top)
             .put(std::uint64_t{layer.rings})
             .put_all(std::span(layer.offsets))
-            .put_all(layer.points.span())
-            .put_all(layer.hatches.span());
+            .put_all(layer.points.span());
+    for (const PointArray& lines : hatches)
+        packer.put_all(lines.span());
     return packer.take();
 }
 
-std::vector<Layer> unpacked(const std::string& message) {
+/// Returns layers without hatch lines as vectors without them.
+ScanVectors unpacked(const std::string& message) {
     Unpacker unpacker(message);
-    std::vector<Layer> parts(unpacker.get<std::uint64_t>());
-    for (Layer& layer : parts) {
+    ScanVectors vectors;
+    vectors.polylines.resize(unpacker.get<std::uint64_t>());
+    vectors.hatches.resize(vectors.polylines.size());
+    for (Layer& layer : vectors.polylines) {
         layer.index = unpacker.get<std::uint64_t>();
         layer.z = unpacker.get<double>();
         layer.bottom = unpacker.get<double>();
@@ -53,9 +57,10 @@ std::vector<Layer> unpacked(const std::string& message) {
         layer.rings = unpacker.get<std::uint64_t>();
         layer.offsets = unpacker.get_all<std::uint64_t>();
         layer.points = PointArray(unpacker.get_all<Point2>());
-        layer.hatches = PointArray(unpacker.get_all<Point2>());
     }
-    return parts;
+    for (std::size_t i = 0; i < vectors.exposures() && !unpacker.empty(); ++i)
+        vectors.hatches[i] = PointArray(unpacker.get_all<Point2>());
+    return vectors;
 }
 
 /// Writes the bytes at offset `position` of an existing file; errors call it `name`.
@@ -105,22 +110,31 @@ JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Co
         page_ = open_layer_page(job.report.path, info, job.report.page);
 }
 
-std::function<void()> JobOutput::prepare(std::span<const Layer> parts) {
+template <class Plane, class Message>
+std::function<void()> JobOutput::prepared(const Plane& plane, const Message& message) {
     std::function<void()> to_file;
     if (writer_)
-        to_file = writer_->prepare(parts);
+        to_file = writer_->prepare(plane);
     else if (format_ != nullptr)
-        to_file = [this, message = packed(parts)] {
-            waiting_.add(message);
-            messages_.push_back(message.size());
+        to_file = [this, bytes = message()] {
+            waiting_.add(bytes);
+            messages_.push_back(bytes.size());
         };
     if (!page_)
         return to_file;
-    return [to_file = std::move(to_file), to_page = page_->prepare(parts)] {
+    return [to_file = std::move(to_file), to_page = page_->prepare(plane)] {
         if (to_file)
             to_file();
         to_page();
     };
+}
+
+std::function<void()> JobOutput::prepare(std::span<const Layer> parts) {
+    return prepared(parts, [&] { return packed(parts, {}); });
+}
+
+std::function<void()> JobOutput::prepare(const ScanVectors& vectors) {
+    return prepared(vectors, [&] { return packed(vectors.polylines, vectors.hatches); });
 }
 
 JobOutput::Written JobOutput::finish_file() {

@@ -36,6 +36,7 @@ class JobOutput {
 
     /// Works as LayerWriter::prepare, for all outputs.
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts);
+    [[nodiscard]] std::function<void()> prepare(const ScanVectors& vectors);
 
     /// Figures of the written file, once all layers of all processes have been passed on.
     struct Written {
@@ -49,6 +50,9 @@ class JobOutput {
     [[nodiscard]] bool has_page() const noexcept { return page_ != nullptr; }
 
   private:
+    /// Calls `message` if another process writes the plane.
+    template <class Plane, class Message>
+    [[nodiscard]] std::function<void()> prepared(const Plane& plane, const Message& message);
     void gather_losses();
     [[nodiscard]] std::vector<std::string> warnings_of_file();
     void send_layers();

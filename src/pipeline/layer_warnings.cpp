@@ -168,10 +168,8 @@ std::vector<std::string> MeshDoubts::texts() const {
 
 void ScanLosses::add(std::span<const Layer> parts, const InvertedRings& found) {
     ++layers;
-    for (const Layer& layer : parts) {
-        hatches += layer.hatches.size() / 2;
+    for (const Layer& layer : parts)
         open_chains += layer.open_chains();
-    }
     inverted.add(parts.front().z, parts.front().thickness(), found);
 }
 

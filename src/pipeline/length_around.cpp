@@ -110,7 +110,7 @@ double around_rows(const std::vector<HatchVector>& lines, double distance) {
 
 } // namespace
 
-double length_around(const PointArray& lines, double distance_mm) {
+double length_around(std::span<const Point2> lines, double distance_mm) {
     std::vector<HatchVector> left;
     for (std::size_t i = 0; i + 1 < lines.size(); i += 2)
         if (const double length = distance(lines[i], lines[i + 1]); length > 0)

@@ -78,7 +78,7 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .warnings = file.warnings};
     std::vector<LayerStack> contours;
     for (const LayerPart& part : file.parts) {
-        shard.parts.push_back({part.label, part_box(part.layers), part.exposure, part.support});
+        shard.parts.push_back({part.label, part_box(part.layers, part.hatches), part.exposure, part.support});
         if (!part.exposure)
             contours.push_back(part.layers);
     }
@@ -404,19 +404,22 @@ std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
     return parts;
 }
 
-/// Returns the layer of each part on a plane of a file; an empty layer if the file does not list the part.
-std::vector<Layer> plane_of(const LayerFile& file, std::size_t plane, const std::vector<PartInfo>& parts) {
+/// Returns the layer of each part on a plane of a file, with its hatch lines; an empty layer if the file does
+/// not list the part.
+ScanVectors plane_of(const LayerFile& file, std::size_t plane, const std::vector<PartInfo>& parts) {
     const Layer& any = file.parts.front().layers[plane];
-    std::vector<Layer> layers;
+    ScanVectors vectors;
     auto next = file.parts.begin();
     for (const PartInfo& part : parts) {
-        if (next != file.parts.end() && next->label == part.label)
-            layers.push_back((next++)->layers[plane]);
-        else
-            layers.push_back({.index = any.index, .z = any.z, .bottom = any.bottom, .top = any.top});
+        if (next != file.parts.end() && next->label == part.label) {
+            vectors.add(next->layers[plane], next->hatches.empty() ? PointArray() : next->hatches[plane]);
+            ++next;
+        } else {
+            vectors.add({.index = any.index, .z = any.z, .bottom = any.bottom, .top = any.top}, {});
+        }
     }
     assert(next == file.parts.end()); // parts_of keeps the order of each file
-    return layers;
+    return vectors;
 }
 
 void write_anew(const std::vector<ShardFile>& shards, const std::string& output, const LayerFormat& format,
@@ -448,14 +451,14 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
         const LayerStack& known = file.parts.front().layers;
         const std::uint64_t moved = next > known.front().index ? next - known.front().index : 0;
         for (std::size_t i = 0; i < known.size(); ++i) {
-            std::vector<Layer> plane = plane_of(file, i, parts);
-            for (Layer& layer : plane) {
+            ScanVectors plane = plane_of(file, i, parts);
+            for (Layer& layer : plane.polylines) {
                 layer.index += moved;
                 if (i == 0 && std::abs(layer.bottom - top) <= rounded)
                     layer.bottom = top;
             }
-            top = plane.front().top;
-            next = plane.front().index + 1;
+            top = plane.polylines.front().top;
+            next = plane.polylines.front().index + 1;
             writer->prepare(plane)();
         }
     }

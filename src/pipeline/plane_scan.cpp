@@ -1,8 +1,5 @@
 #include "pipeline/plane_scan.hpp"
 
-#include "lamella/contour/normal_form.hpp"
-#include "lamella/contour/stack_hash.hpp"
-
 #include "core/naming.hpp"
 #include "scan/vector_bytes.hpp"
 
@@ -41,8 +38,8 @@ std::vector<Exposure> plane_exposures(const std::vector<bool>& supports, const S
 
 PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
                         std::span<const std::string> names, const ScanStrategy& strategy,
-                        std::vector<InsetCache>& memories, const LayerLimits& limits) {
-    assert(supports.size() == plane.parts.size() && memories.size() == plane.parts.size());
+                        std::vector<InsetCache>& caches, const LayerLimits& limits) {
+    assert(supports.size() == plane.parts.size() && caches.size() == plane.parts.size());
     assert(names.size() == plane.parts.size());
     const std::vector<Exposure> each = plane_exposures(supports, strategy);
     const auto of_supports = static_cast<std::size_t>(
@@ -53,29 +50,29 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
     vectors.figures.resize(each.size());
     LayerLimits left = limits;
     std::optional<Point2> beam;
-    std::vector<std::uint64_t> hashes;
     for (std::size_t part = 0; part < plane.parts.size(); ++part) {
-        InsetCache* const memory = &memories[part];
-        std::vector<double> unreached;
-        std::vector<Layer> scanned = naming(names[part], [&] {
-            return supports[part] ? scan_support(plane.parts[part], strategy, memory, &unreached, left)
+        const ScanOptions options{.cache = &caches[part], .limits = left};
+        ScannedLayer scanned = naming(names[part], [&] {
+            return supports[part] ? scan_support(plane.parts[part], strategy, options)
                                   : scan(plane.parts[part], layers_of(part, plane.below),
-                                         layers_of(part, plane.above), strategy, memory, &unreached, left);
+                                         layers_of(part, plane.above), strategy, options);
         });
-        const double sum = std::accumulate(unreached.begin(), unreached.end(), 0.0);
+        const double sum = std::accumulate(scanned.unreached_mm2.begin(), scanned.unreached_mm2.end(), 0.0);
         vectors.unreached_mm2.push_back(sum > strategy.accepted_mm2 ? sum : 0);
         vectors.inverted.push_back(plane.parts[part].inverted());
         const std::size_t first = supports[part] ? of_supports : 0;
-        assert(scanned.size() == (supports[part] ? each.size() : of_supports) - first);
-        for (std::size_t i = 0; i < scanned.size(); ++i) {
-            vectors.figures[first + i] += measure_vectors(scanned[i], each[first + i].parameters, beam);
-            vectors.figures[first + i].unreached_mm2 += unreached[i];
-            hashes.push_back(content_hash(scanned[i]));
-            left = left.without(vector_bytes(scanned[i]));
-            vectors.layers.push_back(std::move(scanned[i]));
+        assert(scanned.vectors.exposures() == (supports[part] ? each.size() : of_supports) - first);
+        for (std::size_t i = 0; i < scanned.vectors.exposures(); ++i) {
+            const Layer& polylines = scanned.vectors.polylines[i];
+            const PointArray& hatches = scanned.vectors.hatches[i];
+            ScanFigures& figures = vectors.figures[first + i];
+            figures += measure_vectors(polylines, hatches.span(), each[first + i].parameters, beam);
+            figures.unreached_mm2 += scanned.unreached_mm2[i];
+            left = left.without(vector_bytes(polylines, hatches));
         }
+        vectors.vectors.append(std::move(scanned.vectors));
     }
-    vectors.hash = stack_hash(hashes);
+    vectors.hash = content_hash(vectors.vectors);
     return vectors;
 }
 

@@ -24,12 +24,12 @@ struct PlaneLayers {
 };
 
 struct PlaneVectors {
-    std::vector<Layer> layers;        ///< the exposures of each part, part by part
+    ScanVectors vectors;              ///< of the exposures of each part, part by part
     std::vector<ScanFigures> figures; ///< one for each of `plane_exposures`
     /// Area of each part that no vector reaches; 0 if the strategy accepts it.
     std::vector<double> unreached_mm2;
     std::vector<InvertedRings> inverted; ///< those of each part; no vectors are made of them
-    std::uint64_t hash = 0;              ///< of `layers`, in their order: see content_hash
+    std::uint64_t hash = 0;              ///< of `vectors`: see content_hash
 };
 
 /// Returns the exposures that figures are counted for: those of parts, then those of supports, if there are
@@ -38,10 +38,10 @@ struct PlaneVectors {
                                                     const ScanStrategy& strategy);
 
 /// Computes the scan vectors of all parts on a plane; see `scan`. The beam exposes one part after the other.
-/// `memories` and `names` have an entry for each part; a name begins errors and may be "". `limits` holds for
+/// `caches` and `names` have an entry for each part; a name begins errors and may be "". `limits` holds for
 /// all parts together.
 [[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
                                       std::span<const std::string> names, const ScanStrategy& strategy,
-                                      std::vector<InsetCache>& memories, const LayerLimits& limits);
+                                      std::vector<InsetCache>& caches, const LayerLimits& limits);
 
 } // namespace lamella

@@ -3,8 +3,8 @@
 #include "lamella/polygon/boolean.hpp"
 
 #include "core/executor.hpp"
+#include "core/ordered_stage.hpp"
 #include "core/stopwatch.hpp"
-#include "slicing/ordered_delivery.hpp"
 #include "slicing/plane_ranges.hpp"
 #include "slicing/shrunken_contours.hpp"
 
@@ -171,7 +171,7 @@ void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRang
           std::uint64_t points_in_flight, std::vector<ShapeLayers>& shapes, Executor& executor,
           ProgressMeter& progress) {
     const std::vector<std::uint32_t> first = first_on_the_way(plate, run, at_once, points_in_flight, shapes);
-    OrderedDelivery delivery(executor, progress);
+    OrderedStage delivery(executor, progress);
     executor.for_chunks(run.size(), 1, [&](std::size_t i, std::size_t, unsigned) {
         if (!delivery.wait_for(first[i]))
             return;

@@ -6,10 +6,10 @@
 #include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "core/naming.hpp"
+#include "core/ordered_stage.hpp"
 #include "core/stopwatch.hpp"
 #include "pipeline/layer_window.hpp"
 #include "pipeline/plane_scan.hpp"
-#include "slicing/ordered_delivery.hpp"
 #include "write/ordered_writer.hpp"
 
 #include <fmt/format.h>
@@ -97,7 +97,7 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
         unreached[plane.plane] =
             std::accumulate(vectors.unreached_mm2.begin(), vectors.unreached_mm2.end(), 0.0);
         result.hashes[plane.plane] = vectors.hash;
-        return writer->prepare(vectors.layers);
+        return writer->prepare(vectors.vectors);
     };
     LayerWindow window(
         {0, planes}, {0, planes}, strategy.downskin.layers, strategy.upskin.layers,
@@ -106,17 +106,12 @@ ScanResult scan_layers(const std::string& path, const LayerFormat& format, std::
         },
         write);
     ProgressMeter progress(execution, Stage::write, planes);
-    OrderedDelivery delivery(executor, progress);
-    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        const auto plane = static_cast<std::uint32_t>(i);
-        if (!delivery.wait_for(plane + 1 - std::min(plane + 1, workers)))
-            return;
+    run_in_order(executor, progress, planes, [&](std::uint64_t plane) {
         std::vector<Layer> layers;
         for (const LayerStack& part : parts)
             layers.push_back(part[plane]);
-        delivery.deliver(plane, window(plane, layers));
+        return window(static_cast<std::uint32_t>(plane), layers);
     });
-    executor.check_cancelled();
     progress.finish();
 
     for (std::uint32_t i = 0; i < planes; ++i)

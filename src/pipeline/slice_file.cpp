@@ -426,14 +426,14 @@ class LayerProcessor {
         return inverted;
     }
 
-    std::vector<Layer> vectors_of(const PlaneLayers& plane) {
+    ScanVectors vectors_of(const PlaneLayers& plane) {
         const Stopwatch scanning;
         PlaneVectors vectors = scan_plane(plane, supports_, names_, *job_.scan, memories_, limits_);
         count(scanning, scan_nanoseconds_);
         if (job_.steps.any() || !plate_.negatives.empty())
             vectors.inverted.clear(); // counted by inverted_of
         totals_.add(plane.parts.front().layer().index, vectors);
-        return std::move(vectors.layers);
+        return std::move(vectors.vectors);
     }
 
     const FileJob& job_;

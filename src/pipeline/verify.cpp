@@ -228,13 +228,13 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     Verification result;
     ContourFindings found;
     result.layers = layers.size();
+    result.hatches = options.hatch_lines;
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const LayerCheck& check = checks[i];
         found.add(check.found);
         result.contours += check.measure.contours;
         result.points += check.measure.points;
         result.volume_mm3 += check.measure.area_mm2 * layers[i].thickness();
-        result.hatches += layers[i].hatches.size() / 2;
         if (check.open_gaps.count > 0)
             result.open_layers.push_back({layers[i].index, layers[i].z, check.open_gaps});
     }

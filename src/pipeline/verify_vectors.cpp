@@ -180,7 +180,7 @@ class Slack {
     double share_more_ = 0;
 };
 
-double length_of(const PointArray& hatches) {
+double length_of(std::span<const Point2> hatches) {
     double length = 0;
     for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
         length += distance(hatches[i], hatches[i + 1]);
@@ -229,10 +229,10 @@ std::vector<HatchLine> longest_lines(const std::vector<Group>& groups, const Sca
         std::map<const HatchRule*, HatchLine> longest;
         for (const Group& group : groups)
             for (const LayerPart* const part : group.exposures) {
-                const Layer& vectors = part->layers[plane];
+                const std::span<const Point2> hatches = part->hatches_of(plane);
                 const HatchRule& rule = hatch_of(strategy, part->exposure->region);
-                for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2)
-                    if (const HatchLine line{&vectors.hatches[i], &rule, vectors.index};
+                for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
+                    if (const HatchLine line{&hatches[i], &rule, part->layers[plane].index};
                         line.length() > longest[&rule].length())
                         longest[&rule] = line;
             }
@@ -281,10 +281,11 @@ class VectorCheck {
             for (std::size_t i = 0; i < vectors.contours(); ++i)
                 of_contours += vectors.contour(i).size() - (vectors.closed(i) ? 0 : 1);
             found.contour_vectors += of_contours;
-            found.hatch_vectors += vectors.hatches.size() / 2;
-            all += of_contours + vectors.hatches.size() / 2;
+            const std::span<const Point2> hatches = part->hatches_of(plane);
+            found.hatch_vectors += hatches.size() / 2;
+            all += of_contours + hatches.size() / 2;
             if (options_.strategy)
-                check_lines(*part->exposure, vectors, found);
+                check_lines(*part->exposure, vectors, hatches, found);
         }
         if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0) {
             found.unbounded += all;
@@ -364,21 +365,22 @@ class VectorCheck {
                (exposure.region != ScanRegion::downskin || strategy.downskin.layers > 0);
     }
 
-    void check_lines(const Exposure& exposure, const Layer& vectors, PlaneCheck& found) const {
+    void check_lines(const Exposure& exposure, const Layer& layer, std::span<const Point2> hatches,
+                     PlaneCheck& found) const {
         const HatchRule& rule = hatch_of(*options_.strategy, exposure.region);
         // Lines of a contour run along the middle of thin walls.
         if (exposure.kind == VectorKind::contour &&
             contours_of(*options_.strategy, exposure.region).thin_walls == ThinWalls::line)
             return;
         const bool asked = asks_for_lines(exposure);
-        const AskedLines lines(rule, before_ + vectors.index, rounding_);
-        for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
-            const Point2& a = vectors.hatches[i];
-            const Point2& b = vectors.hatches[i + 1];
+        const AskedLines lines(rule, before_ + layer.index, rounding_);
+        for (std::size_t i = 0; i + 1 < hatches.size(); i += 2) {
+            const Point2& a = hatches[i];
+            const Point2& b = hatches[i + 1];
             if (distance(a, b) < rule.shortest - 2 * rounding_)
-                found.too_short.add(vectors, a);
+                found.too_short.add(layer, a);
             if (!asked || !lines.have(a, b))
-                found.misplaced.add(vectors, a);
+                found.misplaced.add(layer, a);
         }
     }
 
@@ -400,7 +402,7 @@ class VectorCheck {
                     edges,
                     std::max(0.0, deepest_line(*part->exposure, *options_.strategy) - bounds.depth) + grown +
                         tolerance_,
-                    part->layers[plane], found.misplaced);
+                    part->layers[plane], part->hatches_of(plane), found.misplaced);
             if (part == group.outermost && !options_.mesh)
                 continue;
             const Layer& vectors = part->layers[plane];
@@ -414,19 +416,21 @@ class VectorCheck {
                     followed.mark(contour.back(), contour.front());
             }
             Followed lines(edges, in_walls ? grown - tolerance_ : nearest, vectors, found.outside);
-            for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2)
-                lines.mark(vectors.hatches[i], vectors.hatches[i + 1]);
+            const std::span<const Point2> hatches = part->hatches_of(plane);
+            for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
+                lines.mark(hatches[i], hatches[i + 1]);
         }
     }
 
     /// Finds lines whose midpoints are farther within the material than `depth`.
-    static void find_in_thick(const EdgeTree& edges, double depth, const Layer& vectors, Finding& found) {
-        for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2) {
-            const Point2& a = vectors.hatches[i];
-            const Point2& b = vectors.hatches[i + 1];
+    static void find_in_thick(const EdgeTree& edges, double depth, const Layer& layer,
+                              std::span<const Point2> hatches, Finding& found) {
+        for (std::size_t i = 0; i + 1 < hatches.size(); i += 2) {
+            const Point2& a = hatches[i];
+            const Point2& b = hatches[i + 1];
             const Point2 middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
             if (edges.winding(middle) > 0 && edges.distance_squared(middle, depth * depth) > depth * depth)
-                found.add(vectors, a);
+                found.add(layer, a);
         }
     }
 
@@ -488,10 +492,10 @@ class VectorCheck {
                 continue;
             expect(exposure.region);
             const HatchRule& rule = hatch_of(strategy, exposure.region);
-            const double area = length_of(part->layers[plane].hatches) * rule.distance;
+            const double area = length_of(part->hatches_of(plane)) * rule.distance;
             covered += area;
             if (exposure.region == ScanRegion::upskin || exposure.region == ScanRegion::downskin) {
-                const double around = length_around(part->layers[plane].hatches, rule.distance);
+                const double around = length_around(part->hatches_of(plane), rule.distance);
                 around_skins += around;
                 over_others += around * (exposure.region == ScanRegion::upskin ? strategy.upskin.overlap
                                                                                : strategy.downskin.overlap);
@@ -539,7 +543,7 @@ class VectorCheck {
             const Layer positions = narrow_points(moved_inwards(section, 0), bounds.depth, contours, hatch);
             if (positions.rings > 0 && strokes.empty())
                 for (const LayerPart* const part : group.exposures)
-                    add_strokes(part->layers[plane],
+                    add_strokes(part->layers[plane], part->hatches_of(plane),
                                 2 * tolerance_ +
                                     (part->exposure->kind == VectorKind::hatch
                                          ? hatch_of(strategy, part->exposure->region).distance
@@ -643,9 +647,9 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
     double largest = 0;
     for (const Group& group : groups)
         for (const LayerPart* const part : group.exposures)
-            for (const Layer& layer : part->layers)
-                largest = std::max({largest, largest_coordinate(layer.points.span()),
-                                    largest_coordinate(layer.hatches.span())});
+            for (std::size_t i = 0; i < part->layers.size(); ++i)
+                largest = std::max({largest, largest_coordinate(part->layers[i].points.span()),
+                                    largest_coordinate(part->hatches_of(i))});
     // Tolerance of ends of lines and points of contours, each moved along both axes, and of arithmetic.
     const double rounding = std::sqrt(2.0) * options.granted().step_at(largest) + 0x1p-34 * largest;
 

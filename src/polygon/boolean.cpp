@@ -64,7 +64,7 @@ void drop_far(Shares& rings) {
     });
 }
 
-/// Builds a layer of these rings with the heights and open chains of `first`, without hatches.
+/// Builds a layer of these rings with the heights and open chains of `first`.
 Layer with_header_and_chains_of(const Layer& first, const Rings& rings) {
     Layer layer{.index = first.index, .z = first.z, .bottom = first.bottom, .top = first.top};
     std::vector<Point2> points;
@@ -92,9 +92,7 @@ Layer combined(const Layer& first, const Layer& second, BooleanOperation operati
         if (least == 1)
             drop_far(shares); // for these operations common rings cancel there, no matter what is around them
     } else if (same) {
-        Layer layer = fill(a, FillRule::positive, limits).layer;
-        layer.hatches = {};
-        return layer;
+        return fill(a, FillRule::positive, limits).layer;
     }
     Rings rings = std::move(shares.both);
     std::vector<Windings> turns(rings.size(), {1, 1});

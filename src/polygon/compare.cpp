@@ -61,7 +61,10 @@ std::vector<ComparedPlane> paired(const RoundedLayers& first, const RoundedLayer
             plane.first = i++;
         if (of_second)
             plane.second = j++;
-        if (together || layer.contours() > 0 || !layer.hatches.empty())
+        const RoundedLayers& stack = of_first ? first : second;
+        const std::size_t position = of_first ? *plane.first : *plane.second;
+        const bool hatched = !stack.hatch_lines.empty() && stack.hatch_lines[position] > 0;
+        if (together || layer.contours() > 0 || hatched)
             planes.push_back(plane);
     }
     return planes;

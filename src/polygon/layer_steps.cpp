@@ -32,7 +32,6 @@ LayerChanges& LayerChanges::operator+=(const LayerChanges& other) noexcept {
     rings_dropped += other.rings_dropped;
     rings_vanished += other.rings_vanished;
     points_dropped += other.points_dropped;
-    hatches_dropped += other.hatches_dropped;
     area_before_mm2 += other.area_before_mm2;
     area_after_mm2 += other.area_after_mm2;
     return *this;
@@ -85,9 +84,7 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes, co
         layer = std::move(simplified);
     }
     if (changed) {
-        layer.hatches = {};
         changes.changed_layers = 1;
-        changes.hatches_dropped = before.hatches.size() / 2;
         changes.area_before_mm2 = area(before);
         changes.area_after_mm2 = area(layer);
     }

@@ -309,25 +309,30 @@ LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
     return all;
 }
 
-/// Returns the layers of a part of `file` on all planes; empty on planes that it does not have.
-LayerStack on_planes(LayerStack layers, const LayerStack& planes, const std::string& file) {
-    LayerStack result = planes;
+/// Gives a part the layers of another part, of `file`, on all planes; they are empty on planes that it does
+/// not have.
+void put_on_planes(LayerPart from, const LayerStack& planes, const std::string& file, LayerPart& to) {
+    to.layers = planes;
+    if (!from.hatches.empty())
+        to.hatches.resize(planes.size());
     std::size_t next = 0;
-    for (Layer& plane : result) {
-        if (next == layers.size() || !same_height(layers[next].top, plane.top))
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        Layer& plane = to.layers[i];
+        if (next == from.layers.size() || !same_height(from.layers[next].top, plane.top))
             continue;
-        Layer& layer = layers[next++];
+        Layer& layer = from.layers[next];
         plane.points = layer.points;
         plane.offsets = std::move(layer.offsets);
         plane.rings = layer.rings;
-        plane.hatches = layer.hatches;
+        if (!from.hatches.empty())
+            to.hatches[i] = std::move(from.hatches[next]);
+        ++next;
     }
-    if (next != layers.size())
+    if (next != from.layers.size())
         throw Error(ErrorKind::input,
                     fmt::format("{}: found layers at z = {} mm that are thinner than {} mm; they cannot be "
                                 "apart",
-                                file, layers[next].top, ilt_one_plane_mm));
-    return result;
+                                file, from.layers[next].top, ilt_one_plane_mm));
 }
 
 } // namespace
@@ -412,10 +417,12 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
                     part.exposure->part += ' ' + label;
                 label = part.exposure->label();
             }
-            result.parts.push_back({std::move(label), {}, std::move(part.exposure)});
+            result.parts.push_back(
+                {.label = std::move(label), .layers = {}, .exposure = std::move(part.exposure)});
             check_part_planes(result, planes.size(), bytes);
-            limits.add_bytes(planes.size() * (sizeof(Layer) + of_empty_layer), file.path);
-            result.parts.back().layers = on_planes(std::move(part.layers), planes, file.path);
+            limits.add_bytes(planes.size() * (sizeof(Layer) + sizeof(PointArray) + of_empty_layer),
+                             file.path);
+            put_on_planes(std::move(part), planes, file.path, result.parts.back());
         }
     return result;
 }

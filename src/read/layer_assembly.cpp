@@ -59,7 +59,7 @@ void report_changed_order(std::span<const RawLayer> layers, LayerFile& file) {
                         counted(changed, "layer"), lowest));
 }
 
-/// What a plane of the file has of one part.
+/// The content of one part on a plane of the file.
 struct PartOfLayer {
     std::size_t points = 0;
     std::size_t contours = 0;
@@ -144,7 +144,7 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
     };
     for (LayerPart& part : file.parts)
         limits.make_room(part.layers, 1, location);
-    limits.add_bytes_at(file.parts.size() * of_empty_layer, location);
+    limits.add_bytes_at(file.parts.size() * (of_empty_layer + sizeof(PointArray)), location);
     // Until `raw` is freed there are two copies of its contents, and a third one of contours while they are
     // put into normal form.
     constexpr std::uint64_t of_contour = 64;
@@ -191,9 +191,11 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
         layer.top = top;
         if (!points[i].empty())
             layer.points = PointArray(std::move(points[i]));
-        if (!hatches[i].empty())
-            layer.hatches = PointArray(std::move(hatches[i]));
         LayerPart& to = file.parts[i];
+        if (!hatches[i].empty() || !to.hatches.empty()) {
+            to.hatches.resize(to.layers.size());
+            to.hatches.emplace_back(std::move(hatches[i]));
+        }
         to.layers.push_back(to.exposure ? std::move(layer) : normal_form(std::move(layer)));
     }
     limits.give_back(0, copies);

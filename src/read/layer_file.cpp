@@ -70,11 +70,28 @@ LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions&
 
 std::uint64_t memory_of(const LayerFile& file) noexcept {
     std::uint64_t bytes = 0;
-    for (const LayerPart& part : file.parts)
+    for (const LayerPart& part : file.parts) {
         for (const Layer& layer : part.layers)
             bytes += sizeof(Layer) + of_empty_layer + layer.offsets.size() * sizeof(std::uint64_t) +
-                     (layer.points.size() + layer.hatches.size()) * sizeof(Point2);
+                     layer.points.size() * sizeof(Point2);
+        for (const PointArray& hatches : part.hatches)
+            bytes += sizeof(PointArray) + hatches.size() * sizeof(Point2);
+    }
     return bytes;
+}
+
+std::uint64_t LayerPart::hatch_lines() const noexcept {
+    std::uint64_t points = 0;
+    for (const PointArray& of_layer : hatches)
+        points += of_layer.size();
+    return points / 2;
+}
+
+ScanVectors LayerFile::plane(std::size_t position) const {
+    ScanVectors vectors;
+    for (const LayerPart& part : parts)
+        vectors.add(part.layers[position], part.hatches.empty() ? PointArray() : part.hatches[position]);
+    return vectors;
 }
 
 LayerStack LayerFile::merged() const {

@@ -31,12 +31,12 @@ struct HatchArea {
 /// whose size is an integer multiple of the distance meet without a gap and without an overlap.
 [[nodiscard]] double line_phase(HatchPattern pattern) noexcept;
 
-/// Returns the hatch lines, two points each, as in Layer::hatches. The index of `within` defines the rotation
-/// of the lines and, with the seed, the order of islands. `bare`, if given, becomes whether there may be
-/// spots narrower than `surely_hatched` without a line within its distance: pieces that are too short have no
-/// lines, and strips may lie between two lines. Spots of a total area of a few squares of half the distance
-/// do not count. Throws the errors of HatchLines, and Error{limit} for more than 2^28 stripes or islands in a
-/// row, 2^22 pieces of lines or 2^21 islands, or more pieces or islands than the budget allows.
+/// Returns the hatch lines, two points each, as in ScanVectors::hatches. The index of `within` defines the
+/// rotation of the lines and, with the seed, the order of islands. `bare`, if given, becomes whether there
+/// may be spots narrower than `surely_hatched` without a line within its distance: pieces that are too short
+/// have no lines, and strips may lie between two lines. Spots of a total area of a few squares of half the
+/// distance do not count. Throws the errors of HatchLines, and Error{limit} for more than 2^28 stripes or
+/// islands in a row, 2^22 pieces of lines or 2^21 islands, or more pieces or islands than the budget allows.
 [[nodiscard]] PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed,
                                bool* bare = nullptr, const LayerBudget& budget = {});
 

@@ -128,14 +128,14 @@ void InsetCache::keep(std::shared_ptr<const Insets> insets) {
 namespace {
 
 std::shared_ptr<const InsetCache::Insets> insets_of(const Layer& layer, const ScanStrategy& strategy,
-                                                    InsetCache* memory, const LayerLimits& limits) {
+                                                    InsetCache* cache, const LayerLimits& limits) {
     std::vector<double> distances = distances_of(strategy);
-    if (memory != nullptr)
-        if (auto last = memory->last(); last && last->fit(layer, strategy, distances))
+    if (cache != nullptr)
+        if (auto last = cache->last(); last && last->fit(layer, strategy, distances))
             return last;
     auto insets = std::make_shared<const InsetCache::Insets>(layer, strategy, std::move(distances), limits);
-    if (memory != nullptr)
-        memory->keep(insets);
+    if (cache != nullptr)
+        cache->keep(insets);
     return insets;
 }
 
@@ -157,16 +157,16 @@ PointArray pieces_of(const std::vector<std::vector<Point2>>& lines) {
 }
 
 /// Returns all vectors of a layer, by its exposures.
-std::vector<Stroke> strokes_of(const std::vector<Layer>& vectors, std::span<const Exposure> all,
+std::vector<Stroke> strokes_of(const ScanVectors& vectors, std::span<const Exposure> all,
                                const ScanStrategy& strategy, const LayerBudget& budget) {
     std::uint64_t count = 0;
-    for (const Layer& layer : vectors)
-        count += layer.points.size() + layer.hatches.size() / 2;
+    for (std::size_t i = 0; i < vectors.exposures(); ++i)
+        count += vectors.polylines[i].points.size() + vectors.hatches[i].size() / 2;
     budget.need(count, sizeof(Stroke), "scan vectors");
     std::vector<Stroke> strokes;
     strokes.reserve(count);
-    for (std::size_t i = 0; i < vectors.size(); ++i)
-        add_strokes(vectors[i],
+    for (std::size_t i = 0; i < vectors.exposures(); ++i)
+        add_strokes(vectors.polylines[i], vectors.hatches[i].span(),
                     all[i].kind == VectorKind::hatch ? hatch_of(strategy, all[i].region).distance
                                                      : contour_reach(strategy.contours),
                     strokes);
@@ -219,12 +219,13 @@ void ScanLayer::share_points(const ScanLayer& other) {
         layer_.points = other.layer_.points;
 }
 
-std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
-                        std::span<const ScanLayer> above, const ScanStrategy& strategy, InsetCache* memory,
-                        std::vector<double>* unreached, const LayerLimits& limits) {
+ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
+                  std::span<const ScanLayer> above, const ScanStrategy& strategy,
+                  const ScanOptions& options) {
     check_strategy(strategy);
+    const LayerLimits& limits = options.limits;
     const Layer& layer = scanned.layer();
-    const auto insets = insets_of(layer, strategy, memory, limits);
+    const auto insets = insets_of(layer, strategy, options.cache, limits);
     const Skin downskin(scanned, below, strategy.downskin, limits);
     const Skin upskin(scanned, above, strategy.upskin, limits);
     LayerBudget budget(limits, layer.index, layer.z); // reduced by the vectors made so far
@@ -254,12 +255,12 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
         return hatch(area, rule, strategy.seed, &bare, budget);
     };
     const std::vector<Exposure> all = exposures(strategy, {});
-    std::vector<Layer> result;
-    const auto add = [&](Layer vectors) {
-        budget.need((vectors.points.size() + vectors.hatches.size()) / 2, 2 * bytes_of_vector_point,
-                    "scan vectors", "a larger `hatch.distance`");
-        budget = budget.without(vector_bytes(vectors));
-        result.push_back(std::move(vectors));
+    ScanVectors result;
+    const auto add = [&](Layer polylines, PointArray hatches) {
+        budget.need((polylines.points.size() + hatches.size()) / 2, 2 * bytes_of_vector_point, "scan vectors",
+                    "a larger `hatch.distance`");
+        budget = budget.without(vector_bytes(polylines, hatches));
+        result.add(std::move(polylines), std::move(hatches));
     };
     std::vector<Layer> bare(all.size()); // areas that each exposure may not reach
     std::size_t innermost =
@@ -268,9 +269,8 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
         const Exposure& exposure = all[i];
         if (exposure.kind == VectorKind::contour) {
             const Layer rings = inset(contour_depth(strategy.contours, exposure.contour));
-            Layer contours = followed(rings, strategy.contours, exposure.contour, strategy.seed);
-            contours.hatches = pieces_of(insets->lines[exposure.contour - 1]);
-            add(std::move(contours));
+            add(followed(rings, strategy.contours, exposure.contour, strategy.seed),
+                pieces_of(insets->lines[exposure.contour - 1]));
             bare[i] = insets->narrow[exposure.contour - 1];
             if (exposure.contour == strategy.contours.count &&
                 strategy.contours.thin_walls == ThinWalls::line)
@@ -278,9 +278,8 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
             continue;
         }
         bool may_be_bare = false;
-        Layer lines = with_header_of(layer, {});
-        lines.hatches = hatched(exposure.region, may_be_bare);
-        add(std::move(lines));
+        PointArray lines = hatched(exposure.region, may_be_bare);
+        add(with_header_of(layer, {}), std::move(lines));
         Layer positions = insets->narrow.back();
         if (may_be_bare) {
             const HatchRule& rule = hatch_of(strategy, exposure.region);
@@ -306,23 +305,21 @@ std::vector<Layer> scan(const ScanLayer& scanned, std::span<const ScanLayer> bel
         if (!lines.empty()) {
             std::vector<std::vector<Point2>> walls = insets->lines[strategy.contours.count - 1];
             walls.insert(walls.end(), lines.begin(), lines.end());
-            result[innermost].hatches = pieces_of(walls);
+            result.hatches[innermost] = pieces_of(walls);
             strokes = strokes_of(result, all, strategy, budget);
         }
     }
-    if (unreached != nullptr) {
-        unreached->assign(all.size(), 0);
-        for (std::size_t i = 0; i < all.size(); ++i)
-            (*unreached)[i] = unreached_area(bare[i], strokes, budget);
-    }
-    return result;
+    std::vector<double> unreached;
+    for (const Layer& area : bare)
+        unreached.push_back(unreached_area(area, strokes, budget));
+    assert(result.exposures() == all.size() && unreached.size() == all.size());
+    return {std::move(result), std::move(unreached)};
 }
 
 // A support is scanned as a part without skins, by its own rules.
-std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy, InsetCache* memory,
-                                std::vector<double>* unreached, const LayerLimits& limits) {
+ScannedLayer scan_support(const ScanLayer& layer, const ScanStrategy& strategy, const ScanOptions& options) {
     check_strategy(strategy); // so that errors name fields of supports
-    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), memory, unreached, limits);
+    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), options);
 }
 
 } // namespace lamella

@@ -206,14 +206,15 @@ double contour_reach(const ContourRule& rule) noexcept {
     return rule.count > 1 ? std::max(rule.beam_offset, rule.distance / 2) : rule.beam_offset;
 }
 
-void add_strokes(const Layer& vectors, double reach, std::vector<Stroke>& strokes) {
-    for (std::size_t i = 0; i < vectors.rings; ++i) {
-        const std::span<const Point2> ring = vectors.contour(i);
+void add_strokes(const Layer& polylines, std::span<const Point2> hatches, double reach,
+                 std::vector<Stroke>& strokes) {
+    for (std::size_t i = 0; i < polylines.rings; ++i) {
+        const std::span<const Point2> ring = polylines.contour(i);
         for (std::size_t p = 0; p < ring.size(); ++p)
             strokes.push_back({ring[p], ring[p + 1 < ring.size() ? p + 1 : 0], reach});
     }
-    for (std::size_t i = 0; i + 1 < vectors.hatches.size(); i += 2)
-        strokes.push_back({vectors.hatches[i], vectors.hatches[i + 1], reach});
+    for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
+        strokes.push_back({hatches[i], hatches[i + 1], reach});
 }
 
 double unreached_area(const Layer& positions, std::span<const Stroke> strokes, const LayerBudget& budget) {

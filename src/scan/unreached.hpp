@@ -36,7 +36,8 @@ struct Stroke {
 };
 
 /// Appends the vectors of a layer.
-void add_strokes(const Layer& vectors, double reach, std::vector<Stroke>& strokes);
+void add_strokes(const Layer& polylines, std::span<const Point2> hatches, double reach,
+                 std::vector<Stroke>& strokes);
 
 /// Returns the area of these rings that no stroke reaches, mm^2, measured along lines half of the shortest
 /// reach apart. Exact if nothing or everything is reached. O(points + lines), plus for each stroke the lines

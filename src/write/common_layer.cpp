@@ -98,9 +98,9 @@ void for_each_contour(const Layer& layer, Sequence sequence, const Write& write)
 }
 
 template <class Format>
-void for_each_part(std::span<const Layer> parts, const Format& format) {
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        format(parts[i], first_part + static_cast<int>(i));
+void for_each_part(const PlaneView& plane, const Format& format) {
+    for (std::size_t i = 0; i < plane.layers.size(); ++i)
+        format(plane.layers[i], plane.hatches_of(i), first_part + static_cast<int>(i));
 }
 
 // The list of one command, on a grid: a polyline or, without a direction, hatch lines. It is passed by value
@@ -157,17 +157,17 @@ class CommonLayerWriter : public SequentialWriter {
     // Calls put(listed) for each contour of each part that snapping to the grid preserves, and for its hatch
     // lines.
     template <class Put>
-    void for_each_on_grid(const WriterGrid& grid, std::span<const Layer> parts, const Put& put) const {
+    void for_each_on_grid(const WriterGrid& grid, const PlaneView& plane, const Put& put) const {
         std::vector<GridPoint> scratch;
-        for_each_part(parts, [&](const Layer& layer, int part) {
+        for_each_part(plane, [&](const Layer& layer, std::span<const Point2> hatches, int part) {
             for_each_contour(layer, sequence_of(part), [&](std::span<const Point2> contour, bool closed) {
                 const double area = closed ? ring_area(contour) : 0;
                 const auto points = grid.snap(contour, closed, area, layer.index, scratch);
                 if (!points.empty())
                     put(Listed{part, layer.index, points, closed ? direction_of(area) : Direction::open});
             });
-            if (!layer.hatches.empty()) {
-                const std::vector<GridPoint> ends = grid.snap_lines(layer.hatches.span(), layer.index);
+            if (!hatches.empty()) {
+                const std::vector<GridPoint> ends = grid.snap_lines(hatches, layer.index);
                 if (!ends.empty())
                     put(Listed{part, layer.index, ends, {}});
             }
@@ -196,8 +196,8 @@ class AsciiWriter final : public CommonLayerWriter {
         return fmt::format("$$LAYER/{}\n", position_text(offset.top, units_));
     }
 
-    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
-        for_each_on_grid(grid_, parts, [&](const Listed& listed) { put_command(listed, out); });
+    void format(const PlaneView& plane, ByteBuffer& out) const override {
+        for_each_on_grid(grid_, plane, [&](const Listed& listed) { put_command(listed, out); });
     }
 
     std::string tail() override { return "$$GEOMETRYEND\n"; }
@@ -272,27 +272,27 @@ class LongWriter final : public CommonLayerWriter {
         return layer_start(checked_height(offset, [this](double mm) { return height_of(mm, units_); }));
     }
 
-    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
-        for_each_part(parts, [&](const Layer& layer, int part) {
+    void format(const PlaneView& plane, ByteBuffer& out) const override {
+        for_each_part(plane, [&](const Layer& layer, std::span<const Point2> hatches, int part) {
             // Reserves all the space at once: most layers lose no point.
             static_cast<void>(out.room(layer.contours() * (long_header + float_point_size) +
                                        layer.points.size() * float_point_size));
             for_each_contour(layer, sequence_of(part), [&](std::span<const Point2> contour, bool closed) {
                 put_polyline(part, contour, closed, layer.index, out);
             });
-            put_hatches(part, layer, out);
+            put_hatches(part, hatches, layer.index, out);
         });
     }
 
-    void put_hatches(int part, const Layer& layer, ByteBuffer& out) const {
-        if (layer.hatches.empty())
+    void put_hatches(int part, std::span<const Point2> hatches, std::uint64_t layer, ByteBuffer& out) const {
+        if (hatches.empty())
             return;
-        char* const header = out.room(hatches_header + layer.hatches.size() * float_point_size);
+        char* const header = out.room(hatches_header + hatches.size() * float_point_size);
         char* const points = header + hatches_header;
-        const std::size_t listed = floats_.put_lines(layer.hatches.span(), layer.index, points);
+        const std::size_t listed = floats_.put_lines(hatches, layer, points);
         if (listed == 0)
             return;
-        put_long_header(header, part, {}, listed / 2, layer.index);
+        put_long_header(header, part, {}, listed / 2, layer);
         out.end_at(points + listed * float_point_size);
     }
 
@@ -382,8 +382,8 @@ class ShortWriter final : public CommonLayerWriter {
         return layer_start(height);
     }
 
-    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
-        for_each_on_grid(grid_, parts, [&](const Listed& listed) { put_command(listed, out); });
+    void format(const PlaneView& plane, ByteBuffer& out) const override {
+        for_each_on_grid(grid_, plane, [&](const Listed& listed) { put_command(listed, out); });
     }
 
     void check_short(std::span<const GridPoint> points, std::uint64_t layer) const {

@@ -61,11 +61,11 @@ class GeoJsonWriter final : public SequentialWriter {
         return place.position == 0 ? "\n" : ",\n";
     }
 
-    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
-        for (std::size_t part = 0; part < parts.size(); ++part) {
+    void format(const PlaneView& plane, ByteBuffer& out) const override {
+        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
             if (part > 0)
                 out.append(",\n");
-            format_part(parts[part], part, out);
+            format_part(plane.layers[part], part, out);
         }
     }
 

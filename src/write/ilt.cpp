@@ -156,13 +156,13 @@ class IltWriter final : public OrderedWriter {
         std::vector<FileExtent> waiting;
     };
 
-    Write formatted(std::span<const Layer> parts) override {
+    Write formatted(const PlaneView& plane) override {
         std::vector<std::function<void()>> writes;
         for (std::size_t i = 0; i < sections_.size(); ++i) {
-            std::vector<Layer> layers;
+            ScanVectors vectors;
             for (const std::size_t part : sections_[i].parts)
-                layers.push_back(parts[part]);
-            writes.push_back(entries_[i].writer->prepare(layers));
+                vectors.add(plane.layers[part], plane.hatches.empty() ? PointArray() : plane.hatches[part]);
+            writes.push_back(entries_[i].writer->prepare(vectors));
         }
         return [this, writes = std::move(writes)](const PlanePosition& offset) {
             check_apart(offset);

@@ -84,11 +84,11 @@ class ImageStackWriter final : public OrderedWriter {
     std::uint64_t bytes() const noexcept override { return folder_ ? folder_->bytes() : archive_->bytes(); }
 
   private:
-    Write formatted(std::span<const Layer> parts) override {
-        LayerImage image = images_.image(parts);
+    Write formatted(const PlaneView& plane) override {
+        LayerImage image = images_.image(plane.layers);
         // In a folder each layer has a file of its own, so it is written here and not in order.
         if (folder_)
-            folder_->write(image_name(parts.front().index), image.file->view());
+            folder_->write(image_name(plane.layers.front().index), image.file->view());
         return [this, image = std::move(image)](const PlanePosition& offset) {
             if (archive_)
                 archive_->add_ready(image_name(offset.index), ZipMethod::stored, image.in_zip());

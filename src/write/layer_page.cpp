@@ -55,7 +55,7 @@ struct Image {
 constexpr std::size_t most_marks = 1000;
 
 /// Fills in the figures and defects of a plane, and appends the locations of the first crossings.
-void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, PlaneFacts& facts,
+void look_at(const PlaneView& plane, std::span<const PartInfo> parts, PlaneFacts& facts,
              std::vector<Point2>& positions) {
     const auto look_for_crossings = [&](const Layer& layer) {
         const Crossings crossings = find_crossings(layer, most_marks - positions.size());
@@ -65,14 +65,15 @@ void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, Pla
     };
     std::optional<Point2> beam;
     std::vector<Layer> bounding; // layers that bound material: the parts are checked together
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        const Layer& layer = layers[i];
-        facts.hatches += layer.hatches.size() / 2;
+    for (std::size_t i = 0; i < plane.layers.size(); ++i) {
+        const Layer& layer = plane.layers[i];
+        const std::span<const Point2> hatches = plane.hatches_of(i);
+        facts.hatches += hatches.size() / 2;
         if (parts[i].exposure) {
             look_for_crossings(layer);
             // Vectors do not bound material: their rings have no area and need not be nested, and their
             // chains are open by intent.
-            facts.scan += measure_vectors(layer, parts[i].exposure->parameters, beam);
+            facts.scan += measure_vectors(layer, hatches, parts[i].exposure->parameters, beam);
             facts.measure.contours += layer.contours();
             facts.measure.points += layer.points.size();
             continue;
@@ -97,8 +98,8 @@ void look_at(std::span<const Layer> layers, std::span<const PartInfo> parts, Pla
 /// contours keep their order, since the page shows the order of scan vectors.
 class Thinning {
   public:
-    Thinning(std::span<const Layer> parts, double step_mm)
-        : layers_(parts.begin(), parts.end()), step_mm_(step_mm) {}
+    Thinning(const PlaneView& plane, double step_mm)
+        : layers_(plane.layers.begin(), plane.layers.end()), hatches_(plane.hatches), step_mm_(step_mm) {}
 
     /// Drops hatches first. Later calls simplify to a tolerance of one step, then to four times the previous
     /// one, at which curves keep half of their points. Drops specks as soon as the tolerance is visible.
@@ -114,24 +115,22 @@ class Thinning {
         tolerance_mm_ = tolerance;
     }
     [[nodiscard]] bool at_end() const noexcept { return tolerance_mm_ >= most_steps * step_mm_; }
-    [[nodiscard]] std::span<const Layer> layers() const noexcept { return layers_; }
+    [[nodiscard]] PlaneView plane() const noexcept { return {layers_, hatches_}; }
     [[nodiscard]] double tolerance_mm() const noexcept { return tolerance_mm_; }
 
   private:
     /// Drops the hatches; returns whether there were any.
     bool drop_hatches() {
-        bool any = false;
-        for (Layer& layer : layers_) {
-            any = any || !layer.hatches.empty();
-            layer.hatches = {};
-        }
-        return any;
+        const std::span<const PointArray> hatches = std::exchange(hatches_, {});
+        return std::any_of(hatches.begin(), hatches.end(),
+                           [](const PointArray& lines) { return !lines.empty(); });
     }
 
     static constexpr double steps_of_specks = 7.5;
     static constexpr double most_steps = 512; // a hundredth of the part
 
     std::vector<Layer> layers_;
+    std::span<const PointArray> hatches_;
     double step_mm_;
     double tolerance_mm_ = 0;
 };
@@ -190,19 +189,19 @@ class Budget {
 
 /// Returns versions of a plane: the whole plane, then versions with less detail each, until one costs at most
 /// `thinned`, or little is gained and it costs at most four times as much.
-std::vector<Image> images_of(std::span<const Layer> parts, std::span<const PartInfo> infos,
+std::vector<Image> images_of(const PlaneView& whole, std::span<const PartInfo> infos,
                              std::span<const Point2> positions, const PageGrid& grid, const Cost& thinned) {
-    const auto image = [&](std::span<const Layer> layers, double tolerance) {
+    const auto image = [&](const PlaneView& plane, double tolerance) {
         Image made{.bytes = {}, .tolerance_mm = tolerance};
-        made.bytes = deflated(layer_numbers(layers, infos, positions, grid, made.shown).view());
-        for (const Layer& layer : layers) {
+        made.bytes = deflated(layer_numbers(plane, infos, positions, grid, made.shown).view());
+        for (const Layer& layer : plane.layers)
             made.contours_shown += layer.contours();
-            made.hatches_shown += layer.hatches.size() / 2;
-        }
+        for (const PointArray& hatches : plane.hatches)
+            made.hatches_shown += hatches.size() / 2;
         return made;
     };
-    std::vector<Image> images{image(parts, 0)};
-    Thinning thinning(parts, grid.step_mm);
+    std::vector<Image> images{image(whole, 0)};
+    Thinning thinning(whole, grid.step_mm);
     const Cost most{most_shares * thinned.bytes, thinned.points};
     bool saves = true;
     const auto shows_nothing = [](const Image& made) {
@@ -213,7 +212,7 @@ std::vector<Image> images_of(std::span<const Layer> parts, std::span<const PartI
         if (!saves && cost.within(most))
             break; // many small rings remain: a larger page is better than a crude one
         thinning.coarsen();
-        images.push_back(image(thinning.layers(), thinning.tolerance_mm()));
+        images.push_back(image(thinning.plane(), thinning.tolerance_mm()));
         const Cost next = cost_of(images.back());
         saves = next.bytes < cost.bytes / 10 * 9 || next.points < cost.points / 10 * 9;
         cost = next;
@@ -319,16 +318,13 @@ class PageWriter final : public LayerPageWriter {
 
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) override {
         order_.check_parts(parts);
-        PlaneFacts facts{.position = plane_position(parts)};
-        std::vector<Point2> positions;
-        look_at(parts, parts_, facts, positions);
-        return
-            [this, facts, images = images_of(parts, parts_, positions, grid_, budget_.thinned())]() mutable {
-                order_.next(facts.position);
-                write(facts, images);
-            };
+        return prepare_view({parts});
     }
 
+    [[nodiscard]] std::function<void()> prepare(const ScanVectors& vectors) override {
+        order_.check_parts(vectors);
+        return prepare_view({vectors.polylines, vectors.hatches});
+    }
     void add_notes(PageNotes notes) override {
         std::move(notes.sections.begin(), notes.sections.end(), std::back_inserter(notes_.sections));
         std::move(notes.locations.begin(), notes.locations.end(), std::back_inserter(notes_.locations));
@@ -362,6 +358,17 @@ class PageWriter final : public LayerPageWriter {
     }
 
   private:
+    [[nodiscard]] std::function<void()> prepare_view(const PlaneView& plane) {
+        PlaneFacts facts{.position = plane_position(plane.layers)};
+        std::vector<Point2> positions;
+        look_at(plane, parts_, facts, positions);
+        return
+            [this, facts, images = images_of(plane, parts_, positions, grid_, budget_.thinned())]() mutable {
+                order_.next(facts.position);
+                write(facts, images);
+            };
+    }
+
     [[nodiscard]] bool has_vectors() const {
         return std::any_of(parts_.begin(), parts_.end(),
                            [](const PartInfo& part) { return part.exposure.has_value(); });

@@ -7,6 +7,7 @@
 #include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
+#include "core/ordered_stage.hpp"
 #include "system/atomic_file.hpp"
 #include "write/layer_writers.hpp"
 #include "write/ordered_writer.hpp"
@@ -16,11 +17,9 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
+#include <cassert>
 #include <cmath>
-#include <condition_variable>
 #include <filesystem>
-#include <mutex>
 #include <utility>
 
 namespace lamella {
@@ -221,11 +220,11 @@ class LimitedWriter final : public LayerWriter {
           most_bytes_(options.most_bytes), strict_(options.strict) {}
 
     std::function<void()> prepare(std::span<const Layer> parts) override {
-        std::function<void()> write = writer_->prepare(parts);
-        return [this, write = std::move(write)] {
-            write();
-            check_bytes(path_, bytes(), most_bytes_);
-        };
+        return limited(writer_->prepare(parts));
+    }
+
+    std::function<void()> prepare(const ScanVectors& vectors) override {
+        return limited(writer_->prepare(vectors));
     }
 
     void finish() override {
@@ -247,6 +246,13 @@ class LimitedWriter final : public LayerWriter {
     void add_losses(const WriteLosses& above) override { writer_->add_losses(above); }
 
   private:
+    std::function<void()> limited(std::function<void()> write) {
+        return [this, write = std::move(write)] {
+            write();
+            check_bytes(path_, bytes(), most_bytes_);
+        };
+    }
+
     std::unique_ptr<LayerWriter> writer_;
     std::string path_;
     bool keeps_cuts_;
@@ -270,12 +276,18 @@ void check_warnings(const std::string& path, const std::vector<std::string>& war
         throw Error(ErrorKind::defect, fmt::format("{}: {}", name_of_output(path), warnings.front()));
 }
 
-Box3 part_box(std::span<const Layer> layers) noexcept {
+Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches) noexcept {
+    assert(hatches.empty() || hatches.size() == layers.size());
     Box3 box;
-    for (const Layer& layer : layers)
-        for (const PointArray* points : {&layer.points, &layer.hatches})
-            for (const Point2& p : *points)
-                box.add(Point3{p.x, p.y, layer.z});
+    const auto add = [&box](const PointArray& points, double z) {
+        for (const Point2& p : points)
+            box.add(Point3{p.x, p.y, z});
+    };
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        add(layers[i].points, layers[i].z);
+        if (!hatches.empty())
+            add(hatches[i], layers[i].z);
+    }
     if (!box.empty()) {
         box.min.z = layers.front().bottom;
         box.max.z = layers.back().top;
@@ -328,32 +340,23 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
     return std::make_unique<LimitedWriter>(std::move(writer), path, format, options);
 }
 
-void write_planes(LayerWriter& writer, std::size_t planes,
-                  const std::function<std::vector<Layer>(std::size_t)>& parts_of,
-                  const Execution& execution) {
+namespace {
+
+/// Calls `prepare(plane)` on all threads, and the functions that it returns in ascending order.
+template <class Prepare>
+void write_in_order(std::size_t planes, const Prepare& prepare, const Execution& execution) {
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::write, planes);
-    std::mutex mutex;
-    std::condition_variable moved;
-    std::size_t next = 0;
-    executor.for_chunks(planes, 1, [&](std::uint64_t plane, std::uint64_t, unsigned) {
-        const std::function<void()> write = writer.prepare(parts_of(plane));
-        std::unique_lock lock(mutex);
-        // Planes are handed out in ascending order, so another thread is at work on the next one, or has
-        // failed.
-        while (next != plane) {
-            if (executor.stopping())
-                return;
-            moved.wait_for(lock, std::chrono::milliseconds(50)); // a stop request does not notify
-        }
-        if (write)
-            write();
-        progress.add(1);
-        ++next;
-        moved.notify_all();
-    });
-    executor.check_cancelled();
+    run_in_order(executor, progress, planes, prepare);
     progress.finish();
+}
+
+} // namespace
+
+void write_planes(LayerWriter& writer, std::size_t planes,
+                  const std::function<ScanVectors(std::size_t)>& plane_of, const Execution& execution) {
+    write_in_order(
+        planes, [&](std::size_t i) { return writer.prepare(plane_of(i)); }, execution);
 }
 
 std::vector<std::string> write_layers(const std::string& path, std::span<const Layer> layers,
@@ -373,8 +376,18 @@ std::vector<std::string> write_layers(const std::string& path, const LayerFormat
                                       std::span<const Layer> layers, const LayerFileInfo& info,
                                       const LayerWriteOptions& options, const Execution& execution) {
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
-    write_planes(
-        *writer, layers.size(), [&](std::size_t i) { return std::vector<Layer>{layers[i]}; }, execution);
+    write_in_order(
+        layers.size(), [&](std::size_t i) { return writer->prepare(layers[i]); }, execution);
+    writer->finish();
+    return writer->warnings();
+}
+
+std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
+                                      std::span<const ScanVectors> planes, const LayerFileInfo& info,
+                                      const LayerWriteOptions& options, const Execution& execution) {
+    const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
+    write_in_order(
+        planes.size(), [&](std::size_t i) { return writer->prepare(planes[i]); }, execution);
     writer->finish();
     return writer->warnings();
 }
@@ -385,14 +398,14 @@ std::vector<std::string> write_layers(const std::string& path, const LayerFormat
     check_same_planes(parts, info);
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
     const std::size_t planes = parts.empty() ? 0 : parts.front().size();
-    const auto parts_of = [&](std::size_t i) {
+    const auto prepare = [&](std::size_t i) {
         std::vector<Layer> plane;
         plane.reserve(parts.size());
         for (const LayerStack& part : parts)
             plane.push_back(part[i]);
-        return plane;
+        return writer->prepare(plane);
     };
-    write_planes(*writer, planes, parts_of, execution);
+    write_in_order(planes, prepare, execution);
     writer->finish();
     return writer->warnings();
 }

@@ -114,11 +114,11 @@ class LayeredSvgWriter final : public SequentialWriter {
             height_text(place.top - place.bottom));
     }
 
-    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
-        for (std::size_t part = 0; part < parts.size(); ++part) {
+    void format(const PlaneView& plane, ByteBuffer& out) const override {
+        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
             if (!part_heads_.empty())
                 out.append(part_heads_[part]);
-            format_part(parts[part], exposed_[part], out);
+            format_part(plane.layers[part], exposed_[part], out);
             if (!part_heads_.empty())
                 out.append("    </g>\n");
         }
@@ -189,10 +189,10 @@ class SvgLayersWriter final : public OrderedWriter {
 
   private:
     // Each layer has a file of its own, so it is written here and not in order.
-    Write formatted(std::span<const Layer> parts) override {
+    Write formatted(const PlaneView& plane) override {
         const std::shared_ptr<ByteBuffer> text = buffer();
-        format(parts, *text);
-        directory_.write(fmt::format("layer_{:05}.svg", parts.front().index), text->view());
+        format(plane.layers, *text);
+        directory_.write(fmt::format("layer_{:05}.svg", plane.layers.front().index), text->view());
         return [](const PlanePosition&) {
         };
     }

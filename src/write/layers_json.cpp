@@ -48,9 +48,10 @@ class LayersJsonWriter final : public SequentialWriter {
                            shortest_text(place.bottom), shortest_text(place.top));
     }
 
-    void format(std::span<const Layer> parts, ByteBuffer& out) const override {
-        for (std::size_t part = 0; part < parts.size(); ++part) {
-            const Layer& layer = parts[part];
+    void format(const PlaneView& plane, ByteBuffer& out) const override {
+        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
+            const Layer& layer = plane.layers[part];
+            const std::span<const Point2> hatches = plane.hatches_of(part);
             out.append(part == 0 ? "{\"rings\":[" : ",{\"rings\":[");
             put_contours(layer, 0, layer.rings, out);
             if (layer.open_chains() > 0) {
@@ -58,9 +59,9 @@ class LayersJsonWriter final : public SequentialWriter {
                 put_contours(layer, layer.rings, layer.contours(), out);
             }
             out.append("]");
-            if (!layer.hatches.empty()) {
+            if (!hatches.empty()) {
                 out.append(",\"hatches\":");
-                put_numbers(layer.hatches.span(), out);
+                put_numbers(hatches, out);
             }
             out.append("}");
         }

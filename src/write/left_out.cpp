@@ -67,15 +67,15 @@ void WriteLosses::add(const WriteLosses& above) noexcept {
     rounded.add(above.rounded);
 }
 
-WriteLosses losses_of_plane(std::span<const Layer> parts) {
-    const Layer& plane = parts.front();
+WriteLosses losses_of_plane(const PlaneView& view) {
+    const Layer& plane = view.layers.front();
     WriteLosses losses;
     for (WriteLosses::Kind* kind : {&losses.open_chains, &losses.hatches, &losses.gaps, &losses.cuts})
         kind->z = plane.z;
-    for (const Layer& layer : parts) {
+    for (const Layer& layer : view.layers)
         losses.open_chains.count += layer.open_chains();
-        losses.hatches.count += layer.hatches.size() / 2;
-    }
+    for (const PointArray& hatches : view.hatches)
+        losses.hatches.count += hatches.size() / 2;
     const auto is_at = [&](double z) {
         return std::abs(plane.z - z) <= same_height_mm;
     };

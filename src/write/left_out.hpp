@@ -5,6 +5,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/write/layer_writer.hpp"
 
+#include "write/plane_view.hpp"
 #include "write/rounding_loss.hpp"
 
 #include <cstdint>
@@ -34,7 +35,7 @@ struct Holds {
 };
 
 /// Counts the content of a plane that some formats cannot hold, except for gaps and rounding.
-[[nodiscard]] WriteLosses losses_of_plane(std::span<const Layer> parts);
+[[nodiscard]] WriteLosses losses_of_plane(const PlaneView& plane);
 
 /// Counts content that a file leaves out. Planes must be added in ascending z.
 class LeftOut {

@@ -75,20 +75,25 @@ class NpzWriter final : public OrderedWriter {
     std::uint64_t bytes() const noexcept override { return zip_.bytes() + waiting_; }
 
   private:
-    Write formatted(std::span<const Layer> parts) override {
+    Write formatted(const PlaneView& plane) override {
         std::vector<std::pair<Layer, std::uint32_t>> layers; // each with the checksum of its points
-        for (const Layer& layer : parts)
+        for (const Layer& layer : plane.layers)
             layers.emplace_back(layer, crc32_of(bytes_in(layer.points.span())));
-        return [this, layers = std::move(layers)](const PlanePosition& place) {
+        std::vector<PointArray> all_hatches(plane.hatches.begin(), plane.hatches.end());
+        all_hatches.resize(layers.size());
+        return [this, layers = std::move(layers),
+                all_hatches = std::move(all_hatches)](const PlanePosition& place) {
             planes_.push_back(place);
-            for (const auto& [layer, crc] : layers) {
+            for (std::size_t part = 0; part < layers.size(); ++part) {
+                const auto& [layer, crc] = layers[part];
+                const PointArray& hatches = all_hatches[part];
                 const std::string_view bytes = bytes_in(layer.points.span());
                 zip_.append({bytes, bytes.size(), crc});
                 for (std::size_t i = 1; i < layer.offsets.size(); ++i)
                     offsets_.push_back(points_ + static_cast<std::int64_t>(layer.offsets[i]));
                 points_ += static_cast<std::int64_t>(layer.points.size());
-                const std::uint64_t lines = layer.hatches.size() / 2;
-                hatches_.add(bytes_in(layer.hatches.span()));
+                const std::uint64_t lines = hatches.size() / 2;
+                hatches_.add(bytes_in(hatches.span()));
                 waiting_ += layer.contours() * bytes_of_contour + lines * bytes_of_hatch;
                 counts_.push_back({layer.contours(), layer.rings, lines});
             }

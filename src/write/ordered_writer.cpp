@@ -49,18 +49,23 @@ PlaneOrder::PlaneOrder(const LayerFileInfo& info, Ascending ascending)
       announced_(info.chunk != nullptr ? info.chunk->layers : info.layers), parts_(info.parts.size()),
       ascending_(ascending) {}
 
+void PlaneOrder::check_number(std::size_t parts) const {
+    if (parts != parts_)
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} parts were announced and a plane has layers of {}", parts_, parts));
+}
+
 void PlaneOrder::check_parts(std::span<const Layer> parts) const {
-    if (parts.size() != parts_)
-        throw Error(ErrorKind::usage, fmt::format("{} parts were announced and a plane has layers of {}",
-                                                  parts_, parts.size()));
-    for (const Layer& layer : parts) {
-        if (!known_finite_)
+    check_number(parts.size());
+    if (!known_finite_)
+        for (const Layer& layer : parts)
             check(layer);
-        if (layer.hatches.size() % 2 != 0)
-            throw Error(ErrorKind::usage,
-                        fmt::format("layer {} has {} points of hatch lines; each line has two", layer.index,
-                                    layer.hatches.size()));
-    }
+}
+
+void PlaneOrder::check_parts(const ScanVectors& vectors) const {
+    check_number(vectors.exposures());
+    if (!known_finite_)
+        check(vectors);
 }
 
 void PlaneOrder::next(PlanePosition& plane) {
@@ -83,8 +88,17 @@ void PlaneOrder::end() const {
 
 std::function<void()> OrderedWriter::prepare(std::span<const Layer> parts) {
     order_.check_parts(parts);
-    return [this, write = formatted(parts), losses = losses_of_plane(parts),
-            offset = plane_position(parts)]() mutable {
+    return prepare_view({parts});
+}
+
+std::function<void()> OrderedWriter::prepare(const ScanVectors& vectors) {
+    order_.check_parts(vectors);
+    return prepare_view({vectors.polylines, vectors.hatches});
+}
+
+std::function<void()> OrderedWriter::prepare_view(const PlaneView& plane) {
+    return [this, write = formatted(plane), losses = losses_of_plane(plane),
+            offset = plane_position(plane.layers)]() mutable {
         losses.gaps.count = order_.adjoins(offset) ? 0 : 1;
         order_.next(offset);
         left_out_.add(losses);

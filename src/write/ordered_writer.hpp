@@ -7,6 +7,7 @@
 #include "contour/same_height.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/left_out.hpp"
+#include "write/plane_view.hpp"
 
 #include <cmath>
 #include <cstdint>
@@ -46,9 +47,10 @@ class PlaneOrder {
   public:
     explicit PlaneOrder(const LayerFileInfo& info, Ascending ascending = Ascending::z);
 
-    /// Throws Error{usage} if there is not one layer for each part, if a length is not finite, or if an end
-    /// of a hatch line is missing.
+    /// Throws Error{usage} if there is not one layer for each part, or if a length is not finite.
     void check_parts(std::span<const Layer> parts) const;
+    /// Does the same for scan vectors; see `check(const ScanVectors&)`.
+    void check_parts(const ScanVectors& vectors) const;
     /// Sets the position of the plane. Throws Error{usage} if it does not follow the one before.
     void next(PlanePosition& plane);
     /// Throws Error{usage} if there were more or fewer planes than announced.
@@ -61,6 +63,8 @@ class PlaneOrder {
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
   private:
+    void check_number(std::size_t parts) const;
+
     bool is_chunk_;
     bool known_finite_;
     std::uint64_t before_; ///< number of planes of the file below this range
@@ -75,6 +79,7 @@ class PlaneOrder {
 class OrderedWriter : public LayerWriter {
   public:
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) final;
+    [[nodiscard]] std::function<void()> prepare(const ScanVectors& vectors) final;
     void finish() final;
     [[nodiscard]] std::vector<std::string> warnings() const override { return left_out_.warnings(); }
     [[nodiscard]] WriteLosses losses() const final { return left_out_.losses(); }
@@ -89,7 +94,7 @@ class OrderedWriter : public LayerWriter {
           left_out_(holds, names_parts(info) ? std::span(info.parts) : std::span<const PartInfo>()) {}
 
     /// Formats a plane. Called from any threads.
-    [[nodiscard]] virtual Write formatted(std::span<const Layer> parts) = 0;
+    [[nodiscard]] virtual Write formatted(const PlaneView& plane) = 0;
     /// Ends the file and gives it its name. Called once, after the last plane.
     virtual void end_file() = 0;
 
@@ -98,6 +103,8 @@ class OrderedWriter : public LayerWriter {
     [[nodiscard]] std::shared_ptr<ByteBuffer> buffer() { return buffers_->take(); }
 
   private:
+    [[nodiscard]] std::function<void()> prepare_view(const PlaneView& plane);
+
     /// Returns whether this writer warns about parts: among several ranges of a file only the first one does.
     static bool names_parts(const LayerFileInfo& info) noexcept {
         return info.chunk == nullptr || info.chunk->before == 0;

@@ -225,14 +225,14 @@ class OvfWriter final : public OrderedWriter {
     std::uint64_t bytes() const noexcept override { return file_.bytes(); }
 
   private:
-    Write formatted(std::span<const Layer> parts) override {
+    Write formatted(const PlaneView& plane) override {
         auto blocks = std::make_shared<Blocks>(Blocks{buffer(), {}});
-        for (std::size_t part = 0; part < parts.size(); ++part) {
-            const Layer& layer = parts[part];
+        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
+            const Layer& layer = plane.layers[part];
             BlockWriter writer(floats_, layer.index, *blocks);
             for (std::size_t i = 0; i < layer.contours(); ++i)
                 writer.put_contour(layer.contour(i), layer.closed(i), ends_of_blocks_[part]);
-            writer.put_hatches(layer.hatches.span(), ends_of_blocks_[part]);
+            writer.put_hatches(plane.hatches_of(part), ends_of_blocks_[part]);
         }
         return [this, blocks](const PlanePosition& offset) {
             if (offset.position == 0) {

@@ -21,8 +21,8 @@ void add_way(GridPoint at, std::span<const GridPoint> points, NumberBytes& out) 
 }
 
 /// Adds the counts of rings, chains and hatch lines, and the contours; returns the number of their points.
-std::uint64_t add_contours(const Layer& layer, bool vectors, const WriterGrid& grid, GridPoint origin,
-                           NumberBytes& out) {
+std::uint64_t add_contours(const Layer& layer, std::size_t hatch_lines, bool vectors, const WriterGrid& grid,
+                           GridPoint origin, NumberBytes& out) {
     NumberBytes contours;
     std::uint64_t rings = 0;
     std::uint64_t chains = 0;
@@ -47,7 +47,7 @@ std::uint64_t add_contours(const Layer& layer, bool vectors, const WriterGrid& g
     }
     out.add(rings);
     out.add(chains);
-    out.add(layer.hatches.size() / 2);
+    out.add(hatch_lines);
     out.append(contours);
     return shown;
 }
@@ -69,18 +69,21 @@ PageGrid page_grid(const Box3& box) {
     return grid;
 }
 
-NumberBytes layer_numbers(std::span<const Layer> layers, std::span<const PartInfo> parts,
+NumberBytes layer_numbers(const PlaneView& plane, std::span<const PartInfo> parts,
                           std::span<const Point2> places, const PageGrid& grid, std::uint64_t& shown) {
     const WriterGrid snapping(grid.step_mm);
     NumberBytes out;
     shown = 0;
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        const Layer& layer = layers[i];
-        shown += add_contours(layer, parts[i].exposure.has_value(), snapping, grid.origin, out);
-        add_way(grid.origin, snapping.snap_points(layer.hatches.span(), layer.index), out);
+    for (std::size_t i = 0; i < plane.layers.size(); ++i) {
+        const Layer& layer = plane.layers[i];
+        const std::span<const Point2> hatches = plane.hatches_of(i);
+        shown += add_contours(layer, hatches.size() / 2, parts[i].exposure.has_value(), snapping, grid.origin,
+                              out);
+        add_way(grid.origin, snapping.snap_points(hatches, layer.index), out);
     }
     out.add(places.size());
-    add_way(grid.origin, snapping.snap_points(places, layers.empty() ? 0 : layers.front().index), out);
+    add_way(grid.origin, snapping.snap_points(places, plane.layers.empty() ? 0 : plane.layers.front().index),
+            out);
     return out;
 }
 

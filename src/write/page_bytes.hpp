@@ -3,11 +3,11 @@
 // Data that the scripts of a page decode: integers of variable length, compressed, as text. docs/viewer.md
 // describes the format; viewer/src/data/ has its reader.
 
-#include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "write/grid.hpp"
+#include "write/plane_view.hpp"
 
 #include <cstdint>
 #include <span>
@@ -53,7 +53,7 @@ struct PageGrid {
 /// these; at the end the locations. A contour is the count of its points and the differences from point to
 /// point; its first one is relative to that of the contour before. `shown` counts the points of the contours.
 /// Scan vectors are all kept, even if points coincide: each line is executed.
-[[nodiscard]] NumberBytes layer_numbers(std::span<const Layer> layers, std::span<const PartInfo> parts,
+[[nodiscard]] NumberBytes layer_numbers(const PlaneView& plane, std::span<const PartInfo> parts,
                                         std::span<const Point2> places, const PageGrid& grid,
                                         std::uint64_t& shown);
 

@@ -20,9 +20,9 @@ void SequentialWriter::append_bytes(std::string_view bytes) {
     chunk_->put(bytes);
 }
 
-OrderedWriter::Write SequentialWriter::formatted(std::span<const Layer> parts) {
+OrderedWriter::Write SequentialWriter::formatted(const PlaneView& plane) {
     const std::shared_ptr<ByteBuffer> text = buffer();
-    format(parts, *text);
+    format(plane, *text);
     return [this, text](const PlanePosition& place) {
         append_bytes(layer_header(place));
         append_bytes(text->view());

@@ -115,14 +115,14 @@ class Sl1Writer final : public OrderedWriter {
     std::uint64_t bytes() const noexcept override { return archive_.bytes(); }
 
   private:
-    Write formatted(std::span<const Layer> parts) override {
-        return
-            [this, image = images_.image(parts), seen = relief_.spans(parts)](const PlanePosition& offset) {
-                relief_.add(seen);
-                count(offset, image.covered * display_.pixel_mm2());
-                archive_.add_ready(fmt::format("{}{:05}.png", job_, offset.position), ZipMethod::stored,
-                                   image.in_zip());
-            };
+    Write formatted(const PlaneView& plane) override {
+        return [this, image = images_.image(plane.layers),
+                seen = relief_.spans(plane.layers)](const PlanePosition& offset) {
+            relief_.add(seen);
+            count(offset, image.covered * display_.pixel_mm2());
+            archive_.add_ready(fmt::format("{}{:05}.png", job_, offset.position), ZipMethod::stored,
+                               image.in_zip());
+        };
     }
 
     void end_file() override {

@@ -110,9 +110,9 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     }
 
   private:
-    Write formatted(std::span<const Layer> parts) override {
+    Write formatted(const PlaneView& plane) override {
         const std::shared_ptr<ByteBuffer> text = buffer();
-        put_layer(parts, *text);
+        put_layer(plane, *text);
         auto chunk = std::make_shared<package_3mf::Chunk>(compressed(text->view()));
         chunk->bytes += deflate_end;
         return [this, chunk](const PlanePosition& offset) {
@@ -154,11 +154,11 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
     }
 
     /// Writes the parts and profiles of vectors on a layer, which counts them from 1.
-    void put_header(std::span<const Layer> parts, ByteBuffer& out) const {
+    void put_header(const PlaneView& plane, ByteBuffer& out) const {
         std::set<std::size_t> of_parts;
         std::set<std::size_t> profiles;
-        for (std::size_t part = 0; part < parts.size(); ++part)
-            if (parts[part].contours() > 0 || parts[part].hatches.size() > 0) {
+        for (std::size_t part = 0; part < plane.layers.size(); ++part)
+            if (plane.layers[part].contours() > 0 || !plane.hatches_of(part).empty()) {
                 of_parts.insert(keys_.keys[part].part);
                 profiles.insert(profile_of(part));
             }
@@ -171,12 +171,12 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
         out.append("</profiles>\n");
     }
 
-    void put_layer(std::span<const Layer> parts, ByteBuffer& out) const {
-        put_header(parts, out);
+    void put_layer(const PlaneView& plane, ByteBuffer& out) const {
+        put_header(plane, out);
         out.append("<segments>\n");
         std::vector<GridPoint> scratch;
-        for (std::size_t part = 0; part < parts.size(); ++part) {
-            const Layer& layer = parts[part];
+        for (std::size_t part = 0; part < plane.layers.size(); ++part) {
+            const Layer& layer = plane.layers[part];
             const std::string refers = fmt::format("profileid=\"{}\" partid=\"{}\"", profile_of(part) + 1,
                                                    keys_.keys[part].part + 1);
             for (std::size_t i = 0; i < layer.contours(); ++i) {
@@ -187,7 +187,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
                     put_segment(closed ? "loop" : "polyline", refers, points, {"<point x=\"", "\" y=\""},
                                 layer, out);
             }
-            if (const auto lines = grid_.snap_lines(layer.hatches.span(), layer.index); !lines.empty())
+            if (const auto lines = grid_.snap_lines(plane.hatches_of(part), layer.index); !lines.empty())
                 put_segment("hatch", refers, lines, {"<hatch x1=\"", "\" y1=\"", "\" x2=\"", "\" y2=\""},
                             layer, out);
         }

@@ -116,8 +116,12 @@ LayerStack cup(Point2 centre) {
 
 struct Job {
     LayerFileInfo info;
-    std::vector<LayerStack> parts;
+    std::vector<LayerPart> parts;
 };
+
+LayerPart part_of(LayerStack layers) {
+    return {.label = {}, .layers = std::move(layers)};
+}
 
 /// The scan vectors of two parts and of a support, and what is said of them.
 Job scanned() {
@@ -141,23 +145,30 @@ Job scanned() {
             const std::vector<ScanLayer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
             const std::vector<ScanLayer> above(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                                                layers.end());
-            std::vector<Layer> vectors = part.support ? scan_support(layers[i], strategy())
-                                                      : scan(layers[i], below, above, strategy());
-            for (std::size_t k = 0; k < vectors.size(); ++k)
-                job.parts[first + k].push_back(std::move(vectors[k]));
+            ScanVectors vectors = (part.support ? scan_support(layers[i], strategy())
+                                                : scan(layers[i], below, above, strategy()))
+                                      .vectors;
+            for (std::size_t k = 0; k < vectors.exposures(); ++k) {
+                job.parts[first + k].layers.push_back(std::move(vectors.polylines[k]));
+                job.parts[first + k].hatches.push_back(std::move(vectors.hatches[k]));
+            }
         }
     }
-    job.info.layers = job.parts.front().size();
-    job.info.bottom = job.parts.front().front().bottom;
+    job.info.layers = job.parts.front().layers.size();
+    job.info.bottom = job.parts.front().layers.front().bottom;
     job.info.box.add(Point3{-20, -20, job.info.bottom});
-    job.info.box.add(Point3{20, 20, job.parts.front().back().top});
+    job.info.box.add(Point3{20, 20, job.parts.front().layers.back().top});
     return job;
 }
 
 std::string written(const char* format, const Job& job, std::vector<std::string>* warnings = nullptr) {
     const TemporaryFolder folder;
+    const LayerFile file{.path = {}, .format = {}, .parts = job.parts};
+    std::vector<ScanVectors> planes;
+    for (std::size_t i = 0; i < job.info.layers; ++i)
+        planes.push_back(file.plane(i));
     std::vector<std::string> said =
-        write_layers(folder.file("out"), layer_format(format, ""), job.parts, job.info);
+        write_layers(folder.file("out"), layer_format(format, ""), planes, job.info);
     if (warnings != nullptr)
         *warnings = std::move(said);
     return file_bytes(folder.file("out"));
@@ -220,13 +231,13 @@ TEST(ScanFormats, GiveBackVectorsInTheirOrderAndWhatIsSaidOfThem) {
             ASSERT_EQ(found.layers.size(), job.info.layers) << format.name;
             for (std::size_t i = 0; i < found.layers.size(); ++i) {
                 const Layer& layer = found.layers[i];
-                const Layer& original = job.parts[part][i];
+                const Layer& original = job.parts[part].layers[i];
                 EXPECT_NEAR(layer.bottom, original.bottom, 1e-5) << format.name;
                 EXPECT_NEAR(layer.top, original.top, 1e-5) << format.name;
                 EXPECT_EQ(layer.rings, original.rings) << format.name;
                 EXPECT_EQ(layer.offsets, original.offsets) << format.name;
                 expect_points(layer.points.span(), original.points.span(), format);
-                expect_points(layer.hatches.span(), original.hatches.span(), format);
+                expect_points(found.hatches_of(i), job.parts[part].hatches_of(i), format);
             }
         }
     }
@@ -271,17 +282,17 @@ TEST(ScanFormats, AreWrittenAgainAsTheyWereRead) {
         again.info.bottom = back.parts.front().layers.front().bottom;
         for (const LayerPart& part : back.parts) {
             again.info.parts.push_back({part.label, {}, part.exposure});
-            again.parts.push_back(part.layers);
+            again.parts.push_back(part);
         }
         const LayerFile twice = read(written(format.name, again));
         ASSERT_EQ(twice.parts.size(), back.parts.size());
         for (std::size_t part = 0; part < back.parts.size(); ++part)
             for (std::size_t i = 0; i < job.info.layers; ++i) {
-                const Layer& a = twice.parts[part].layers[i];
-                const Layer& b = back.parts[part].layers[i];
-                EXPECT_TRUE(same_contours(a, b)) << format.name;
-                EXPECT_TRUE(
-                    std::equal(a.hatches.begin(), a.hatches.end(), b.hatches.begin(), b.hatches.end()))
+                const LayerPart& a = twice.parts[part];
+                const LayerPart& b = back.parts[part];
+                EXPECT_TRUE(same_contours(a.layers[i], b.layers[i])) << format.name;
+                EXPECT_TRUE(std::equal(a.hatches_of(i).begin(), a.hatches_of(i).end(),
+                                       b.hatches_of(i).begin(), b.hatches_of(i).end()))
                     << format.name;
             }
     }
@@ -294,7 +305,7 @@ Job job_of(const Exposure& exposure, const std::function<void(LayerBuilder&)>& a
     Job job;
     job.info = {.box = {{0, 0, 0}, {9, 9, 1}}, .layers = 1, .bottom = 0, .parts = {}};
     job.info.parts.push_back({exposure.label(), {}, exposure});
-    job.parts.push_back({builder.finish_as_added(0, 0.5, 0, 1)});
+    job.parts.push_back(part_of({builder.finish_as_added(0, 0.5, 0, 1)}));
     return job;
 }
 
@@ -328,13 +339,13 @@ TEST(ScanFormats, KeepPartsOfOneLabelApart) {
             builder.add_point(p);
         builder.end_contour(true);
         job.info.parts.push_back({.label = "bracket"});
-        job.parts.push_back({builder.finish(0, 0.5, 0, 1)});
+        job.parts.push_back(part_of({builder.finish(0, 0.5, 0, 1)}));
     }
     for (const ScanFormat& format : scan_formats()) {
         const LayerFile back = read(written(format.name, job));
         ASSERT_EQ(back.parts.size(), 3U) << format.name;
         for (std::size_t part = 0; part < back.parts.size(); ++part)
-            EXPECT_EQ(back.parts[part].layers.at(0).points[0].x, job.parts[part][0].points[0].x)
+            EXPECT_EQ(back.parts[part].layers.at(0).points[0].x, job.parts[part].layers[0].points[0].x)
                 << format.name;
     }
 }
@@ -356,8 +367,8 @@ TEST(ScanFormats, KeepExposuresOfPartsOfOneLabelApart) {
             std::multiset<std::size_t> hatches; // in whatever order the format has parts
             std::multiset<std::size_t> expected;
             for (std::size_t i = 0; i < back.parts.size(); ++i) {
-                hatches.insert(back.parts[i].layers[2].hatches.size());
-                expected.insert(job.parts[i][2].hatches.size());
+                hatches.insert(back.parts[i].hatches_of(2).size());
+                expected.insert(job.parts[i].hatches_of(2).size());
             }
             EXPECT_EQ(hatches, expected) << format.name;
             if (format.name == std::string_view("ilt"))
@@ -416,9 +427,9 @@ void expect_harmless(std::string_view bytes) {
         ASSERT_FALSE(file.parts.empty());
         for (const LayerPart& part : file.parts) {
             ASSERT_EQ(part.layers.size(), file.parts.front().layers.size());
-            for (const Layer& layer : part.layers) {
-                ASSERT_EQ(layer.offsets.back(), layer.points.size());
-                ASSERT_EQ(layer.hatches.size() % 2, 0U);
+            for (std::size_t i = 0; i < part.layers.size(); ++i) {
+                ASSERT_EQ(part.layers[i].offsets.back(), part.layers[i].points.size());
+                ASSERT_EQ(part.hatches_of(i).size() % 2, 0U);
             }
         }
     } catch (const Error& error) {

@@ -24,22 +24,18 @@ void write_samples(const std::string& folder) {
     strategy.hatch.distance = 0.6;
     strategy.upskin.layers = 1;
     strategy.downskin.layers = 1;
-    std::vector<LayerStack> parts;
+    std::vector<ScanVectors> planes;
     LayerFileInfo info{.box = box, .layers = layers.size(), .bottom = layers.front().bottom};
     info.parts.clear();
-    for (const Exposure& exposure : exposures(strategy, "rook")) {
+    for (const Exposure& exposure : exposures(strategy, "rook"))
         info.parts.push_back({"rook " + exposure.name(), info.box, exposure});
-        parts.emplace_back();
-    }
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const std::vector<ScanLayer> below(layers.rend() - static_cast<std::ptrdiff_t>(i), layers.rend());
         const std::vector<ScanLayer> above(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1, layers.end());
-        std::vector<Layer> vectors = scan(layers[i], below, above, strategy);
-        for (std::size_t k = 0; k < vectors.size(); ++k)
-            parts[k].push_back(std::move(vectors[k]));
+        planes.push_back(scan(layers[i], below, above, strategy).vectors);
     }
     for (const char* format : {"json", "ilt", "ovf", "3mf-toolpath"})
-        write_layers(folder + "/rook." + format, layer_format(format, ""), parts, info);
+        write_layers(folder + "/rook." + format, layer_format(format, ""), planes, info);
 }
 
 } // namespace

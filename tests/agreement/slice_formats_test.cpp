@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,16 +68,16 @@ const std::vector<Resolution>& readable() {
 }
 
 // Rings of both directions, chains and hatches; some planes are empty.
-std::vector<LayerStack> random_parts(unsigned seed, std::size_t parts, std::size_t planes) {
+std::vector<LayerPart> random_parts(unsigned seed, std::size_t parts, std::size_t planes) {
     std::mt19937_64 random(seed);
     const auto uniform = [&](double low, double high) {
         return low + (high - low) * static_cast<double>(random() >> 11U) * 0x1p-53;
     };
-    std::vector<LayerStack> stacks(parts);
+    std::vector<LayerPart> all(parts);
     double bottom = 0.5;
     for (std::size_t plane = 0; plane < planes; ++plane) {
         const double top = bottom + uniform(0.1, 0.3);
-        for (LayerStack& stack : stacks) {
+        for (LayerPart& part : all) {
             LayerBuilder builder;
             const std::size_t contours = random() % 5;
             for (std::size_t c = 0; c < contours; ++c) {
@@ -91,23 +92,23 @@ std::vector<LayerStack> random_parts(unsigned seed, std::size_t parts, std::size
                 }
                 builder.end_contour(random() % 3 != 0);
             }
-            stack.push_back(builder.finish(plane, bottom + (top - bottom) / 2, bottom, top));
+            part.layers.push_back(builder.finish(plane, bottom + (top - bottom) / 2, bottom, top));
             std::vector<Point2> hatches(2 * (random() % 4));
             for (Point2& p : hatches)
                 p = {uniform(-50, 50), uniform(-50, 50)};
-            stack.back().hatches = PointArray(std::move(hatches));
+            part.hatches.emplace_back(std::move(hatches));
         }
         bottom = top;
     }
-    return stacks;
+    return all;
 }
 
-LayerFileInfo info_of(const std::vector<LayerStack>& parts) {
+LayerFileInfo info_of(const std::vector<LayerPart>& parts) {
     LayerFileInfo info;
-    info.layers = parts.front().size();
-    info.bottom = parts.front().front().bottom;
+    info.layers = parts.front().layers.size();
+    info.bottom = parts.front().layers.front().bottom;
     info.box.add(Point3{-60, -60, info.bottom});
-    info.box.add(Point3{60, 60, parts.front().back().top});
+    info.box.add(Point3{60, 60, parts.front().layers.back().top});
     info.parts.clear();
     for (std::size_t i = 0; i < parts.size(); ++i)
         info.parts.push_back({"part \"" + std::to_string(i) + "\" <&", info.box});
@@ -125,15 +126,19 @@ Layer kept(const Layer& layer, const Resolution& of) {
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
-std::string written(const char* format, const std::vector<LayerStack>& parts,
+std::string written(const char* format, const std::vector<LayerPart>& parts,
                     std::vector<std::string>* warnings = nullptr, PlaneRule rule = PlaneRule::section_above) {
     const TemporaryFolder folder;
     LayerFileInfo info = info_of(parts);
     info.rule = rule;
     LayerWriteOptions options;
     options.page.viewer = "<!--lamella-data-->";
+    const LayerFile file{.path = {}, .format = {}, .parts = parts};
+    std::vector<ScanVectors> planes;
+    for (std::size_t i = 0; i < info.layers; ++i)
+        planes.push_back(file.plane(i));
     std::vector<std::string> told =
-        write_layers(folder.file("out"), layer_format(format, ""), parts, info, options);
+        write_layers(folder.file("out"), layer_format(format, ""), planes, info, options);
     if (warnings != nullptr)
         *warnings = std::move(told);
     return file_bytes(folder.file("out"));
@@ -155,27 +160,32 @@ TEST(SliceFormats, ComeBackAtTheirResolution) {
             for (const std::string& warning : back.warnings)
                 EXPECT_NE(warning.find("contours are open"), std::string::npos) << format.format << warning;
             ASSERT_EQ(back.parts.size(), format.parts ? parts : 1) << format.format;
-            LayerFile whole;
-            for (const LayerStack& stack : original)
-                whole.parts.push_back({"", stack});
-            const LayerStack merged = whole.merged();
+            const LayerFile whole{.path = {}, .format = {}, .parts = original};
+            LayerPart merged{.label = {}, .layers = whole.merged()};
+            for (std::size_t i = 0; i < merged.layers.size(); ++i) {
+                std::vector<Point2> hatches;
+                for (const LayerPart& part : original)
+                    hatches.insert(hatches.end(), part.hatches[i].begin(), part.hatches[i].end());
+                merged.hatches.emplace_back(std::move(hatches));
+            }
             for (std::size_t part = 0; part < back.parts.size(); ++part) {
-                const LayerStack& expected = format.parts ? original[part] : merged;
+                const LayerPart& expected_part = format.parts ? original[part] : merged;
+                const LayerStack& expected = expected_part.layers;
                 ASSERT_EQ(back.parts[part].layers.size(), expected.size()) << format.format;
                 for (std::size_t i = 0; i < expected.size(); ++i) {
                     const Layer& found = back.parts[part].layers[i];
-                    Layer contours = found; // hatches may be rounded; they are compared below
-                    contours.hatches = {};
-                    EXPECT_EQ(content_hash(contours), content_hash(kept(expected[i], format)))
+                    EXPECT_EQ(content_hash(found), content_hash(kept(expected[i], format)))
                         << format.format << ", part " << part << ", layer " << i;
                     const double tolerance = format.exact ? 0 : format.height;
                     EXPECT_NEAR(found.z, expected[i].z, tolerance) << format.format;
                     EXPECT_NEAR(found.bottom, expected[i].bottom, tolerance) << format.format;
                     EXPECT_NEAR(found.top, expected[i].top, tolerance) << format.format;
-                    ASSERT_EQ(found.hatches.size(), format.hatches ? expected[i].hatches.size() : 0);
-                    for (std::size_t k = 0; k < found.hatches.size(); ++k) {
-                        EXPECT_EQ(found.hatches[k].x, format.coordinate(expected[i].hatches[k].x));
-                        EXPECT_EQ(found.hatches[k].y, format.coordinate(expected[i].hatches[k].y));
+                    const std::span<const Point2> hatches = back.parts[part].hatches_of(i);
+                    const PointArray& lines = expected_part.hatches[i];
+                    ASSERT_EQ(hatches.size(), format.hatches ? lines.size() : 0);
+                    for (std::size_t k = 0; k < hatches.size(); ++k) {
+                        EXPECT_EQ(hatches[k].x, format.coordinate(lines[k].x));
+                        EXPECT_EQ(hatches[k].y, format.coordinate(lines[k].y));
                     }
                 }
             }
@@ -215,11 +225,9 @@ TEST(SliceFormats, KeepTheLabelsOfParts) {
 TEST(SliceFormats, SayWhatTheyLeaveOut) {
     const auto parts = random_parts(7, 1, 12);
     std::uint64_t chains = 0;
-    std::uint64_t hatches = 0;
-    for (const Layer& layer : parts.front()) {
+    const std::uint64_t hatches = parts.front().hatch_lines();
+    for (const Layer& layer : parts.front().layers)
         chains += layer.open_chains();
-        hatches += layer.hatches.size() / 2;
-    }
     ASSERT_GT(chains, 1U);
     ASSERT_GT(hatches, 1U);
     for (const LayerFormat& format : layer_formats()) {

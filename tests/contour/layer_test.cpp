@@ -109,7 +109,6 @@ TEST(Layer, PassesTheCheckWhereAllLengthsAreFiniteAndWithinReach) {
 TEST(MergedLayers, OfNoneAreAnEmptyLayer) {
     const Layer none = merged({});
     EXPECT_EQ(none.contours(), 0U);
-    EXPECT_EQ(none.hatches.size(), 0U);
 }
 
 TEST(LayerBuilder, TurnsNegativeZeroIntoPositiveZero) {

@@ -60,10 +60,10 @@ void scan_and_check(const ScanStrategy& strategy) {
     const Layer layer = small_layer(3);
     const std::vector<ScanLayer> beside{small_layer(2)};
     try {
-        for (const std::vector<Layer>& vectors :
+        for (const ScannedLayer& scanned :
              {scan(layer, beside, beside, strategy), scan_support(layer, strategy)})
-            for (const Layer& exposed : vectors)
-                fuzz::require_whole(exposed);
+            for (std::size_t i = 0; i < scanned.vectors.exposures(); ++i)
+                fuzz::require_whole(scanned.vectors.polylines[i], scanned.vectors.hatches[i].span());
     } catch (const Error& error) {
         require(error.kind() == ErrorKind::limit);
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
+#include <span>
 
 namespace lamella::fuzz {
 
@@ -16,15 +17,15 @@ inline void require(bool promise) {
 }
 
 /// Requires contours of finite points, and hatches of two points each.
-inline void require_whole(const Layer& layer) {
+inline void require_whole(const Layer& layer, std::span<const Point2> hatches = {}) {
     require(!layer.offsets.empty() && layer.offsets.front() == 0 &&
             layer.offsets.back() == layer.points.size());
     require(layer.rings <= layer.contours());
     for (std::size_t i = 0; i < layer.contours(); ++i)
         require(layer.offsets[i] < layer.offsets[i + 1]);
-    require(layer.hatches.size() % 2 == 0);
-    for (const PointArray* points : {&layer.points, &layer.hatches})
-        for (const Point2& p : *points)
+    require(hatches.size() % 2 == 0);
+    for (const std::span<const Point2> points : {layer.points.span(), hatches})
+        for (const Point2& p : points)
             require(std::isfinite(p.x) && std::isfinite(p.y));
 }
 
@@ -32,10 +33,11 @@ inline void require_whole(const Layer& layer) {
 inline void require_sound(const LayerFile& file) {
     require(!file.parts.empty());
     for (const LayerPart& part : file.parts) {
+        require(part.hatches.empty() || part.hatches.size() == part.layers.size());
         require(!part.layers.empty() && part.layers.size() == file.parts.front().layers.size());
         for (std::size_t i = 0; i < part.layers.size(); ++i) {
             const Layer& layer = part.layers[i];
-            require_whole(layer);
+            require_whole(layer, part.hatches_of(i));
             require(part.exposure || in_normal_form(layer));
             require(std::isfinite(layer.bottom) && std::isfinite(layer.z) && std::isfinite(layer.top));
             require(layer.bottom <= layer.top);

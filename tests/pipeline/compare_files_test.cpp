@@ -30,7 +30,8 @@ LayerFile job(const std::string& format = "ovf") {
         lines.points = {};
         lines.offsets = {0};
         lines.rings = 0;
-        lines.hatches = PointArray(std::vector<Point2>{{1, 1}, {3, 1}, {3, 2}, {1, 2}});
+        file.parts[0].hatches.emplace_back();
+        file.parts[1].hatches.emplace_back(std::vector<Point2>{{1, 1}, {3, 1}, {3, 2}, {1, 2}});
         file.parts[0].layers.push_back(std::move(layer));
         file.parts[1].layers.push_back(std::move(lines));
     }
@@ -55,7 +56,7 @@ TEST(CompareFiles, SeesHatchLinesThatAreMissingMovedOrInAnotherOrder) {
         {{1, 1}, {3, 1}}, {}, {{1, 1}, {3, 1.01}, {3, 2}, {1, 2}}, {{3, 2}, {1, 2}, {1, 1}, {3, 1}}};
     for (const std::vector<Point2>& lines : others) {
         LayerFile other = job();
-        other.parts[1].layers[1].hatches = PointArray(lines);
+        other.parts[1].hatches[1] = PointArray(lines);
         const FileComparison found = compare_files(job(), other);
         EXPECT_FALSE(found.agree());
         EXPECT_EQ(same_of(found), 2U);
@@ -65,7 +66,7 @@ TEST(CompareFiles, SeesHatchLinesThatAreMissingMovedOrInAnotherOrder) {
         EXPECT_GT(found.details[1].hatch_distance_mm, 0.009);
     }
     LayerFile moved = job();
-    moved.parts[1].layers[1].hatches = PointArray(others[2]);
+    moved.parts[1].hatches[1] = PointArray(others[2]);
     const FileComparison found = compare_files(job(), moved, 0.02);
     EXPECT_TRUE(found.agree());
     EXPECT_EQ(same_of(found), 2U) << "they agree, but are not the same";
@@ -146,7 +147,7 @@ TEST(CompareFiles, SeesParameters) {
 TEST(CompareFiles, SeesLinesThatMovedToAnotherExposure) {
     for (const char* const format : {"3mf-toolpath", "cli"}) {
         LayerFile other = job(format);
-        std::swap(other.parts[0].layers[1].hatches, other.parts[1].layers[1].hatches);
+        std::swap(other.parts[0].hatches[1], other.parts[1].hatches[1]);
         const FileComparison found = compare_files(job(), other);
         EXPECT_FALSE(found.agree());
         EXPECT_FALSE(found.layers.planes[1].agree);

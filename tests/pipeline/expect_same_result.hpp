@@ -21,7 +21,7 @@ inline void expect_same(const LayerChanges& one, const LayerChanges& other) {
     for (std::uint64_t LayerChanges::*count :
          {&LayerChanges::changed_layers, &LayerChanges::groups_united, &LayerChanges::rings_united,
           &LayerChanges::rings_reversed, &LayerChanges::rings_dropped, &LayerChanges::rings_vanished,
-          &LayerChanges::points_dropped, &LayerChanges::hatches_dropped})
+          &LayerChanges::points_dropped})
         EXPECT_EQ(one.*count, other.*count);
     EXPECT_EQ(one.area_before_mm2, other.area_before_mm2);
     EXPECT_EQ(one.area_after_mm2, other.area_after_mm2);

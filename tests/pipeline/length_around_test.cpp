@@ -17,7 +17,8 @@ PointArray lines_of(HatchPattern pattern, double degrees) {
     strategy.hatch.border = 0;
     strategy.hatch.pattern = pattern;
     strategy.hatch.angle_degrees = degrees;
-    return scan(test::normal_layer({test::rectangle(0, 0, 20, 10)}), {}, {}, strategy).front().hatches;
+    return scan(test::normal_layer({test::rectangle(0, 0, 20, 10)}), {}, {}, strategy)
+        .vectors.hatches.front();
 }
 
 TEST(LengthAround, IsThatOfTheEdgesOrMore) {

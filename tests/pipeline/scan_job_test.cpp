@@ -87,11 +87,16 @@ class ScanJob : public testing::Test {
     TemporaryFolder folder_;
 };
 
-void expect_same_vectors(const Layer& one, const Layer& other) {
-    EXPECT_EQ(one.offsets, other.offsets);
-    EXPECT_TRUE(std::equal(one.points.begin(), one.points.end(), other.points.begin(), other.points.end()));
-    EXPECT_TRUE(
-        std::equal(one.hatches.begin(), one.hatches.end(), other.hatches.begin(), other.hatches.end()));
+bool same_points(std::span<const Point2> a, std::span<const Point2> b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
+}
+
+/// Expects that plane `first` of a part has the vectors of plane `second` of another one.
+void expect_same_vectors(const LayerPart& one, std::size_t first, const LayerPart& other,
+                         std::size_t second) {
+    EXPECT_EQ(one.layers[first].offsets, other.layers[second].offsets);
+    EXPECT_TRUE(same_points(one.layers[first].points.span(), other.layers[second].points.span()));
+    EXPECT_TRUE(same_points(one.hatches_of(first), other.hatches_of(second)));
 }
 
 TEST_F(ScanJob, WritesWhatScanMakesOfEachLayerAndItsNeighbours) {
@@ -110,20 +115,20 @@ TEST_F(ScanJob, WritesWhatScanMakesOfEachLayerAndItsNeighbours) {
             below.emplace_back(layers[i - k]);
         for (std::size_t k = 1; k <= 2 && i + k < layers.size(); ++k)
             above.emplace_back(layers[i + k]);
-        const std::vector<Layer> vectors = scan(layers[i], below, above, *scanned.scan);
+        const ScanVectors vectors = scan(layers[i], below, above, *scanned.scan).vectors;
         std::optional<Point2> beam;
         for (std::size_t e = 0; e < each.size(); ++e) {
             SCOPED_TRACE(testing::Message() << "layer " << i << ", " << each[e].name());
-            const ScanFigures figures = measure_vectors(vectors[e], each[e].parameters, beam);
+            const ScanFigures figures =
+                measure_vectors(vectors.polylines[e], vectors.hatches[e].span(), each[e].parameters, beam);
             EXPECT_EQ(result.layers[i].scan[e].vectors, figures.vectors);
             EXPECT_EQ(result.layers[i].scan[e].jumped_mm, figures.jumped_mm);
             sums[e] += figures;
             const Layer& read = written[e].layers[i];
             EXPECT_EQ(read.index, layers[i].index);
-            EXPECT_TRUE(std::equal(read.hatches.begin(), read.hatches.end(), vectors[e].hatches.begin(),
-                                   vectors[e].hatches.end()));
-            EXPECT_EQ(read.rings, vectors[e].rings);
-            EXPECT_EQ(read.points.size(), vectors[e].points.size());
+            EXPECT_TRUE(same_points(written[e].hatches_of(i), vectors.hatches[e].span()));
+            EXPECT_EQ(read.rings, vectors.polylines[e].rings);
+            EXPECT_EQ(read.points.size(), vectors.polylines[e].points.size());
         }
     }
     ASSERT_EQ(result.exposures.size(), each.size());
@@ -286,7 +291,7 @@ TEST_F(ScanJob, GivesChosenLayersTheVectorsTheyHaveInTheWhole) {
             for (std::size_t i = 0; i < 7; ++i) {
                 SCOPED_TRACE(testing::Message() << name << ": part " << part << ", layer " << i);
                 EXPECT_EQ(chosen[part].layers[i].index, 2 + i);
-                expect_same_vectors(chosen[part].layers[i], whole[part].layers[2 + i]);
+                expect_same_vectors(chosen[part], i, whole[part], 2 + i);
             }
         }
     }
@@ -310,16 +315,16 @@ TEST_F(ScanJob, ExposesSupportsByTheirRules) {
     const LayerStack foot = slice(make_box(3, 4, 2).transformed(translation(10, 0, -5)),
                                   plan_uniform(result.box.min.z, result.box.max.z, {.layer_height = 0.5}));
     for (std::size_t i = 0; i < foot.size(); ++i) {
-        const std::vector<Layer> vectors = scan_support(foot[i], *scanned.scan);
-        for (std::size_t e = 0; e < vectors.size(); ++e) {
+        const ScanVectors vectors = scan_support(foot[i], *scanned.scan).vectors;
+        for (std::size_t e = 0; e < vectors.exposures(); ++e) {
             const Layer& read = written[of_parts.size() + e].layers[i];
-            EXPECT_TRUE(std::equal(read.hatches.begin(), read.hatches.end(), vectors[e].hatches.begin(),
-                                   vectors[e].hatches.end()));
-            EXPECT_EQ(read.points.size(), vectors[e].points.size());
+            const std::span<const Point2> hatches = written[of_parts.size() + e].hatches_of(i);
+            EXPECT_TRUE(same_points(hatches, vectors.hatches[e].span()));
+            EXPECT_EQ(read.points.size(), vectors.polylines[e].points.size());
             const std::size_t place = of_parts.size() + e;
             EXPECT_EQ(result.exposures[place].exposure.name(), of_supports[e].name());
             EXPECT_EQ(result.layers[i].scan[place].vectors,
-                      read.hatches.empty() ? read.points.size() : read.hatches.size() / 2);
+                      hatches.empty() ? read.points.size() : hatches.size() / 2);
             sums[e] += result.layers[i].scan[place];
         }
     }

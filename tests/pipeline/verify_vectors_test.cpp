@@ -32,9 +32,11 @@ std::vector<LayerPart> scanned(const LayerStack& layers, const ScanStrategy& str
         std::vector<ScanLayer> below(layers.begin(), layers.begin() + static_cast<std::ptrdiff_t>(i));
         std::reverse(below.begin(), below.end());
         const std::vector<ScanLayer> above(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1, layers.end());
-        std::vector<Layer> vectors = scan(layers[i], below, above, strategy);
-        for (std::size_t k = 0; k < parts.size(); ++k)
-            parts[k].layers.push_back(std::move(vectors[k]));
+        ScanVectors vectors = scan(layers[i], below, above, strategy).vectors;
+        for (std::size_t k = 0; k < parts.size(); ++k) {
+            parts[k].layers.push_back(std::move(vectors.polylines[k]));
+            parts[k].hatches.push_back(std::move(vectors.hatches[k]));
+        }
     }
     return parts;
 }
@@ -67,10 +69,10 @@ class VerifyVectors : public testing::Test {
     /// Changes the hatches of a layer.
     template <class Change>
     void change_hatches(const std::string& name, std::size_t layer, const Change& change) {
-        Layer& vectors = part(name).layers[layer];
-        std::vector<Point2> points(vectors.hatches.begin(), vectors.hatches.end());
+        PointArray& hatches = part(name).hatches[layer];
+        std::vector<Point2> points(hatches.begin(), hatches.end());
         change(points);
-        vectors.hatches = PointArray(std::move(points));
+        hatches = PointArray(std::move(points));
     }
 
     Mesh mesh_ = box_mesh({0, 0, 0}, {20, 10, 1});
@@ -211,11 +213,10 @@ TEST_F(VerifyVectors, AFileMayBeginWithAnyLayerOfItsPlan) {
                 part.layers[i].index = i; // as files number them
         EXPECT_TRUE(with_all().ok()) << first;
         // A layer that is not at its place is one, all others are right.
-        std::swap(part("core hatch").layers[5].hatches, part("core hatch").layers[6].hatches);
+        std::swap(part("core hatch").hatches[5], part("core hatch").hatches[6]);
         EXPECT_GT(with_all().misplaced, 100U) << first;
-        EXPECT_LE(
-            with_all().misplaced,
-            (part("core hatch").layers[5].hatches.size() + part("core hatch").layers[6].hatches.size()) / 2)
+        EXPECT_LE(with_all().misplaced,
+                  (part("core hatch").hatches[5].size() + part("core hatch").hatches[6].size()) / 2)
             << first;
     }
 }
@@ -252,20 +253,20 @@ TEST_F(VerifyVectors, FindsWhatIsWrongWithContours) {
 
 TEST_F(VerifyVectors, FindsLinesOfExposuresThatHaveNone) {
     const auto line_at = [&](std::size_t i) {
-        const PointArray& lines = part("core hatch").layers[4].hatches;
+        const PointArray& lines = part("core hatch").hatches[4];
         return std::vector<Point2>{lines[2 * i], lines[2 * i + 1]};
     };
     const std::vector<Point2> line = line_at(0);
-    const std::vector<Point2> amid = line_at(part("core hatch").layers[4].hatches.size() / 4);
+    const std::vector<Point2> amid = line_at(part("core hatch").hatches[4].size() / 4);
     const std::vector<LayerPart> sound = parts_;
     // The innermost contour has lines of what is too narrow for a hatch.
     for (const auto& [contour, points] : {std::pair{"core contour 1", line}, {"core contour 2", amid}}) {
-        part(contour).layers[4].hatches = PointArray(points);
+        part(contour).hatches[4] = PointArray(points);
         EXPECT_EQ(with_all().misplaced, 1U) << contour;
         EXPECT_EQ(with_strategy().misplaced, 1U) << contour;
         parts_ = sound;
     }
-    part("upskin hatch").layers[4].hatches = PointArray(line);
+    part("upskin hatch").hatches[4] = PointArray(line);
     EXPECT_EQ(with_all().misplaced, 0U);
     strategy_.upskin.layers = 0;
     EXPECT_GE(with_all().misplaced, 1U) << "no skin is asked for";
@@ -331,10 +332,11 @@ TEST_F(VerifyVectors, OfNoVectorsFails) {
     EXPECT_FALSE(nothing.ok());
     EXPECT_EQ(nothing.findings.size(), 1U);
     EXPECT_TRUE(verify_vectors({}).ok());
-    for (LayerPart& part : parts_)
-        for (Layer& layer : part.layers) {
+    for (LayerPart& part : parts_) {
+        for (Layer& layer : part.layers)
             layer = {.index = layer.index, .z = layer.z, .bottom = layer.bottom, .top = layer.top};
-        }
+        part.hatches.clear();
+    }
     EXPECT_FALSE(with_strategy().ok());
     EXPECT_TRUE(with_strategy().none);
 }
@@ -408,8 +410,10 @@ TEST_F(VerifyVectors, SkinsExcuseNoMoreThanTheirOverlap) {
 }
 
 TEST_F(VerifyVectors, FindsLayersThatAreMissingInTheMiddle) {
-    for (LayerPart& part : parts_)
+    for (LayerPart& part : parts_) {
         part.layers.erase(part.layers.begin() + 4);
+        part.hatches.erase(part.hatches.begin() + 4);
+    }
     const VectorVerification found = with_mesh();
     EXPECT_FALSE(found.ok());
     ASSERT_TRUE(found.heights);
@@ -422,11 +426,11 @@ TEST_F(VerifyVectors, GrantsTheRoundingOfTheFormat) {
         return Point2{std::round(p.x * 100) / 100, std::round(p.y * 100) / 100};
     };
     for (LayerPart& part : parts_)
-        for (Layer& layer : part.layers) {
-            std::vector<Point2> hatches;
-            for (const Point2& p : layer.hatches)
-                hatches.push_back(rounded(p));
-            layer.hatches = PointArray(std::move(hatches));
+        for (PointArray& hatches : part.hatches) {
+            std::vector<Point2> ends;
+            for (const Point2& p : hatches)
+                ends.push_back(rounded(p));
+            hatches = PointArray(std::move(ends));
         }
     EXPECT_FALSE(with_all().ok());
     EXPECT_TRUE(

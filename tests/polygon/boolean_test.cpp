@@ -297,7 +297,6 @@ TEST(Combine, TakesHeaderAndChainsOfTheFirstLayer) {
     a.z = 1.5;
     a.bottom = 1;
     a.top = 2;
-    a.hatches = PointArray({{0, 0}, {1, 1}});
     const Layer b = normal_layer({rectangle(2, 0, 6, 4)}, {{{0, 8}, {5, 8}}});
     for (const Layer& other : {a, b})
         for (const BooleanOperation operation : operations) {
@@ -306,7 +305,6 @@ TEST(Combine, TakesHeaderAndChainsOfTheFirstLayer) {
             EXPECT_EQ(result.z, 1.5);
             EXPECT_EQ(result.bottom, 1);
             EXPECT_EQ(result.top, 2);
-            EXPECT_TRUE(result.hatches.empty());
             ASSERT_EQ(result.open_chains(), 1U);
             EXPECT_EQ(contours(result).back(), (Contour{{0, 9}, {5, 9}}));
         }

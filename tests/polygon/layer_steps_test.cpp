@@ -76,21 +76,6 @@ TEST(LayerSteps, ReportHowManyRingsAnOffsetLeavesNothingOf) {
     EXPECT_EQ(vanished(-100), 3U);
 }
 
-TEST(LayerSteps, ALayerThatIsChangedLosesItsHatchesAndSaysSo) {
-    Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4), rectangle(20, 0, 22, 2)}));
-    layer.hatches = PointArray({{0, 1}, {4, 1}, {0, 2}, {4, 2}});
-    LayerChanges changes;
-    EXPECT_EQ(take_steps({.min_area_mm2 = 1}, layer, changes).hatches.size(), 4U);
-    EXPECT_EQ(changes.hatches_dropped, 0U);
-    for (const LayerSteps& steps :
-         {LayerSteps{.offset_mm = 1}, LayerSteps{.largest_only = true}, LayerSteps{.min_area_mm2 = 5}}) {
-        EXPECT_EQ(take_steps(steps, layer, changes).hatches.size(), 0U);
-        EXPECT_EQ(changes.hatches_dropped, 2U);
-    }
-    changes += changes;
-    EXPECT_EQ(changes.hatches_dropped, 4U);
-}
-
 TEST(LayerSteps, APlaneCountsOnceHoweverManyPartsChangeOnIt) {
     const Layer small = normal_form(layer_of({rectangle(0, 0, 1, 1), rectangle(5, 0, 9, 4)}));
     const Layer large = normal_form(layer_of({rectangle(0, 0, 4, 4)}));

@@ -64,9 +64,9 @@ TEST(ReadCommonLayer, PowerSpeedAndFocusAreParametersOfTheVectorsThatFollow) {
         EXPECT_EQ(exposure.contour, i == 1 ? 1U : 0U);
     }
     EXPECT_EQ(file.parts[1].layers[0].rings, 1U);
-    EXPECT_EQ(file.parts[2].layers[0].hatches.size(), 2U);
-    EXPECT_EQ(file.parts[2].layers[1].hatches.size(), 2U);
-    EXPECT_EQ(file.parts[3].layers[1].hatches.size(), 2U);
+    EXPECT_EQ(file.parts[2].hatches_of(0).size(), 2U);
+    EXPECT_EQ(file.parts[2].hatches_of(1).size(), 2U);
+    EXPECT_EQ(file.parts[3].hatches_of(1).size(), 2U);
 }
 
 TEST(ReadCommonLayer, CommandsThatNobodyKnowsAreCounted) {

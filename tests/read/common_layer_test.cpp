@@ -112,14 +112,14 @@ TEST(ReadCommonLayer, HatchesAreKept) {
     const LayerFile text = read(ascii(ring + "$$HATCHES/1,2,0,0,1,1,2,2,3,3\n"));
     expect_ring(text, 96);
     EXPECT_TRUE(text.warnings.empty());
-    const PointArray& lines = text.parts.front().layers.front().hatches;
+    const std::span<const Point2> lines = text.parts.front().hatches_of(0);
     ASSERT_EQ(lines.size(), 4U);
     EXPECT_EQ(lines[3], (Point2{0.03, 0.03}));
     const LayerFile bytes = read(binary(short_ring + u16(131, 1, 1, 1, 2, 3, 4) + u16(132) + bits(1) +
                                         bits(1) + bits(1.0F) + bits(2.0F) + bits(3.0F) + bits(4.0F)));
     expect_ring(bytes, 100);
     EXPECT_TRUE(bytes.warnings.empty());
-    EXPECT_EQ(bytes.parts.front().layers.front().hatches.size(), 4U);
+    EXPECT_EQ(bytes.parts.front().hatches_of(0).size(), 4U);
 }
 
 TEST(ReadCommonLayer, PartsAreReportedByTheirNumbers) {
@@ -135,7 +135,7 @@ TEST(ReadCommonLayer, PartsAreReportedByTheirNumbers) {
     EXPECT_EQ(file.parts[0].layers[0].rings, 1U);
     EXPECT_EQ(file.parts[1].layers[0].rings, 2U);
     EXPECT_EQ(file.parts[2].layers[0].rings, 0U);
-    EXPECT_EQ(file.parts[1].layers[1].hatches.size(), 2U);
+    EXPECT_EQ(file.parts[1].hatches_of(1).size(), 2U);
     EXPECT_EQ(file.merged()[0].rings, 3U);
 }
 

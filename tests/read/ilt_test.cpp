@@ -55,9 +55,9 @@ TEST(ReadIlt, HeightsOfAllFilesAreBottomsWhereTheLowestOnesAre) {
     const auto expect_bottoms = [](const LayerFile& file) {
         for (const LayerPart& part : file.parts) {
             ASSERT_EQ(part.layers.size(), 4U);
-            for (const Layer& layer : part.layers)
-                for (std::size_t i = 1; i < layer.hatches.size(); i += 2)
-                    EXPECT_EQ(layer.bottom, layer.hatches[i].x);
+            for (std::size_t plane = 0; plane < part.layers.size(); ++plane)
+                for (std::size_t i = 1; i < part.hatches_of(plane).size(); i += 2)
+                    EXPECT_EQ(part.layers[plane].bottom, part.hatches_of(plane)[i].x);
         }
         EXPECT_EQ(file.parts.at(0).layers[3].top, 4);
     };

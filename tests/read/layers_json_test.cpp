@@ -35,8 +35,8 @@ TEST(ReadLayersJson, ReportsAllThatALayerHas) {
     EXPECT_EQ(only.z, 1);
     EXPECT_EQ(measure(only).area_mm2, 50);
     EXPECT_EQ(only.open_chains(), 1U);
-    ASSERT_EQ(only.hatches.size(), 2U);
-    EXPECT_EQ(only.hatches[1], (Point2{2, 3}));
+    ASSERT_EQ(found.parts.front().hatches_of(0).size(), 2U);
+    EXPECT_EQ(found.parts.front().hatches_of(0)[1], (Point2{2, 3}));
 }
 
 TEST(ReadLayersJson, TakesAByteOrderMarkInFront) {

@@ -186,7 +186,7 @@ TEST(ReadOvf, BlocksMayLieInAnotherOrderThanTheirTableHasThemIn) {
     for (std::size_t i = 0; i < backwards.parts.size(); ++i) {
         EXPECT_EQ(backwards.parts[i].label, in_order.parts[i].label);
         ASSERT_EQ(backwards.parts[i].layers.size(), 2U);
-        EXPECT_EQ(backwards.parts[i].layers[1].hatches.size(), 2U);
+        EXPECT_EQ(backwards.parts[i].hatches_of(1).size(), 2U);
     }
 }
 

@@ -53,9 +53,18 @@ double distance_to(const Layer& outline, const Point2& p) {
     return least;
 }
 
-double marked(const Layer& vectors) {
+double marked(const ScanVectors& vectors, std::size_t exposure) {
     std::optional<Point2> beam;
-    return measure_vectors(vectors, {}, beam).marked_mm;
+    return measure_vectors(vectors.polylines[exposure], vectors.hatches[exposure].span(), {}, beam).marked_mm;
+}
+
+ScanVectors vectors_of(const ScanLayer& layer, const ScanStrategy& strategy = {},
+                       InsetCache* cache = nullptr) {
+    return scan(layer, {}, {}, strategy, {.cache = cache}).vectors;
+}
+
+bool same_hatches(const PointArray& a, const PointArray& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end());
 }
 
 TEST(Scan, CountsTheVectorsOfAllRegionsBeforeItTakesMemory) {
@@ -65,13 +74,13 @@ TEST(Scan, CountsTheVectorsOfAllRegionsBeforeItTakesMemory) {
     square.index = 7;
     const ScanLayer layer(square);
     const std::vector<ScanLayer> beside{normal_layer({rectangle(0, 0, 50, 25)})};
-    std::vector<double> unreached;
     std::uint64_t points = 0;
-    for (const Layer& vectors : scan(layer, beside, beside, strategy, nullptr, &unreached))
-        points += vectors.points.size() + vectors.hatches.size();
+    const ScanVectors all = scan(layer, beside, beside, strategy).vectors;
+    for (std::size_t i = 0; i < all.exposures(); ++i)
+        points += all.polylines[i].points.size() + all.hatches[i].size();
     const auto with = [&](const LayerLimits& limits) {
-        static_cast<void>(scan(layer, beside, beside, strategy, nullptr, &unreached, limits));
-        static_cast<void>(scan_support(layer, strategy, nullptr, &unreached, limits));
+        static_cast<void>(scan(layer, beside, beside, strategy, {.limits = limits}));
+        static_cast<void>(scan_support(layer, strategy, {.limits = limits}));
     };
     EXPECT_NO_THROW(with({.memory = 120 * points}));
     test::expect_error(ErrorKind::limit, {"layer 7 at z = ", "`max_memory`"},
@@ -91,20 +100,20 @@ TEST(Scan, GivesALayerForEachExposureWithTheHeightsOfItsOwn) {
     layer.z = 0.225;
     layer.bottom = 0.21;
     layer.top = 0.24;
-    const std::vector<Layer> vectors = scan(layer, {}, {}, strategy);
+    const ScanVectors vectors = vectors_of(layer, strategy);
     const std::vector<Exposure> expected = exposures(strategy, "part");
-    ASSERT_EQ(vectors.size(), expected.size());
-    for (std::size_t i = 0; i < vectors.size(); ++i) {
-        EXPECT_EQ(vectors[i].index, 7U);
-        EXPECT_EQ(vectors[i].z, 0.225);
-        EXPECT_EQ(vectors[i].bottom, 0.21);
-        EXPECT_EQ(vectors[i].top, 0.24);
+    ASSERT_EQ(vectors.exposures(), expected.size());
+    for (std::size_t i = 0; i < vectors.exposures(); ++i) {
+        EXPECT_EQ(vectors.polylines[i].index, 7U);
+        EXPECT_EQ(vectors.polylines[i].z, 0.225);
+        EXPECT_EQ(vectors.polylines[i].bottom, 0.21);
+        EXPECT_EQ(vectors.polylines[i].top, 0.24);
         const bool is_hatch = expected[i].kind == VectorKind::hatch;
-        EXPECT_EQ(vectors[i].hatches.empty(), !is_hatch);
-        EXPECT_EQ(vectors[i].rings, is_hatch ? 0U : 1U);
+        EXPECT_EQ(vectors.hatches[i].empty(), !is_hatch);
+        EXPECT_EQ(vectors.polylines[i].rings, is_hatch ? 0U : 1U);
     }
-    EXPECT_NEAR(measure(vectors[1]).perimeter_mm, 4 * (10 - 2 * 0.25), 1e-12); // the innermost
-    EXPECT_NEAR(measure(vectors[3]).perimeter_mm, 4 * (10 - 2 * 0.05), 1e-12);
+    EXPECT_NEAR(measure(vectors.polylines[1]).perimeter_mm, 4 * (10 - 2 * 0.25), 1e-12); // the innermost
+    EXPECT_NEAR(measure(vectors.polylines[3]).perimeter_mm, 4 * (10 - 2 * 0.05), 1e-12);
 }
 
 double sum(const std::vector<double>& areas) {
@@ -112,9 +121,7 @@ double sum(const std::vector<double>& areas) {
 }
 
 double unreached(const Layer& layer, const ScanStrategy& strategy) {
-    std::vector<double> areas;
-    static_cast<void>(scan(layer, {}, {}, strategy, nullptr, &areas));
-    return sum(areas);
+    return sum(scan(layer, {}, {}, strategy).unreached_mm2);
 }
 
 TEST(Scan, MeasuresWhatNoVectorReaches) {
@@ -122,22 +129,21 @@ TEST(Scan, MeasuresWhatNoVectorReaches) {
     ScanStrategy strategy; // the outermost contour is at 0.05
     strategy.contours.thin_walls = ThinWalls::leave_out;
     InsetCache memory;
-    std::vector<double> areas;
-    static_cast<void>(scan(layer, {}, {}, strategy, nullptr, &areas));
+    std::vector<double> areas = scan(layer, {}, {}, strategy).unreached_mm2;
     ASSERT_EQ(areas.size(), 2U);
     EXPECT_EQ(areas[0], 0) << "the hatch";
     EXPECT_NEAR(areas[1], 0.9, 1e-9) << "the contour";
-    static_cast<void>(scan(layer, {}, {}, strategy, &memory));
-    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &areas));
+    static_cast<void>(vectors_of(layer, strategy, &memory));
+    areas = scan(layer, {}, {}, strategy, {.cache = &memory}).unreached_mm2;
     EXPECT_NEAR(areas[1], 0.9, 1e-9) << "out of the memory, too";
     strategy.contours.beam_offset = 0.04;
-    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &areas));
+    areas = scan(layer, {}, {}, strategy, {.cache = &memory}).unreached_mm2;
     EXPECT_EQ(sum(areas), 0);
     strategy.contours.count = 0; // the border of the hatch is at 0.05
-    static_cast<void>(scan(layer, {}, {}, strategy, &memory, &areas));
+    areas = scan(layer, {}, {}, strategy, {.cache = &memory}).unreached_mm2;
     EXPECT_NEAR(sum(areas), 0.9, 1e-9);
     strategy.support.contours.thin_walls = ThinWalls::leave_out;
-    static_cast<void>(scan_support(layer, strategy, nullptr, &areas));
+    areas = scan_support(layer, strategy).unreached_mm2;
     EXPECT_NEAR(sum(areas), 0.9, 1e-9);
 }
 
@@ -180,7 +186,7 @@ TEST(Scan, MeasuresWhatIsLeftInTheMiddleOfAWallWhereLinesDoNotFit) {
         const double area = unreached(wall, strategy);
         least = std::min(least, area);
         most = std::max(most, area);
-        if (scan(wall, {}, {}, strategy)[0].hatches.empty()) {
+        if (vectors_of(wall, strategy).hatches[0].empty()) {
             EXPECT_NEAR(area, 0.05 * 9.8, 1e-4);
         }
     }
@@ -204,11 +210,10 @@ TEST(Scan, LeavesNothingBareInWallsOfAnyThickness) {
                         EXPECT_LT(unreached(wall, strategy), strategy.accepted_mm2)
                             << contours << " contours, " << thick << " mm, turned by " << degrees
                             << ", layer " << index;
-                        const std::vector<Layer> vectors = scan(wall, {}, {}, strategy);
+                        const ScanVectors vectors = vectors_of(wall, strategy);
                         double lines = 0;
-                        for (const Layer& exposed : vectors)
-                            if (exposed.rings > 0 || exposed.hatches.size() > 0)
-                                lines += marked(exposed);
+                        for (std::size_t i = 0; i < vectors.exposures(); ++i)
+                            lines += marked(vectors, i);
                         with_lines += lines > 2 * length ? 1 : 0;
                     }
                     if (thick > 0.21 && contours == 1) {
@@ -225,9 +230,9 @@ TEST(Scan, CountsWhatAHatchWithoutContoursLeavesBare) {
     std::size_t bare_layers = 0;
     for (std::uint64_t index = 0; index < 12; ++index) {
         const Layer wall = wall_at(0, 10, 0.15, index);
-        const std::vector<Layer> vectors = scan(wall, {}, {}, strategy);
-        ASSERT_EQ(vectors.size(), 1U);
-        const bool bare = vectors[0].hatches.empty();
+        const ScanVectors vectors = vectors_of(wall, strategy);
+        ASSERT_EQ(vectors.exposures(), 1U);
+        const bool bare = vectors.hatches[0].empty();
         bare_layers += bare ? 1 : 0;
         if (bare) {
             EXPECT_NEAR(unreached(wall, strategy), 0.05 * 9.9, 1e-3) << index; // inside of the border
@@ -242,21 +247,19 @@ TEST(Scan, GivesALineOnlyToWallsThatItsHatchLeavesBare) {
     for (layer.index = 0; layer.index < 12; ++layer.index) {
         strategy.contours.thin_walls = ThinWalls::leave_out;
         const bool bare = unreached(layer, strategy) > strategy.accepted_mm2;
-        const std::vector<Layer> before = scan(layer, {}, {}, strategy);
+        const ScanVectors before = vectors_of(layer, strategy);
         strategy.contours.thin_walls = ThinWalls::line;
-        const std::vector<Layer> vectors = scan(layer, {}, {}, strategy);
-        EXPECT_TRUE(std::equal(vectors[0].hatches.begin(), vectors[0].hatches.end(),
-                               before[0].hatches.begin(), before[0].hatches.end()))
-            << "the hatch stays as it is";
-        ASSERT_EQ(vectors[1].hatches.size(), bare ? 2U : 0U) << layer.index;
-        for (const Point2& end : vectors[1].hatches)
+        const ScanVectors vectors = vectors_of(layer, strategy);
+        EXPECT_TRUE(same_hatches(vectors.hatches[0], before.hatches[0])) << "the hatch stays as it is";
+        ASSERT_EQ(vectors.hatches[1].size(), bare ? 2U : 0U) << layer.index;
+        for (const Point2& end : vectors.hatches[1])
             EXPECT_NEAR(end.y, 0.125, 1e-6);
         EXPECT_LT(unreached(layer, strategy), strategy.accepted_mm2);
     }
     strategy.contours.count = 2; // no second contour fits: there is a line instead, whatever the hatch
     const Layer wall = wall_at(0, 10, 0.25, 0);
-    EXPECT_EQ(scan(wall, {}, {}, strategy)[1].rings, 0U);
-    EXPECT_EQ(scan(wall, {}, {}, strategy)[1].hatches.size(), 2U);
+    EXPECT_EQ(vectors_of(wall, strategy).polylines[1].rings, 0U);
+    EXPECT_EQ(vectors_of(wall, strategy).hatches[1].size(), 2U);
     EXPECT_LT(unreached(wall, strategy), 1e-3);
 }
 
@@ -270,8 +273,7 @@ TEST(Scan, DistinguishesOfWhichRegionItIsThatNothingReaches) {
     strategy.hatch.shortest = strategy.upskin.hatch.shortest = 0.2;
     const Layer walls = normal_layer({rectangle(0, 0, 10, 0.25), rectangle(0, 5, 20, 5.25)});
     const std::vector<ScanLayer> above{normal_layer({rectangle(0, 0, 10, 0.25)})};
-    std::vector<double> areas;
-    static_cast<void>(scan(walls, {}, above, strategy, nullptr, &areas));
+    const std::vector<double> areas = scan(walls, {}, above, strategy).unreached_mm2;
     ASSERT_EQ(areas.size(), 3U); // core hatch, upskin hatch, contour
     EXPECT_NEAR(areas[0], 0.05 * 9.8, 1e-3);
     EXPECT_NEAR(areas[1], 0.05 * 19.8, 1e-3);
@@ -282,15 +284,13 @@ TEST(Scan, GivesThinWallsALineThatEveryOrderOfRingsHas) {
     const std::vector<Contour> rings{rectangle(0, 0, 10, 10), rectangle(12, 0, 12.09, 10),
                                      rectangle(13, 3, 19, 3.07), reversed(rectangle(2, 2, 3, 3))};
     const ScanStrategy strategy;
-    const std::vector<Layer> vectors = scan(normal_layer(rings), {}, {}, strategy);
-    ASSERT_EQ(vectors[1].hatches.size(), 4U);
-    EXPECT_EQ(vectors[1].rings, 2U);
-    EXPECT_NEAR(marked(vectors[1]), 4 * 9.9 + 4 * 1.1 + 10 + 6, 0.15);
+    const ScanVectors vectors = vectors_of(normal_layer(rings), strategy);
+    ASSERT_EQ(vectors.hatches[1].size(), 4U);
+    EXPECT_EQ(vectors.polylines[1].rings, 2U);
+    EXPECT_NEAR(marked(vectors, 1), 4 * 9.9 + 4 * 1.1 + 10 + 6, 0.15);
     EXPECT_LT(unreached(normal_layer(rings), strategy), 2e-3);
-    const std::vector<Layer> again =
-        scan(layer_of({rings[2], rings[3], rings[1], rings[0]}), {}, {}, strategy);
-    EXPECT_TRUE(std::equal(again[1].hatches.begin(), again[1].hatches.end(), vectors[1].hatches.begin(),
-                           vectors[1].hatches.end()));
+    const ScanVectors again = vectors_of(layer_of({rings[2], rings[3], rings[1], rings[0]}), strategy);
+    EXPECT_TRUE(same_hatches(again.hatches[1], vectors.hatches[1]));
 }
 
 TEST(Scan, KeepsItsDistancesToTheOutline) {
@@ -303,13 +303,13 @@ TEST(Scan, KeepsItsDistancesToTheOutline) {
     strategy.hatch.shortest = 0;
     for (int round = 0; round < rounds_within_reason(300); ++round) {
         const Layer layer = test::random_material(random, 16);
-        const std::vector<Layer> vectors = scan(layer, {}, {}, strategy);
+        const ScanVectors vectors = vectors_of(layer, strategy);
         const double slack = 1e-6;
-        for (const Point2& p : vectors[0].hatches)
+        for (const Point2& p : vectors.hatches[0])
             EXPECT_GE(distance_to(layer, p), 0.75 - slack) << round;
-        for (const Point2& p : vectors[1].points)
+        for (const Point2& p : vectors.polylines[1].points)
             EXPECT_GE(distance_to(layer, p), 0.5 - slack) << round;
-        for (const Point2& p : vectors[2].points)
+        for (const Point2& p : vectors.polylines[2].points)
             EXPECT_GE(distance_to(layer, p), 0.3 - slack) << round;
     }
 }
@@ -322,7 +322,7 @@ TEST(Scan, HatchesTheOutlineItselfWhereNothingLiesBetween) {
     strategy.hatch.distance = 1;
     // Bodies that overlap count once.
     const Layer layer = normal_layer({rectangle(0, 0, 6, 4), rectangle(3, 0, 9, 4)});
-    EXPECT_NEAR(marked(scan(layer, {}, {}, strategy).front()), 4 * 9, 1e-6);
+    EXPECT_NEAR(marked(vectors_of(layer, strategy), 0), 4 * 9, 1e-6);
 }
 
 /// A pin in its bore, with the same points on either side, rounded to thousandths.
@@ -337,7 +337,7 @@ Layer pin_in_bore() {
 TEST(Scan, UnitesBodiesThatFitInOneAnotherWhateverPointsAreStraight) {
     ScanStrategy strategy;
     strategy.contours.count = 1;
-    EXPECT_EQ(scan({pin_in_bore(), {.step_mm = 0.001}}, {}, {}, strategy).back().rings, 1U);
+    EXPECT_EQ(vectors_of({pin_in_bore(), {.step_mm = 0.001}}, strategy).polylines.back().rings, 1U);
     EXPECT_EQ(offset(pin_in_bore(), -0.05).rings, 1U);
 }
 
@@ -357,11 +357,11 @@ TEST(Scan, FindsSkinsUnderBodiesThatOverlapAlsoWhereNoneIsTooNarrow) {
     for (const double narrowest : {0.1, 0.0}) {
         strategy.downskin.narrowest = narrowest;
         const std::vector<Exposure> kinds = exposures(strategy, {});
-        const std::vector<Layer> vectors = scan(layer, below, {}, strategy);
+        const ScanVectors vectors = scan(layer, below, {}, strategy).vectors;
         double length = 0;
         for (std::size_t i = 0; i < kinds.size(); ++i)
             if (kinds[i].region == ScanRegion::downskin)
-                length += marked(vectors[i]);
+                length += marked(vectors, i);
         lengths.push_back(length);
     }
     EXPECT_GT(lengths[0], 100);
@@ -375,11 +375,11 @@ TEST(Scan, PutsRingsInTheirOrderWhereNothingMovesThem) {
     std::vector<Contour> rings;
     for (int i = 0; i < 6; ++i)
         rings.push_back(rectangle(20 * i, 0, 20 * i + 10, 10));
-    const std::vector<Layer> expected = scan(layer_of(rings), {}, {}, strategy);
+    const ScanVectors expected = vectors_of(layer_of(rings), strategy);
     std::reverse(rings.begin(), rings.end());
-    const std::vector<Layer> found = scan(layer_of(rings), {}, {}, strategy);
-    for (std::size_t i = 0; i < expected.size(); ++i)
-        EXPECT_TRUE(same_contours(found[i], expected[i])) << i;
+    const ScanVectors found = vectors_of(layer_of(rings), strategy);
+    for (std::size_t i = 0; i < expected.exposures(); ++i)
+        EXPECT_TRUE(same_contours(found.polylines[i], expected.polylines[i])) << i;
 }
 
 TEST(Scan, KnowsNoWallsBetweenBodiesThatTouch) {
@@ -390,13 +390,13 @@ TEST(Scan, KnowsNoWallsBetweenBodiesThatTouch) {
     const Layer one = normal_layer({rectangle(0, 0, 4, 4)});
     for (const HatchPattern pattern : {HatchPattern::lines, HatchPattern::stripes}) {
         strategy.hatch.pattern = pattern;
-        const std::vector<Layer> found = scan(two, {}, {}, strategy);
-        const std::vector<Layer> expected = scan(one, {}, {}, strategy);
-        ASSERT_EQ(found.size(), expected.size());
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            EXPECT_EQ(found[i].rings, expected[i].rings);
-            EXPECT_EQ(found[i].hatches.size(), expected[i].hatches.size());
-            EXPECT_NEAR(marked(found[i]), marked(expected[i]), 1e-6);
+        const ScanVectors found = vectors_of(two, strategy);
+        const ScanVectors expected = vectors_of(one, strategy);
+        ASSERT_EQ(found.exposures(), expected.exposures());
+        for (std::size_t i = 0; i < found.exposures(); ++i) {
+            EXPECT_EQ(found.polylines[i].rings, expected.polylines[i].rings);
+            EXPECT_EQ(found.hatches[i].size(), expected.hatches[i].size());
+            EXPECT_NEAR(marked(found, i), marked(expected, i), 1e-6);
         }
     }
 }
@@ -427,21 +427,21 @@ TEST(Scan, RegionsAreDisjointAndMakeUpTheLayer) {
         const std::vector<ScanLayer> above{stack[3], stack[4]};
         strategy.upskin.layers = 2;
         strategy.downskin.layers = 2;
-        const std::vector<Layer> regions = scan(stack[2], below, above, strategy);
-        ASSERT_EQ(regions.size(), 3U);
+        const ScanVectors regions = scan(stack[2], below, above, strategy).vectors;
+        ASSERT_EQ(regions.exposures(), 3U);
         ScanStrategy plain = strategy;
         plain.upskin.layers = plain.downskin.layers = 0;
         const auto hatched = [&](const Layer& layer) {
-            return marked(scan(layer, {}, {}, plain).front());
+            return marked(vectors_of(layer, plain), 0);
         };
-        EXPECT_NEAR(marked(regions[0]) + marked(regions[1]) + marked(regions[2]), hatched(stack[2]), 1e-5)
+        EXPECT_NEAR(marked(regions, 0) + marked(regions, 1) + marked(regions, 2), hatched(stack[2]), 1e-5)
             << round;
         const auto cut = [](const Layer& a, const Layer& b) {
             return combine(a, b, BooleanOperation::intersect);
         };
-        EXPECT_NEAR(marked(regions[0]),
+        EXPECT_NEAR(marked(regions, 0),
                     hatched(combine(stack[2], cut(stack[1], stack[0]), BooleanOperation::subtract)), 1e-5);
-        EXPECT_NEAR(marked(regions[1]),
+        EXPECT_NEAR(marked(regions, 1),
                     hatched(cut(cut(cut(stack[2], stack[0]), cut(stack[1], stack[3])), stack[4])), 1e-5);
     }
 }
@@ -476,9 +476,10 @@ TEST(Scan, WhereThePartEndsAllIsSkin) {
     const std::vector<ScanLayer> same(3, layer);
     const auto count = [&](std::size_t below, std::size_t above) {
         std::vector<bool> some;
-        for (const Layer& vectors :
-             scan(layer, std::span(same).first(below), std::span(same).first(above), strategy))
-            some.push_back(!vectors.hatches.empty());
+        for (const PointArray& hatches :
+             scan(layer, std::span(same).first(below), std::span(same).first(above), strategy)
+                 .vectors.hatches)
+            some.push_back(!hatches.empty());
         return some;
     };
     EXPECT_EQ(count(3, 2), (std::vector<bool>{false, true, false, false})); // the last one is the contour
@@ -499,9 +500,9 @@ TEST(Scan, SkinsReachIntoTheCoreByTheOverlap) {
     }
     const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
     const std::vector<ScanLayer> above{normal_layer({rectangle(0, 0, 4, 10)})};
-    const std::vector<Layer> vectors = scan(layer, {}, above, strategy);
-    EXPECT_NEAR(marked(vectors[0]), 40, 1e-6);
-    EXPECT_NEAR(marked(vectors[1]), 65, 1e-6);
+    const ScanVectors vectors = scan(layer, {}, above, strategy).vectors;
+    EXPECT_NEAR(marked(vectors, 0), 40, 1e-6);
+    EXPECT_NEAR(marked(vectors, 1), 65, 1e-6);
 }
 
 TEST(Scan, StripsTooNarrowAreNoSkin) {
@@ -511,7 +512,7 @@ TEST(Scan, StripsTooNarrowAreNoSkin) {
     const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
     const auto skin = [&](double width) {
         const std::vector<ScanLayer> above{normal_layer({rectangle(0, 0, 10 - width, 10)})};
-        return scan(layer, {}, above, strategy)[1].hatches.size();
+        return scan(layer, {}, above, strategy).vectors.hatches[1].size();
     };
     EXPECT_EQ(skin(0), 0U);
     EXPECT_EQ(skin(1e-12), 0U);
@@ -556,15 +557,14 @@ TEST(Scan, OfSupportsGoesByTheirRulesAlone) {
     for (int round = 0; round < rounds_within_reason(50); ++round) {
         Layer layer = test::random_material(random, 16);
         layer.index = static_cast<std::uint64_t>(round);
-        const std::vector<Layer> vectors = scan_support(layer, strategy);
-        const std::vector<Layer> expected = scan(layer, {}, {}, plain);
-        ASSERT_EQ(vectors.size(), support_exposures(strategy, "part").size());
-        for (std::size_t i = 0; i < vectors.size(); ++i) {
-            EXPECT_EQ(vectors[i].index, layer.index);
-            EXPECT_TRUE(std::equal(vectors[i].points.begin(), vectors[i].points.end(),
-                                   expected[i].points.begin(), expected[i].points.end()));
-            EXPECT_TRUE(std::equal(vectors[i].hatches.begin(), vectors[i].hatches.end(),
-                                   expected[i].hatches.begin(), expected[i].hatches.end()));
+        const ScanVectors vectors = scan_support(layer, strategy).vectors;
+        const ScanVectors expected = vectors_of(layer, plain);
+        ASSERT_EQ(vectors.exposures(), support_exposures(strategy, "part").size());
+        for (std::size_t i = 0; i < vectors.exposures(); ++i) {
+            EXPECT_EQ(vectors.polylines[i].index, layer.index);
+            EXPECT_TRUE(std::equal(vectors.polylines[i].points.begin(), vectors.polylines[i].points.end(),
+                                   expected.polylines[i].points.begin(), expected.polylines[i].points.end()));
+            EXPECT_TRUE(same_hatches(vectors.hatches[i], expected.hatches[i]));
         }
     }
     strategy.hatch.distance = 0; // also where no support asks for it
@@ -572,12 +572,14 @@ TEST(Scan, OfSupportsGoesByTheirRulesAlone) {
 }
 
 TEST(Scan, OfNothingIsNothing) {
-    for (const Layer& vectors : scan(Layer{}, {}, {}, ScanStrategy{})) {
-        EXPECT_EQ(vectors.contours(), 0U);
-        EXPECT_TRUE(vectors.hatches.empty());
+    for (const Layer& layer : {Layer{}, layer_of({{{1, 1}}}, {{{0, 0}, {1, 0}}})}) {
+        const ScanVectors vectors = vectors_of(layer);
+        EXPECT_EQ(vectors.exposures(), exposures({}, {}).size());
+        for (std::size_t i = 0; i < vectors.exposures(); ++i) {
+            EXPECT_EQ(vectors.polylines[i].contours(), 0U);
+            EXPECT_TRUE(vectors.polylines[i].points.empty() && vectors.hatches[i].empty());
+        }
     }
-    for (const Layer& vectors : scan(layer_of({{{1, 1}}}, {{{0, 0}, {1, 0}}}), {}, {}, ScanStrategy{}))
-        EXPECT_TRUE(vectors.points.empty() && vectors.hatches.empty());
 }
 
 TEST(Scan, DoesNotDependOnTheOrderOfRings) {
@@ -588,13 +590,12 @@ TEST(Scan, DoesNotDependOnTheOrderOfRings) {
     strategy.hatch.order = IslandOrder::random;
     for (int round = 0; round < rounds_within_reason(100); ++round) {
         std::vector<test::Contour> rings = contours(test::random_rings(random, 16));
-        const std::vector<Layer> once = scan(normal_layer(rings), {}, {}, strategy);
+        const ScanVectors once = vectors_of(normal_layer(rings), strategy);
         std::reverse(rings.begin(), rings.end());
-        const std::vector<Layer> again = scan(normal_layer(rings), {}, {}, strategy);
-        for (std::size_t i = 0; i < once.size(); ++i) {
-            EXPECT_TRUE(same_contours(once[i], again[i]));
-            EXPECT_TRUE(std::equal(once[i].hatches.begin(), once[i].hatches.end(), again[i].hatches.begin(),
-                                   again[i].hatches.end()));
+        const ScanVectors again = vectors_of(normal_layer(rings), strategy);
+        for (std::size_t i = 0; i < once.exposures(); ++i) {
+            EXPECT_TRUE(same_contours(once.polylines[i], again.polylines[i]));
+            EXPECT_TRUE(same_hatches(once.hatches[i], again.hatches[i]));
         }
     }
 }
@@ -618,16 +619,14 @@ TEST(Scan, WithAMemoryIsTheSame) {
     for (std::size_t i = 1; i + 1 < layers.size(); ++i) {
         const std::vector<ScanLayer> below{layers[i - 1]};
         const std::vector<ScanLayer> above{layers[i + 1]};
-        const std::vector<Layer> expected = scan(layers[i], below, above, strategy);
-        const std::vector<Layer> found = scan(layers[i], below, above, strategy, &memory);
-        ASSERT_EQ(found.size(), expected.size());
-        for (std::size_t k = 0; k < found.size(); ++k) {
-            EXPECT_EQ(contours(found[k]), contours(expected[k])) << i << ", " << k;
-            EXPECT_TRUE(std::equal(found[k].hatches.begin(), found[k].hatches.end(),
-                                   expected[k].hatches.begin(), expected[k].hatches.end()))
-                << i << ", " << k;
-            EXPECT_EQ(found[k].index, layers[i].index);
-            EXPECT_EQ(found[k].top, layers[i].top);
+        const ScanVectors expected = scan(layers[i], below, above, strategy).vectors;
+        const ScanVectors found = scan(layers[i], below, above, strategy, {.cache = &memory}).vectors;
+        ASSERT_EQ(found.exposures(), expected.exposures());
+        for (std::size_t k = 0; k < found.exposures(); ++k) {
+            EXPECT_EQ(contours(found.polylines[k]), contours(expected.polylines[k])) << i << ", " << k;
+            EXPECT_TRUE(same_hatches(found.hatches[k], expected.hatches[k])) << i << ", " << k;
+            EXPECT_EQ(found.polylines[k].index, layers[i].index);
+            EXPECT_EQ(found.polylines[k].top, layers[i].top);
         }
     }
 }
@@ -638,15 +637,15 @@ TEST(Scan, RemembersLayersThatDifferByStraightPoints) {
         return layer_of({{{0, 0}, {10 * t, 0}, {10, 0}, {10, 10 * t}, {10, 10}, {0, 10}}});
     };
     InsetCache memory;
-    const std::vector<Layer> first = scan(wall(0.25), {}, {}, {}, &memory);
+    const ScanVectors first = vectors_of(wall(0.25), {}, &memory);
     const std::shared_ptr<const InsetCache::Insets> kept = memory.last();
     ASSERT_NE(kept, nullptr);
-    const std::vector<Layer> second = scan(wall(0.75), {}, {}, {}, &memory);
+    const ScanVectors second = vectors_of(wall(0.75), {}, &memory);
     EXPECT_EQ(memory.last(), kept);
-    EXPECT_EQ(contours(first.back()), contours(second.back()));
-    ASSERT_EQ(first.back().rings, 1U);
-    EXPECT_EQ(first.back().contour(0).size(), 4U);
-    static_cast<void>(scan(layer_of({rectangle(0, 0, 10, 9)}), {}, {}, {}, &memory));
+    EXPECT_EQ(contours(first.polylines.back()), contours(second.polylines.back()));
+    ASSERT_EQ(first.polylines.back().rings, 1U);
+    EXPECT_EQ(first.polylines.back().contour(0).size(), 4U);
+    static_cast<void>(vectors_of(layer_of({rectangle(0, 0, 10, 9)}), {}, &memory));
     EXPECT_NE(memory.last(), kept);
 }
 

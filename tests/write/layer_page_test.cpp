@@ -4,6 +4,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/transform.hpp"
+#include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_page.hpp"
 
 #include "container/json_text.hpp"
@@ -22,6 +23,7 @@
 #include <map>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -41,16 +43,12 @@ struct WrittenPage {
     std::vector<std::string> warnings;
 };
 
-WrittenPage write_page(const std::vector<LayerStack>& parts, const LayerFileInfo& info,
-                       const PageOptions& options, const PageNotes& notes = {}) {
+WrittenPage write_page(const LayerFile& file, const LayerFileInfo& info, const PageOptions& options,
+                       const PageNotes& notes = {}) {
     const TemporaryFolder folder;
     const auto writer = open_layer_page(folder.file("page.html"), info, options);
-    for (std::size_t i = 0; i < info.layers; ++i) {
-        std::vector<Layer> plane;
-        for (const LayerStack& part : parts)
-            plane.push_back(part[i]);
-        writer->prepare(plane)();
-    }
+    for (std::size_t i = 0; i < info.layers; ++i)
+        writer->prepare(file.plane(i))();
     writer->add_notes(notes);
     writer->finish();
     const std::string html = file_bytes(folder.file("page.html"));
@@ -58,8 +56,16 @@ WrittenPage write_page(const std::vector<LayerStack>& parts, const LayerFileInfo
     return {html, read_page(html), writer->warnings()};
 }
 
+/// Returns a file of parts without hatch lines.
+LayerFile file_of(std::vector<LayerStack> parts) {
+    LayerFile file;
+    for (LayerStack& layers : parts)
+        file.parts.push_back({.label = {}, .layers = std::move(layers)});
+    return file;
+}
+
 WrittenPage write_page(const LayerStack& layers, const PageOptions& options = options_with()) {
-    return write_page({layers}, info_of(layers), options);
+    return write_page(file_of({layers}), info_of(layers), options);
 }
 
 /// Members of a JSON object that are arrays of numbers; the others are passed over.
@@ -145,9 +151,9 @@ TEST(LayerPage, HoldsEveryContourWithinHalfAStep) {
     LayerFileInfo info = info_of(parts[0]);
     info.box.add(info_of(parts[1]).box);
     info.parts = {{"one", {}}, {"two", {}}};
-    for (Layer& layer : parts[1])
-        layer.hatches = PointArray(std::vector<Point2>{{1, 2}, {3.25, 4}, {-7, 8}, {9, 10}});
-    const WrittenPage written = write_page(parts, info, options_with());
+    LayerFile file = file_of(parts);
+    file.parts[1].hatches.assign(20, PointArray({{1, 2}, {3.25, 4}, {-7, 8}, {9, 10}}));
+    const WrittenPage written = write_page(file, info, options_with());
     EXPECT_TRUE(written.warnings.empty());
     const double step = member(written.page.json.at("head"), "step_mm");
     EXPECT_EQ(step, page_step_mm(info.box));
@@ -169,9 +175,10 @@ TEST(LayerPage, HoldsEveryContourWithinHalfAStep) {
                 for (std::size_t k = 0; k < contour.size(); ++k)
                     expect_near(part.contours[c].points[k], contour[k]);
             }
-            ASSERT_EQ(part.hatches.size(), layer.hatches.size());
-            for (std::size_t k = 0; k < layer.hatches.size(); ++k)
-                expect_near(part.hatches[k], layer.hatches[k]);
+            const std::span<const Point2> hatches = file.parts[p].hatches_of(i);
+            ASSERT_EQ(part.hatches.size(), hatches.size());
+            for (std::size_t k = 0; k < hatches.size(); ++k)
+                expect_near(part.hatches[k], hatches[k]);
         }
 }
 
@@ -269,8 +276,8 @@ TEST(LayerPage, ReportsWhatStepsMadeOfTheLayers) {
     LayerChanges once{.changed_layers = 1, .rings_dropped = 2, .area_before_mm2 = 30, .area_after_mm2 = 10};
     PageNotes notes;
     notes.changes = {{layers[2].index, once}, {layers[2].index, once}, {layers[0].index, once}};
-    auto table =
-        numbers_of(write_page({layers}, info_of(layers), options_with(), notes).page.json.at("table"));
+    auto table = numbers_of(
+        write_page(file_of({layers}), info_of(layers), options_with(), notes).page.json.at("table"));
     EXPECT_EQ(table["rings_dropped"], (std::vector<double>{2, 0, 4, 0}));
     EXPECT_NEAR(table["area_before_mm2"][2], area + 40, 1e-9);
     EXPECT_EQ(table["area_before_mm2"][1], table["area_mm2"][1]);
@@ -307,7 +314,7 @@ TEST(LayerPage, FindsPartsThatRunThroughOneAnother) {
     parts.push_back({within.finish(0, 0.5, 0, 1)});
     LayerFileInfo info = info_of(parts[0]);
     info.parts.resize(parts.size());
-    auto table = numbers_of(write_page(parts, info, options_with()).page.json.at("table"));
+    auto table = numbers_of(write_page(file_of(parts), info, options_with()).page.json.at("table"));
     EXPECT_EQ(table["crossings"][0], 2);
     EXPECT_GE(table["overlapping"][0], 1);
     EXPECT_EQ(table["area_mm2"][0], 201);
@@ -315,8 +322,10 @@ TEST(LayerPage, FindsPartsThatRunThroughOneAnother) {
 
 /// Two exposures: contours of two rings, one within the other and both counter-clockwise, each beginning
 /// elsewhere than in normal form, and a chain; and a hatch.
-std::vector<LayerStack> scanned(std::size_t count, int lines = 40) {
-    std::vector<LayerStack> parts(2);
+LayerFile scanned(std::size_t count, int lines = 40) {
+    LayerFile file;
+    std::vector<LayerPart>& parts = file.parts;
+    parts.resize(2);
     for (std::uint64_t i = 0; i < count; ++i) {
         const double bottom = 0.1 * static_cast<double>(i);
         LayerBuilder builder;
@@ -329,21 +338,21 @@ std::vector<LayerStack> scanned(std::size_t count, int lines = 40) {
             builder.end_contour(true);
         }
         add_contour(builder, {{-30, 0}, {-30, 5}}, false);
-        parts[0].push_back(builder.finish_as_added(i, bottom + 0.05, bottom, bottom + 0.1));
+        parts[0].layers.push_back(builder.finish_as_added(i, bottom + 0.05, bottom, bottom + 0.1));
         std::vector<Point2> hatches;
         for (int line = 0; line < lines; ++line) {
             const double y = 0.2 * line - 4;
             const double x = 10 + std::fmod(std::numbers::phi * line * line + static_cast<double>(i), 3);
             hatches.insert(hatches.end(), {{-x, y}, {x, y}});
         }
-        parts[1].push_back({.index = i, .z = bottom + 0.05, .bottom = bottom, .top = bottom + 0.1});
-        parts[1].back().hatches = PointArray(std::move(hatches));
+        parts[1].layers.push_back({.index = i, .z = bottom + 0.05, .bottom = bottom, .top = bottom + 0.1});
+        parts[1].hatches.emplace_back(std::move(hatches));
     }
-    return parts;
+    return file;
 }
 
-LayerFileInfo scanned_info(const std::vector<LayerStack>& parts) {
-    LayerFileInfo info = info_of(parts[0]);
+LayerFileInfo scanned_info(const LayerFile& file) {
+    LayerFileInfo info = info_of(file.parts[0].layers);
     const auto exposure = [](ScanRegion region, VectorKind kind, double power) {
         return Exposure{.part = "</script>a",
                         .region = region,
@@ -356,9 +365,9 @@ LayerFileInfo scanned_info(const std::vector<LayerStack>& parts) {
 }
 
 TEST(LayerPage, HoldsScanVectorsAsTheyAreExecuted) {
-    const std::vector<LayerStack> parts = scanned(3);
-    const LayerFileInfo info = scanned_info(parts);
-    const WrittenPage written = write_page(parts, info, options_with());
+    const LayerFile file = scanned(3);
+    const LayerFileInfo info = scanned_info(file);
+    const WrittenPage written = write_page(file, info, options_with());
     EXPECT_TRUE(written.warnings.empty());
     EXPECT_NE(written.page.json.at("head").find(
                   R"("exposure":{"part":"\u003c/script>a","region":"core","kind":"contour","contour":0,)"
@@ -371,7 +380,8 @@ TEST(LayerPage, HoldsScanVectorsAsTheyAreExecuted) {
         ScanFigures expected;
         std::optional<Point2> beam;
         for (std::size_t part = 0; part < 2; ++part)
-            expected += measure_vectors(parts[part][i], info.parts[part].exposure->parameters, beam);
+            expected += measure_vectors(file.parts[part].layers[i], file.parts[part].hatches_of(i),
+                                        info.parts[part].exposure->parameters, beam);
         EXPECT_EQ(table["vectors"][i], static_cast<double>(expected.vectors));
         EXPECT_EQ(table["marked_mm"][i], expected.marked_mm);
         EXPECT_EQ(table["jumped_mm"][i], expected.jumped_mm);
@@ -392,23 +402,23 @@ TEST(LayerPage, HoldsScanVectorsAsTheyAreExecuted) {
 }
 
 TEST(LayerPage, KeepsEachLineOfScanVectorsEvenWherePointsFallTogether) {
-    std::vector<LayerStack> parts = scanned(1);
+    LayerFile file = scanned(1);
     LayerBuilder builder;
     add_contour(builder, {{1, 1}, {1.00001, 1}, {1, 1.00001}}, true);
-    parts[0][0] = builder.finish_as_added(0, 0.05, 0, 0.1);
-    const WrittenPage written = write_page(parts, scanned_info(scanned(1)), options_with());
+    file.parts[0].layers[0] = builder.finish_as_added(0, 0.05, 0, 0.1);
+    const WrittenPage written = write_page(file, scanned_info(file), options_with());
     EXPECT_EQ(layers_of(written.page, 2)[0].parts[0].contours.at(0).points.size(), 3U);
 }
 
 TEST(LayerPage, ShowsAllVectorsOfSomeLayersWhereItsBudgetIsShort) {
-    const std::vector<LayerStack> parts = scanned(40, 4000);
-    const LayerFileInfo info = scanned_info(parts);
+    const LayerFile file = scanned(40, 4000);
+    const LayerFileInfo info = scanned_info(file);
     const std::size_t frame = write_page(LayerStack{}).html.size();
-    const std::uint64_t all = write_page(parts, info, options_with()).html.size() - frame;
-    const WrittenPage written = write_page(parts, info, options_with(all / 4));
+    const std::uint64_t all = write_page(file, info, options_with()).html.size() - frame;
+    const WrittenPage written = write_page(file, info, options_with(all / 4));
     ASSERT_EQ(written.warnings.size(), 1U);
     EXPECT_NE(written.warnings[0].find("layers are shown without their hatches"), std::string::npos);
-    EXPECT_LE(written.html.size(), frame + all / 4 + 500 * parts[0].size());
+    EXPECT_LE(written.html.size(), frame + all / 4 + 500 * file.parts[0].layers.size());
     auto table = numbers_of(written.page.json.at("table"));
     std::vector<std::size_t> whole;
     for (std::size_t i = 0; i < 40; ++i) {
@@ -423,7 +433,7 @@ TEST(LayerPage, ShowsAllVectorsOfSomeLayersWhereItsBudgetIsShort) {
         EXPECT_LE(whole[i] - whole[i - 1], 12U);
 
     // Where not even contours fit, these lose points, but begin where they began.
-    const WrittenPage thin = write_page(parts, info, options_with(40 * 400));
+    const WrittenPage thin = write_page(file, info, options_with(40 * 400));
     const std::vector<PageLayer> read = layers_of(thin.page, 2);
     EXPECT_EQ(thin.warnings.size(), 2U);
     for (const PageLayer& layer : read) {
@@ -447,7 +457,7 @@ TEST(LayerPage, KeepsHostileTextInItsPlace) {
         PageNotes notes;
         notes.sections = {{text, {{text, text, Tone::bad}}}};
         notes.locations = {{text, text, {{1, 2, 3}}}};
-        const WrittenPage written = write_page({layers}, info, options, notes);
+        const WrittenPage written = write_page(file_of({layers}), info, options, notes);
         EXPECT_EQ(written.page.scripts, scripts);
         EXPECT_EQ(written.page.data.size(), 2U);
         for (const auto& [id, json] : written.page.json) {

@@ -328,6 +328,9 @@ class NotingWriter final : public LayerWriter {
     explicit NotingWriter(std::uint64_t fails_at = ~std::uint64_t{0}) : fails_at_(fails_at) {}
 
     using LayerWriter::prepare;
+    [[nodiscard]] std::function<void()> prepare(const ScanVectors& vectors) override {
+        return prepare(vectors.polylines);
+    }
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) override {
         ++prepared;
         return [this, index = parts.front().index] {
@@ -346,10 +349,8 @@ class NotingWriter final : public LayerWriter {
     std::uint64_t fails_at_;
 };
 
-std::vector<Layer> empty_plane(std::size_t i) {
-    Layer layer;
-    layer.index = i;
-    return {layer};
+ScanVectors empty_plane(std::size_t i) {
+    return {{{.index = i}}, {{}}};
 }
 
 TEST(WritePlanes, WritesInOrderOnAnyNumberOfThreadsAndReportsHowFarItIs) {
@@ -422,9 +423,12 @@ TEST(LayerWriter, RefusesLayersOutOfOrderAndOfAnotherNumberThanAnnounced) {
         info.layers = 3;
         EXPECT_NE(error_of(ErrorKind::usage, write).find("3 layers were announced and 2"), std::string::npos);
         info.layers = 2;
-        layers[1].hatches = PointArray(std::vector<Point2>{{0, 0}, {1, 0}, {2, 0}});
-        EXPECT_NE(error_of(ErrorKind::usage, write).find("3 points of hatch lines"), std::string::npos);
-        layers[1].hatches = {};
+        const std::vector<ScanVectors> planes{{{layers[0]}, {{}}},
+                                              {{layers[1]}, {PointArray({{0, 0}, {1, 0}, {2, 0}})}}};
+        EXPECT_NE(error_of(ErrorKind::usage,
+                           [&] { write_layers(folder.file("out"), format, planes, info, options_for_any()); })
+                      .find("3 points of hatch lines"),
+                  std::string::npos);
         EXPECT_TRUE(folder.entries().empty()) << format.name;
     }
 }
@@ -435,7 +439,7 @@ TEST(LayerWriter, RefusesWhatIsNotFinite) {
     for (const LayerFormat& format : layer_formats())
         for (const double bad : {std::nan(""), HUGE_VAL, -HUGE_VAL}) {
             const TemporaryFolder folder;
-            const auto refusal_of = [&](const LayerStack& layers) {
+            const auto refusal_of = [&](const auto& layers) {
                 return error_of(ErrorKind::usage, [&] {
                     write_layers(folder.file("out"), format, layers, info, options_for_any());
                 });
@@ -446,8 +450,9 @@ TEST(LayerWriter, RefusesWhatIsNotFinite) {
             layers[1].points = PointArray(points);
             EXPECT_NE(refusal_of(layers).find("layer 1, contour 1: found"), std::string::npos) << format.name;
             layers = sound;
-            layers[0].hatches = PointArray(std::vector<Point2>{{0, 0}, {bad, 0}});
-            EXPECT_NE(refusal_of(layers).find("layer 0, its hatches: found"), std::string::npos)
+            const std::vector<ScanVectors> planes{{{sound[0]}, {PointArray({{0, 0}, {bad, 0}})}},
+                                                  {{sound[1]}, {{}}}};
+            EXPECT_NE(refusal_of(planes).find("layer 0, its hatches: found"), std::string::npos)
                 << format.name;
             layers = sound;
             layers[1].top = bad;

@@ -1,15 +1,17 @@
 #pragma once
 
-// Properties of scan vectors other than their coordinates: parameters for the machine, lengths, time and
-// energy.
+// Scan vectors, their parameters for the machine, their lengths, time and energy.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 LAMELLA_API_BEGIN
 namespace lamella {
@@ -52,9 +54,29 @@ struct ParameterSet {
 /// Returns parameters for vectors of which only the coordinates are known: no name, and all values 0.
 [[nodiscard]] ParameterSet unknown_parameters();
 
-/// The vectors of one part on one layer that a machine executes together, with the same parameters. In slice
-/// files each exposure is a part of its own, whose layers contain rings and chains (for contours) or hatch
-/// lines (for a hatch).
+/// The scan vectors of one plane, exposure by exposure. A machine executes the rings of an exposure, then its
+/// chains, then its hatch lines, each group in its order; so the polylines are not in normal form.
+struct ScanVectors {
+    std::vector<Layer> polylines; ///< of each exposure, with the heights of the plane
+    std::vector<PointArray>
+        hatches; ///< of each exposure: two points for each line, first point to second point
+
+    [[nodiscard]] std::size_t exposures() const noexcept { return polylines.size(); }
+    /// Appends an exposure.
+    void add(Layer lines, PointArray hatch_lines);
+    /// Appends all exposures of other vectors of the same plane.
+    void append(ScanVectors other);
+};
+
+/// Throws as `check(const Layer&)` does, and Error{usage} if an end of a hatch line is missing. O(points).
+void check(const ScanVectors& vectors);
+
+/// Returns a 64-bit hash of the vectors in their order: `stack_hash` of a hash of each exposure, which is
+/// XXH3 (64 bits, seed 0) over the bytes that `content_hash(const Layer&)` takes, followed by x and y of the
+/// ends of hatch lines, if there are any. Heights are ignored. O(n), at the speed of memory.
+[[nodiscard]] std::uint64_t content_hash(const ScanVectors& vectors) noexcept;
+
+/// Properties of the vectors of one part that a machine executes together, with the same parameters.
 struct Exposure {
     std::string part = "part"; ///< label of the part
     ScanRegion region = ScanRegion::core;
@@ -85,11 +107,11 @@ struct ScanFigures {
     ScanFigures& operator+=(const ScanFigures& other) noexcept;
 };
 
-/// Measures vectors executed one after the other with one parameter set. `beam` is the position before the
-/// first vector and is set to the position after the last one. Moves at speed 0, which stands for a speed
-/// that the file does not specify, count as if they took no time. O(vectors).
-[[nodiscard]] ScanFigures measure_vectors(const Layer& vectors, const ParameterSet& parameters,
-                                          std::optional<Point2>& beam);
+/// Measures vectors executed one after the other with one parameter set: polylines, then hatch lines. `beam`
+/// is the position before the first vector and is set to the position after the last one. Moves at speed 0,
+/// which stands for a speed that the file does not specify, count as if they took no time. O(vectors).
+[[nodiscard]] ScanFigures measure_vectors(const Layer& polylines, std::span<const Point2> hatches,
+                                          const ParameterSet& parameters, std::optional<Point2>& beam);
 
 } // namespace lamella
 LAMELLA_API_END

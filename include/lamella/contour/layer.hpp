@@ -59,9 +59,6 @@ struct Layer {
     PointArray points = {};
     std::vector<std::uint64_t> offsets{0};
     std::size_t rings = 0;
-    /// Fill lines, two points each, which slice files may contain besides the contours. Slicing makes none,
-    /// and comparisons of layers ignore them.
-    PointArray hatches = {};
 
     [[nodiscard]] std::size_t contours() const noexcept { return offsets.size() - 1; }
     [[nodiscard]] std::size_t open_chains() const noexcept { return contours() - rings; }
@@ -104,9 +101,8 @@ class LayerBuilder {
     std::vector<End> ends_;
 };
 
-/// Returns one layer with the contours of all layers, in normal form, and their hatch lines one after the
-/// other. Index, z, bottom and top are those of the first layer. Returns an empty layer if `layers` is empty.
-/// O(n + c log c) for n points in c contours.
+/// Returns one layer with the contours of all layers, in normal form. Index, z, bottom and top are those of
+/// the first layer. Returns an empty layer if `layers` is empty. O(n + c log c) for n points in c contours.
 [[nodiscard]] Layer merged(std::span<const Layer> layers);
 
 } // namespace lamella

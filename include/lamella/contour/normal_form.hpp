@@ -37,9 +37,8 @@ namespace lamella {
 /// Returns a 64-bit hash of the contours of a layer in normal form: XXH3 (64 bits, seed 0) over the following
 /// bytes, all little-endian. First the number of contours and the number of rings as 64-bit integers; then
 /// for each contour the number of points up to its end as a 64-bit integer (`offsets` without its first
-/// element); then x and y of all points as doubles; then x and y of the points of hatch lines, if there are
-/// any. Index, z, bottom and top are ignored. For scan vectors, which are not in normal form, the hash
-/// depends on their order. O(n), limited by memory bandwidth.
+/// element); then x and y of all points as doubles. Index, z, bottom and top are ignored. O(n), limited by
+/// memory bandwidth.
 [[nodiscard]] std::uint64_t content_hash(const Layer& layer) noexcept;
 
 } // namespace lamella

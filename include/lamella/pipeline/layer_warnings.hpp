@@ -82,8 +82,8 @@ struct MeshDoubts {
 
 /// Content of layers that is lost because scan vectors are not derived from it.
 struct ScanLosses {
-    std::uint64_t layers = 0; ///< all layers
-    std::uint64_t hatches = 0;
+    std::uint64_t layers = 0;  ///< all layers
+    std::uint64_t hatches = 0; ///< hatch lines, counted by the caller
     std::uint64_t open_chains = 0;
     InvertedLayers inverted;
 

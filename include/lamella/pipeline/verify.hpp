@@ -42,6 +42,8 @@ struct VerifyOptions {
     Rounding rounding = {};
     /// Additional tolerance of points, ends of lines and cuts, in mm, for coordinates rounded earlier.
     double tolerance_mm = 0;
+    /// Number of hatch lines of the layers, which `verify` reports as not checked.
+    std::uint64_t hatch_lines = 0;
     /// Strategy by which scan vectors were made. If a strategy is set, vectors must keep its distances from
     /// the edges of the material. Each of its contours must be present at the right depth. Hatch lines must
     /// be at least `shortest` long, with the angles and distances of the strategy. The length of lines times

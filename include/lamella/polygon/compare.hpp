@@ -42,6 +42,9 @@ struct LayerDifference {
 struct RoundedLayers {
     std::span<const Layer> layers;
     Rounding rounding = {};
+    /// Number of hatch lines of each layer, which make a layer without contours count; empty if there are
+    /// none.
+    std::span<const std::uint64_t> hatch_lines = {};
 };
 
 /// Two layers that belong together, or one without a partner in the other stack.

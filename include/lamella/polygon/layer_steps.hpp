@@ -37,14 +37,13 @@ struct LayerSteps {
 /// Counts of the changes that the steps made to one layer, or to several layers together.
 struct LayerChanges {
     std::uint64_t changed_layers = 0;
-    std::uint64_t groups_united = 0;   ///< by `fill`: groups of rings that overlapped
-    std::uint64_t rings_united = 0;    ///< the rings of these groups
-    std::uint64_t rings_reversed = 0;  ///< by `fill`
-    std::uint64_t rings_dropped = 0;   ///< by `fill`, `largest_body` and `without_small_rings`
-    std::uint64_t rings_vanished = 0;  ///< by `offset`: rings of which nothing remains
-    std::uint64_t points_dropped = 0;  ///< by `simplify`
-    std::uint64_t hatches_dropped = 0; ///< hatch lines of changed layers
-    double area_before_mm2 = 0;        ///< of the changed layers
+    std::uint64_t groups_united = 0;  ///< by `fill`: groups of rings that overlapped
+    std::uint64_t rings_united = 0;   ///< the rings of these groups
+    std::uint64_t rings_reversed = 0; ///< by `fill`
+    std::uint64_t rings_dropped = 0;  ///< by `fill`, `largest_body` and `without_small_rings`
+    std::uint64_t rings_vanished = 0; ///< by `offset`: rings of which nothing remains
+    std::uint64_t points_dropped = 0; ///< by `simplify`
+    double area_before_mm2 = 0;       ///< of the changed layers
     double area_after_mm2 = 0;
 
     LayerChanges& operator+=(const LayerChanges& other) noexcept;
@@ -54,8 +53,7 @@ struct LayerChanges {
 void check_steps(const LayerSteps& steps);
 
 /// Applies the steps, and adds the changes to `changes`. A layer that no step changes is returned bit for
-/// bit. A changed layer loses its hatch lines, because they filled the old contours. The result is in normal
-/// form if the layer was. Throws the errors of the steps.
+/// bit. The result is in normal form if the layer was. Throws the errors of the steps.
 [[nodiscard]] Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes,
                                const LayerLimits& limits = {});
 

@@ -35,6 +35,14 @@ struct LayerPart {
     /// Parameters that the file does not specify are 0.
     std::optional<Exposure> exposure = {};
     bool support = false; ///< the file marks it as support; only 3MF can
+    /// Hatch lines of each layer, two points for each line; empty if the part has none.
+    std::vector<PointArray> hatches = {};
+
+    [[nodiscard]] std::span<const Point2> hatches_of(std::size_t layer) const {
+        return hatches.empty() ? std::span<const Point2>() : hatches[layer].span();
+    }
+    /// Returns the number of hatch lines of all layers.
+    [[nodiscard]] std::uint64_t hatch_lines() const noexcept;
 };
 
 struct LayerFile {
@@ -55,6 +63,9 @@ struct LayerFile {
     /// of all parts. O(points). Throws Error{usage} if the caller changed the parts so that their numbers of
     /// layers differ.
     [[nodiscard]] LayerStack merged() const;
+
+    /// Returns the layers of all parts on a plane, with their hatch lines. O(contours).
+    [[nodiscard]] ScanVectors plane(std::size_t position) const;
 };
 
 /// Returns the bytes that the layers of a file take. O(layers).

@@ -2,6 +2,7 @@
 
 // Generates scan vectors from layers: what a powder-bed machine executes.
 
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/layer_limits.hpp"
@@ -56,10 +57,22 @@ class InsetCache {
     std::shared_ptr<const Insets> last_;
 };
 
-/// Returns the scan vectors of one layer of a part: one result layer for each of the strategy's `exposures`,
-/// with the index and heights of the layer. Contours are rings in scanning order, each from its start point.
-/// Hatches are `hatches` in scanning order, from first point to second point. The results are not in normal
-/// form, because their order matters.
+struct ScanOptions {
+    InsetCache* cache = nullptr; ///< of the part; null if there is none
+    LayerLimits limits = {};
+};
+
+/// The scan vectors of one layer of a part, for each of the strategy's `exposures`.
+struct ScannedLayer {
+    /// Contours are rings in scanning order, each from its start point.
+    ScanVectors vectors;
+    /// Material of each exposure that no vector reaches, mm^2: narrow areas that are farther from contours
+    /// and lines of `ThinWalls` than the beam's offset (or half the distance of contours, if that is more),
+    /// and farther from hatch lines than their distance.
+    std::vector<double> unreached_mm2;
+};
+
+/// Computes the scan vectors of one layer of a part.
 ///
 /// The filled area is the material of the layer as `offset` defines it (open chains are ignored), offset
 /// inwards: by the beam's offset for the outermost contour, by the distance for each further one, by the
@@ -69,30 +82,22 @@ class InsetCache {
 /// `below` and `above` are the layers beneath and on top, the nearest one first, for skins. There must be as
 /// many as the strategy requires (`SkinRule::layers`); fewer mean that the part ends there, without further
 /// material. A gap of more than 1e-6 mm between the heights of consecutive layers also ends the part. If the
-/// strategy requests it, walls too thin for the outermost contour have lines along their middle, in the
-/// `hatches` of that contour's layer.
-///
-/// `memory`, if given, is the cache of the part. `unreached`, if given, becomes for each exposure the area in
-/// mm^2 of its material that no vector reaches: narrow areas that are farther from contours and lines of
-/// `ThinWalls` than the beam's offset (or half the distance of contours, if that is more), and farther from
-/// hatch lines than their distance.
+/// strategy requests it, walls too thin for the outermost contour have lines along their middle, as the hatch
+/// lines of that contour.
 ///
 /// The result is the same on every machine, bit for bit, and for any order of rings. Throws Error{usage} as
 /// `check_strategy` does, and Error{limit} for more than 2^22 lines in one direction, 2^22 pieces of lines in
-/// stripes or islands, 2^21 of these, and for more vectors than `limits.memory` allows, before memory is
-/// allocated; each vector counts with its size in a file. Throws Error{cancelled}, too. O((n + v) log(n + v))
-/// for n points and v vectors, plus the time for offsets and, for skins, differences.
-[[nodiscard]] std::vector<Layer> scan(const ScanLayer& layer, std::span<const ScanLayer> below,
-                                      std::span<const ScanLayer> above, const ScanStrategy& strategy,
-                                      InsetCache* memory = nullptr, std::vector<double>* unreached = nullptr,
-                                      const LayerLimits& limits = {});
+/// stripes or islands, 2^21 of these, and for more vectors than the limits allow, before memory is allocated;
+/// each vector counts with its size in a file. Throws Error{cancelled}, too. O((n + v) log(n + v)) for n
+/// points and v vectors, plus the time for offsets and, for skins, differences.
+[[nodiscard]] ScannedLayer scan(const ScanLayer& layer, std::span<const ScanLayer> below,
+                                std::span<const ScanLayer> above, const ScanStrategy& strategy,
+                                const ScanOptions& options = {});
 
-/// Does the same for a layer of a support part, by the strategy's rule for supports: one result layer for
-/// each of its `support_exposures`.
-[[nodiscard]] std::vector<Layer> scan_support(const ScanLayer& layer, const ScanStrategy& strategy,
-                                              InsetCache* memory = nullptr,
-                                              std::vector<double>* unreached = nullptr,
-                                              const LayerLimits& limits = {});
+/// Does the same for a layer of a support part, by the strategy's rule for supports: for each of its
+/// `support_exposures`.
+[[nodiscard]] ScannedLayer scan_support(const ScanLayer& layer, const ScanStrategy& strategy,
+                                        const ScanOptions& options = {});
 
 } // namespace lamella
 LAMELLA_API_END

@@ -34,7 +34,7 @@ struct PartInfo {
 
 /// Returns the box of the contours and hatch lines of a part, from the bottom of its first layer to the top
 /// of its last. It is empty if there are none. O(points).
-[[nodiscard]] Box3 part_box(std::span<const Layer> layers) noexcept;
+[[nodiscard]] Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches = {}) noexcept;
 
 /// Counts of content that a range of layers loses in a file, because its format cannot hold it: the figures
 /// behind LayerWriter::warnings. They are numbers only, so that processes can send them to one another.
@@ -191,6 +191,10 @@ class LayerWriter {
     /// ascending z (see LayerSink).
     [[nodiscard]] virtual std::function<void()> prepare(std::span<const Layer> parts) = 0;
 
+    /// Formats one plane of scan vectors, or of contours and hatch lines: one exposure for each part of the
+    /// file.
+    [[nodiscard]] virtual std::function<void()> prepare(const ScanVectors& vectors) = 0;
+
     /// Formats one plane of a file with a single part.
     [[nodiscard]] std::function<void()> prepare(const Layer& layer) { return prepare(std::span(&layer, 1)); }
 
@@ -220,13 +224,12 @@ class LayerWriter {
                                                              const LayerFileInfo& info,
                                                              const LayerWriteOptions& options = {});
 
-/// Formats the next `planes` planes of the file on all threads and writes them in order. `parts_of(i)`
-/// returns the layers of plane i, one for each part (see LayerWriter::prepare); it may be called for several
-/// planes at once. Each thread holds one plane in memory. Throws the errors of the writer and of `parts_of`,
-/// and Error{cancelled}.
+/// Formats the next `planes` planes of the file on all threads and writes them in order. `plane_of(i)`
+/// returns the content of plane i (see LayerWriter::prepare); it may be called for several planes at once.
+/// Each thread holds one plane in memory. Throws the errors of the writer and of `plane_of`, and
+/// Error{cancelled}.
 void write_planes(LayerWriter& writer, std::size_t planes,
-                  const std::function<std::vector<Layer>(std::size_t)>& parts_of,
-                  const Execution& execution = {});
+                  const std::function<ScanVectors(std::size_t)>& plane_of, const Execution& execution = {});
 
 /// Writes the stack of a single part, in the format given by the extension of the path, and returns
 /// LayerWriter::warnings. The header is derived from the layers: the box is that of their contours, and the
@@ -238,6 +241,11 @@ std::vector<std::string> write_layers(const std::string& path, std::span<const L
 /// To write layers without holding all of them in memory, use LayerWriter::prepare as the sink of `slice_to`.
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const Layer> layers, const LayerFileInfo& info,
+                                      const LayerWriteOptions& options = {}, const Execution& execution = {});
+
+/// Writes scan vectors, or contours and hatch lines; `planes` has an entry for each plane.
+std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
+                                      std::span<const ScanVectors> planes, const LayerFileInfo& info,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});
 
 /// Writes the stacks of several parts, which must have the same planes. Throws Error{usage} that names the

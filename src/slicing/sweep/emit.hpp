@@ -10,7 +10,7 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
-#include "slicing/ordered_delivery.hpp"
+#include "core/ordered_stage.hpp"
 #include "slicing/ranks.hpp"
 #include "slicing/sweep/crew.hpp"
 #include "slicing/sweep/measure.hpp"
@@ -147,7 +147,7 @@ inline void place_contours(const std::vector<LayerEntry>& entries, Runs& runs, L
 template <class EdgesOf>
 void emit(PlaneRange planes, const Plan& plan, const Ranks& ranks, Runs& runs, EntryLists& entries,
           const EdgesOf& edges_of, Crew& crew, PointArena& arena, const LayerSink& sink,
-          OrderedDelivery& delivery) {
+          OrderedStage& delivery) {
     constexpr std::uint64_t large_layer = (std::uint64_t{2} << 20) / sizeof(Point2); // a large page
     struct Outgoing {
         std::uint64_t begin = 0; ///< offset of its points in the memory that these layers share

@@ -1,8 +1,8 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "core/executor.hpp"
+#include "core/ordered_stage.hpp"
 #include "core/stopwatch.hpp"
-#include "slicing/ordered_delivery.hpp"
 #include "slicing/sweep/crew.hpp"
 #include "slicing/sweep/cut_graph.hpp"
 #include "slicing/sweep/emit.hpp"
@@ -44,7 +44,7 @@ class alignas(128) Sweep {
   public:
     /// Requires that either all tasks are shared, or none.
     Sweep(const CutGraph<Ends>& graph, const StartIndex& starts, const PlaneLoads& loads, const Ranks& ranks,
-          const Plan& plan, bool shared, Executor& executor, const LayerSink& sink, OrderedDelivery& delivery)
+          const Plan& plan, bool shared, Executor& executor, const LayerSink& sink, OrderedStage& delivery)
         : graph_(graph), starts_(starts), ranks_(ranks), plan_(plan), sink_(sink), delivery_(delivery),
           crew_(executor, shared), walk_(graph), columns_(room_for_columns(loads, shared)),
           arena_(loads.all_points) {
@@ -148,7 +148,7 @@ class alignas(128) Sweep {
     const Ranks& ranks_;
     const Plan& plan_;
     const LayerSink& sink_;
-    OrderedDelivery& delivery_;
+    OrderedStage& delivery_;
     Crew crew_;
     Walk<Ends> walk_;
     Runs runs_;
@@ -161,7 +161,7 @@ template <class Ends>
 void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& ranks, Executor& executor) {
     const Stopwatch slicing;
     ProgressMeter progress(job.execution, Stage::slice, ranks.count());
-    OrderedDelivery delivery(executor, progress);
+    OrderedStage delivery(executor, progress);
 
     const std::vector<NodeRange> shares = count_nodes(graph, ranks.count(), executor);
     const PlaneLoads loads = loads_of(shares, ranks.count());

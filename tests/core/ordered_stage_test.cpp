@@ -2,8 +2,8 @@
 #include "lamella/core/error.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include "core/ordered_stage.hpp"
 #include "fixtures/random.hpp"
-#include "slicing/ordered_delivery.hpp"
 
 #include <gtest/gtest.h>
 
@@ -48,14 +48,14 @@ struct Delivery {
     Executor executor;
     LayerSink sink;
     ProgressMeter progress;
-    OrderedDelivery delivery{executor, progress};
+    OrderedStage delivery{executor, progress};
 };
 
 constexpr auto nothing_in_order = [](Layer&&) {
     return std::function<void()>();
 };
 
-TEST(OrderedDelivery, RunsTheOrderedPartsInOrderWhateverTheOrderOfDelivery) {
+TEST(OrderedStage, RunsTheOrderedPartsInOrderWhateverTheOrderOfDelivery) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         std::vector<std::uint64_t> arrived;
         std::vector<std::uint64_t> ordered;
@@ -76,7 +76,7 @@ TEST(OrderedDelivery, RunsTheOrderedPartsInOrderWhateverTheOrderOfDelivery) {
     }
 }
 
-TEST(OrderedDelivery, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
+TEST(OrderedStage, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
     constexpr std::uint32_t planes = 2000;
     std::atomic<int> inside{0};
     std::atomic<int> parallel{0};
@@ -99,14 +99,14 @@ TEST(OrderedDelivery, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
         ASSERT_EQ(ordered[i], i);
 }
 
-TEST(OrderedDelivery, CountsLayersWithoutAnOrderedPart) {
+TEST(OrderedStage, CountsLayersWithoutAnOrderedPart) {
     Delivery delivery(3, nothing_in_order);
     for (const std::uint32_t plane : {0U, 1U, 2U})
         delivery.deliver(plane);
     EXPECT_TRUE(delivery.delivery.wait_for(3));
 }
 
-TEST(OrderedDelivery, LetsGoOfAnOrderedPartOnceItHasRun) {
+TEST(OrderedStage, LetsGoOfAnOrderedPartOnceItHasRun) {
     const auto token = std::make_shared<int>(0);
     const LayerSink sink = [&](Layer&&) -> std::function<void()> {
         return [kept = token] {
@@ -119,7 +119,7 @@ TEST(OrderedDelivery, LetsGoOfAnOrderedPartOnceItHasRun) {
     EXPECT_EQ(token.use_count(), 1);
 }
 
-TEST(OrderedDelivery, PassesAnExceptionOfTheParallelPartToWhoDelivered) {
+TEST(OrderedStage, PassesAnExceptionOfTheParallelPartToWhoDelivered) {
     const LayerSink sink = [](Layer&& layer) -> std::function<void()> {
         if (layer.index == 1)
             throw std::runtime_error("no room for layer 1");
@@ -130,7 +130,7 @@ TEST(OrderedDelivery, PassesAnExceptionOfTheParallelPartToWhoDelivered) {
     EXPECT_THROW(delivery.deliver(1), std::runtime_error);
 }
 
-TEST(OrderedDelivery, StopsForGoodWhenAnOrderedPartThrows) {
+TEST(OrderedStage, StopsForGoodWhenAnOrderedPartThrows) {
     std::vector<std::uint64_t> ordered;
     const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
         return [&, index = layer.index] {
@@ -149,7 +149,7 @@ TEST(OrderedDelivery, StopsForGoodWhenAnOrderedPartThrows) {
     EXPECT_TRUE(delivery.delivery.wait_for(1));
 }
 
-TEST(OrderedDelivery, HoldsBackWhoeverWaitsForAPlane) {
+TEST(OrderedStage, HoldsBackWhoeverWaitsForAPlane) {
     Delivery delivery(10, nothing_in_order, {.threads = 2});
     std::atomic<int> delivered{0};
     delivery.executor.run([&](unsigned worker) {
@@ -168,7 +168,7 @@ TEST(OrderedDelivery, HoldsBackWhoeverWaitsForAPlane) {
     });
 }
 
-TEST(OrderedDelivery, LetsWaitersGoWhenTheCallerCancels) {
+TEST(OrderedStage, LetsWaitersGoWhenTheCallerCancels) {
     CancelFlag stop;
     Delivery delivery(10, nothing_in_order, {.threads = 2, .cancel = &stop});
     EXPECT_THROW(delivery.executor.run([&](unsigned worker) {
@@ -180,7 +180,7 @@ TEST(OrderedDelivery, LetsWaitersGoWhenTheCallerCancels) {
                  Error);
 }
 
-TEST(OrderedDelivery, LetsWaitersGoWhenAnotherWorkerFails) {
+TEST(OrderedStage, LetsWaitersGoWhenAnotherWorkerFails) {
     const LayerSink sink = [](Layer&&) -> std::function<void()> {
         throw std::runtime_error("parallel");
     };

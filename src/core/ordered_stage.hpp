@@ -5,6 +5,7 @@
 
 #include "core/executor.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <chrono>
 #include <condition_variable>
@@ -18,14 +19,14 @@ namespace lamella {
 /// Runs the functions that a sink returns for planes, one at a time and in the order of planes. The thread
 /// that delivers the next plane in order runs the functions that are then due. No function is run once the
 /// executor is stopping.
-class OrderedDelivery {
+class OrderedStage {
   public:
-    OrderedDelivery(const Executor& executor, ProgressMeter& progress)
+    OrderedStage(const Executor& executor, ProgressMeter& progress)
         : executor_(executor), progress_(progress) {}
 
     /// Delivers the plane at this position of the plan. Each plane must be delivered once. The action may be
     /// empty. Thread-safe.
-    void deliver(std::uint32_t plane, std::function<void()> action) {
+    void deliver(std::uint64_t plane, std::function<void()> action) {
         std::unique_lock lock(mutex_);
         assert(plane >= next_ && !waiting_.contains(plane)); // no layer is delivered twice
         waiting_.emplace(plane, std::move(action));
@@ -55,7 +56,7 @@ class OrderedDelivery {
     }
 
     /// Waits until all planes before `plane` are delivered. Returns false if slicing stops.
-    [[nodiscard]] bool wait_for(std::uint32_t plane) {
+    [[nodiscard]] bool wait_for(std::uint64_t plane) {
         std::unique_lock lock(mutex_);
         while (next_ < plane) {
             if (failed_ || executor_.stopping())
@@ -66,17 +67,30 @@ class OrderedDelivery {
     }
 
     /// Returns the number of layers that the sink has finished. Must not be called during a delivery.
-    [[nodiscard]] std::uint32_t delivered() const noexcept { return next_; }
+    [[nodiscard]] std::uint64_t delivered() const noexcept { return next_; }
 
   private:
     const Executor& executor_;
     ProgressMeter& progress_;
     std::mutex mutex_;
     std::condition_variable moved_;
-    std::map<std::uint32_t, std::function<void()>> waiting_;
-    std::uint32_t next_ = 0;
+    std::map<std::uint64_t, std::function<void()>> waiting_;
+    std::uint64_t next_ = 0;
     bool draining_ = false;
     bool failed_ = false;
 };
+
+/// Calls prepare(i) for each i of [0, n) on all workers, and the actions that it returns in ascending order.
+/// Each worker is at most one item ahead: no more than `workers` results wait. Throws the errors of both, and
+/// Error{cancelled}.
+template <class Prepare>
+void run_in_order(Executor& executor, ProgressMeter& progress, std::uint64_t n, const Prepare& prepare) {
+    OrderedStage stage(executor, progress);
+    executor.for_chunks(n, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        if (stage.wait_for(i + 1 - std::min<std::uint64_t>(i + 1, executor.workers())))
+            stage.deliver(i, prepare(i));
+    });
+    executor.check_cancelled();
+}
 
 } // namespace lamella
