@@ -1,0 +1,89 @@
+#include "system/nameless_file.hpp"
+#include "temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+namespace lamella::nameless_file_cases {
+namespace {
+
+TEST(NamelessFile, HasNoNameUntilItGetsOne) {
+    const TemporaryFolder folder;
+    const int descriptor = create_nameless(folder.path().string(), 0640);
+    if (descriptor < 0 && errno == EOPNOTSUPP)
+        GTEST_SKIP() << "this file system has no files without a name";
+    ASSERT_GE(descriptor, 0);
+    EXPECT_EQ(::write(descriptor, "bytes", 5), 5);
+    EXPECT_TRUE(folder.entries().empty());
+    write_file(folder.file("taken"), "old");
+    EXPECT_FALSE(name_file(descriptor, folder.file("taken").c_str()));
+    EXPECT_EQ(errno, EEXIST);
+    EXPECT_TRUE(name_file(descriptor, folder.file("new").c_str()));
+    ::close(descriptor);
+    EXPECT_EQ(file_bytes(folder.file("new")), "bytes");
+    EXPECT_EQ(file_bytes(folder.file("taken")), "old");
+}
+
+TEST(NamelessFile, OfScratchIsForThisUserOnlyAndLeavesNothing) {
+    const TemporaryFolder folder;
+    const int descriptor = create_scratch(folder.path().string());
+    ASSERT_GE(descriptor, 0);
+    EXPECT_TRUE(folder.entries().empty());
+    EXPECT_EQ(::write(descriptor, "bytes", 5), 5);
+    char read[5] = {};
+    EXPECT_EQ(::pread(descriptor, read, 5, 0), 5);
+    EXPECT_EQ(std::string(read, 5), "bytes");
+    struct stat status {};
+    ASSERT_EQ(::fstat(descriptor, &status), 0);
+    EXPECT_EQ(status.st_mode & 0777U, 0600U);
+    ::close(descriptor);
+    EXPECT_TRUE(folder.entries().empty());
+    EXPECT_LT(create_scratch(folder.file("absent")), 0);
+    EXPECT_EQ(errno, ENOENT);
+}
+
+TEST(NamelessFile, TakesTheFirstFreeHiddenName) {
+    const TemporaryFolder folder;
+    const std::string target = folder.file("part.cli");
+    std::vector<std::string> tried;
+    const auto take_third = [&](const char* name) {
+        tried.emplace_back(name);
+        errno = tried.size() == 1 ? EEXIST : EINTR;
+        return tried.size() == 3;
+    };
+    const std::string name = take_free_name(target, "me", take_third);
+    EXPECT_EQ(tried,
+              (std::vector<std::string>{folder.file(".part.cli.me-0.tmp"), folder.file(".part.cli.me-1.tmp"),
+                                        folder.file(".part.cli.me-1.tmp")}));
+    EXPECT_EQ(name, tried.back());
+    const auto refuse = [](const char*) {
+        errno = EACCES;
+        return false;
+    };
+    EXPECT_EQ(take_free_name(target, "me", refuse), "");
+    const std::string longest(255, 'x');
+    EXPECT_LE(take_free_name(folder.file(longest), this_process(), [](const char*) { return true; }).size(),
+              folder.file("").size() + 255);
+}
+
+TEST(NamelessFile, IsWhereTheEnvironmentWants) {
+    const char* const before = std::getenv("TMPDIR");
+    const std::string kept = before == nullptr ? "" : before;
+    ::setenv("TMPDIR", "/some/where", 1);
+    EXPECT_EQ(scratch_folder(), "/some/where");
+    ::setenv("TMPDIR", "", 1);
+    EXPECT_TRUE(scratch_folder() == "/var/tmp" || scratch_folder() == "/tmp");
+    if (before == nullptr)
+        ::unsetenv("TMPDIR");
+    else
+        ::setenv("TMPDIR", kept.c_str(), 1);
+}
+
+} // namespace
+} // namespace lamella::nameless_file_cases

@@ -1,0 +1,169 @@
+#include "lamella/write/layer_writer.hpp"
+
+#include "fixtures/expect_error.hpp"
+#include "plain_formats.hpp"
+#include "sample_layers.hpp"
+#include "temporary_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella {
+namespace {
+
+using test::error_of;
+
+TEST(LayerWriter, SaysWhichGapsBetweenLayersAreLost) {
+    LayerStack layers = square_with_hole();
+    layers.push_back(layers.back());
+    layers[2].index = 2;
+    for (double* height : {&layers[2].z, &layers[2].bottom, &layers[2].top})
+        *height += 2;
+    const TemporaryFolder folder;
+    for (const LayerFormat* format : plain_formats()) {
+        const std::vector<std::string> warnings =
+            write_layers(folder.file("out"), *format, layers, info_of(layers), options_for_any());
+        const bool lost = std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+            return warning.find("1 gap or overlap of layers was left out, the lowest at z = 2.75 mm") !=
+                   std::string::npos;
+        });
+        EXPECT_EQ(lost,
+                  is_one_of(format->name, {"cli", "cli-ascii", "slc", "3mf", "ilt", "ovf", "3mf-toolpath"}))
+            << format->name;
+    }
+    const std::string error = error_of(ErrorKind::usage, [&] {
+        write_layers(folder.file("out"), layer_format("sl1", ""), layers, info_of(layers), options_for_any());
+    });
+    EXPECT_NE(error.find("layer 2 begins at 2.5 mm, the one before ends at 1 mm"), std::string::npos)
+        << error;
+}
+
+TEST(LayerWriter, SaysWhichCutsAreLost) {
+    // As the table says, but for those that can be read back.
+    const std::string_view keep[] = {"json", "npz", "svg"};
+    for (const LayerFormat& format : layer_formats()) {
+        if (!format.one_way) {
+            EXPECT_EQ(format.cuts, std::find(std::begin(keep), std::end(keep), format.name) != std::end(keep))
+                << format.name;
+        }
+        const TemporaryFolder folder;
+        const auto warning = [&](double fraction) {
+            LayerStack layers = square_with_hole();
+            for (Layer& layer : layers)
+                layer.z = layer.bottom + fraction * layer.thickness();
+            for (const std::string& line :
+                 write_layers(folder.file("layers"), format, layers, info_of(layers), options_for_any()))
+                if (line.find(" cut ") != std::string::npos)
+                    return line;
+            return std::string();
+        };
+        EXPECT_EQ(warning(0.5), "");
+        for (const auto& [fraction, text] :
+             {std::pair{0.0, "2 layers were cut at the bottom, the lowest at z = 0 mm"},
+              {1.0, "2 layers were cut at the top, the lowest at z = 0.5 mm"},
+              {0.3, "2 layers were cut elsewhere than in the middle"}})
+            EXPECT_EQ(warning(fraction).starts_with(text), !format.cuts)
+                << format.name << ": " << warning(fraction);
+        LayerStack layers = square_with_hole();
+        layers.back().z = layers.back().top;
+        LayerWriteOptions options = options_for_any();
+        options.strict = true;
+        if (!format.cuts && !format.filled_parts) { // which warn of parts without parameters
+            EXPECT_TRUE(error_of(ErrorKind::defect,
+                                 [&] {
+                                     write_layers(folder.file("layers"), format, layers, info_of(layers),
+                                                  options);
+                                 })
+                            .find("1 layer was cut at the top") != std::string::npos)
+                << format.name;
+        }
+    }
+}
+
+TEST(LayerWriter, SaysWhichLabelsAreNotWrittenAsTheyAre) {
+    const TemporaryFolder folder;
+    const LayerStack layers = square_with_hole();
+    LayerFileInfo info = info_of(layers);
+    info.parts = {{.label = std::string(70'000, 'x') + '\1'}};
+    for (const LayerFormat* format : plain_formats()) {
+        if (is_one_of(format->name, {"slc", "dxf", "html", "png-zip"})) // no labels, or for looking at
+            continue;
+        const std::vector<std::string> warnings =
+            write_layers(folder.file("out"), *format, layers, info, options_for_any());
+        EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const std::string& warning) {
+            return warning.find("1 label was changed") != std::string::npos;
+        })) << format->name;
+    }
+}
+
+bool says(const std::vector<std::string>& warnings, std::string_view text) {
+    return std::any_of(warnings.begin(), warnings.end(),
+                       [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+TEST(LayerWriter, SaysWhichLabelsHaveNoPlace) {
+    const TemporaryFolder folder;
+    const LayerStack layers = square_with_hole();
+    LayerFileInfo info = info_of(layers);
+    for (const char* format : {"slc", "dxf"}) {
+        info.parts = {{.label = "part"}};
+        EXPECT_TRUE(write_layers(folder.file("out"), layer_format(format, ""), layers, info).empty());
+        info.parts = {{.label = "bracket"}};
+        EXPECT_EQ(write_layers(folder.file("out"), layer_format(format, ""), layers, info),
+                  (std::vector<std::string>{
+                      "1 label was not written, the first \"bracket\": the format cannot hold labels"}))
+            << format;
+    }
+}
+
+TEST(LayerWriter, SaysWhichPartsAreSupportsWhereTheFormatCannot) {
+    const TemporaryFolder folder;
+    const LayerStack stack = square_with_hole();
+    LayerFileInfo info = info_of(stack);
+    info.parts = {{.label = "body"}, {.label = "foot", .support = true}, {.label = "leg", .support = true}};
+    constexpr std::string_view text = "2 parts are supports: the format cannot hold that; 3mf has";
+    for (const LayerFormat* format : plain_formats()) {
+        const std::vector<std::string> warnings = write_layers(
+            folder.file("out"), *format, std::vector<LayerStack>(3, stack), info, options_for_any());
+        EXPECT_EQ(says(warnings, text), !is_one_of(format->name, {"3mf", "html", "png-zip"})) << format->name;
+        EXPECT_LE(std::count_if(warnings.begin(), warnings.end(),
+                                [](const std::string& warning) {
+                                    return warning.find("supports") != std::string::npos;
+                                }),
+                  1);
+    }
+    for (PartInfo& part : info.parts)
+        part.exposure = Exposure{.part = part.label, .region = ScanRegion::support, .parameters = {}};
+    EXPECT_FALSE(says(
+        write_layers(folder.file("out"), layer_format("ovf", ""), std::vector<LayerStack>(3, stack), info),
+        "supports"));
+}
+
+TEST(LayerWriter, CountsContoursThatVanishHoweverFineTheFormatIs) {
+    const TemporaryFolder folder;
+    LayerBuilder builder;
+    add_contour(builder, {{0, 0}, {1e-4, 0}, {0, 1e-4}});
+    const LayerStack layers{builder.finish(0, 0.5, 0, 1)};
+    for (const char* format : {"cli-ascii", "svg", "3mf", "dxf", "geojson", "3mf-toolpath"})
+        EXPECT_TRUE(says(write_layers(folder.file("out"), layer_format(format, ""), layers, info_of(layers)),
+                         "rounding left out 1 contour, first in layer 0;"))
+            << format;
+}
+
+TEST(LayerWriter, SaysNothingOfPointsThatSinglePrecisionKeepsFarFromTheOrigin) {
+    const TemporaryFolder folder;
+    LayerBuilder builder;
+    add_contour(builder, {{0, 0}, {1e7, 0}, {1e7, 1e7}});
+    const LayerStack layers{builder.finish(0, 0.5, 0, 1)};
+    for (const char* format : {"cli", "slc"})
+        EXPECT_TRUE(
+            write_layers(folder.file("out"), layer_format(format, ""), layers, info_of(layers)).empty())
+            << format;
+}
+
+} // namespace
+} // namespace lamella

@@ -1,0 +1,81 @@
+#include "lamella/core/error.hpp"
+
+#include "sample_layers.hpp"
+#include "temporary_folder.hpp"
+#include "write/sequential_writer.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace lamella::sequential_writer_cases {
+namespace {
+
+/// Writes "(header", then for each plane its position and the index of its layer, then "tail)".
+class Sample final : public SequentialWriter {
+  public:
+    Sample(const std::string& path, const LayerFileInfo& info)
+        : SequentialWriter(path, info, "(header", {}) {}
+
+  private:
+    std::string layer_header(const PlanePosition& plane) override {
+        return fmt::format(" {}:", plane.position);
+    }
+    void format(const PlaneView& plane, ByteBuffer& out) const override {
+        out.append(fmt::format("{}", plane.layers.front().index));
+    }
+    std::string tail() override { return " tail)"; }
+};
+
+const LayerStack layers = random_layers(1, 6, 10, {0, 0}, false);
+const std::string expected = "(header 0:0 1:1 2:2 3:3 4:4 5:5 tail)";
+
+TEST(SequentialWriter, WritesHeaderLayersAndTailInOrder) {
+    const TemporaryFolder folder;
+    Sample writer(folder.file("x"), info_of(layers));
+    std::vector<std::function<void()>> prepared(layers.size());
+    for (std::size_t i = layers.size(); i-- > 0;) // prepared in any order
+        prepared[i] = writer.prepare({&layers[i], 1});
+    for (const auto& write : prepared)
+        write();
+    EXPECT_EQ(folder.entries(), std::vector<std::string>{}) << "no name before the end";
+    writer.finish();
+    EXPECT_EQ(file_bytes(folder.file("x")), expected);
+    EXPECT_EQ(writer.bytes(), expected.size());
+}
+
+TEST(SequentialWriter, WritesChunksThatMakeUpTheFile) {
+    for (std::size_t first = 0; first <= layers.size(); ++first)
+        for (std::size_t second = first; second <= layers.size(); ++second) {
+            std::string all;
+            std::size_t begin = 0;
+            for (const std::size_t end : {first, second, layers.size()}) {
+                std::string bytes;
+                LayerFileChunk chunk;
+                chunk.before = begin;
+                chunk.layers = end - begin;
+                chunk.put = [&](std::string_view some) {
+                    bytes += some;
+                };
+                LayerFileInfo info = info_of(layers);
+                info.chunk = &chunk;
+                Sample writer("", info);
+                for (; begin < end; ++begin)
+                    writer.prepare({&layers[begin], 1})();
+                writer.finish();
+                EXPECT_EQ(writer.bytes(), bytes.size());
+                all += bytes;
+            }
+            if (first > 0 && second > first && second < layers.size()) {
+                EXPECT_EQ(all, expected) << first << ' ' << second;
+            }
+        }
+}
+
+} // namespace
+} // namespace lamella::sequential_writer_cases
