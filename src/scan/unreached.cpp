@@ -208,10 +208,12 @@ double contour_reach(const ContourRule& rule) noexcept {
 
 void add_strokes(const Layer& polylines, std::span<const Point2> hatches, double reach,
                  std::vector<Stroke>& strokes) {
-    for (std::size_t i = 0; i < polylines.rings; ++i) {
-        const std::span<const Point2> ring = polylines.contour(i);
-        for (std::size_t p = 0; p < ring.size(); ++p)
-            strokes.push_back({ring[p], ring[p + 1 < ring.size() ? p + 1 : 0], reach});
+    for (std::size_t i = 0; i < polylines.contours(); ++i) {
+        const std::span<const Point2> line = polylines.contour(i);
+        for (std::size_t p = 1; p < line.size(); ++p)
+            strokes.push_back({line[p - 1], line[p], reach});
+        if (polylines.closed(i) && !line.empty())
+            strokes.push_back({line.back(), line.front(), reach});
     }
     for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
         strokes.push_back({hatches[i], hatches[i + 1], reach});

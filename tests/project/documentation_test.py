@@ -77,6 +77,15 @@ class Documentation(unittest.TestCase):
                 found = re.search(rf"\({suite},\s+{test}\)", cpp)
             self.assertTrue(found, name)
 
+    def test_sources_without_a_test_of_their_own_name_are_listed(self):
+        """See "Tests" in CONTRIBUTING.md."""
+        tests = [path.name for path in ROOT.glob("tests/**/*_test.cpp")]
+        untested = [str(path.relative_to(ROOT)) for path in sorted(ROOT.glob("src/**/*.cpp"))
+                    if not any(re.fullmatch(rf"{path.stem}[a-z_]*_test\.cpp", name) for name in tests)]
+        page = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+        listed = re.findall(r"^\| `(src/[^`]+)` \| \S", page, re.MULTILINE)
+        self.assertEqual(listed, untested)
+
     def test_words_that_were_replaced_do_not_come_back(self):
         """See the glossary in CONTRIBUTING.md."""
         gone = re.compile(r"\b(crowded|torn corners?|one-sided|so many|so much|told|abscissa|oddity|"

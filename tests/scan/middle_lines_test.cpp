@@ -6,6 +6,7 @@
 #include "fixtures/rounds.hpp"
 #include "polygon/edge_tree.hpp"
 #include "scan/middle_lines.hpp"
+#include "scan/turned_layer.hpp"
 #include "scan/unreached.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +14,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -28,6 +28,7 @@ using test::rectangle;
 using test::regular_polygon;
 using test::reversed;
 using test::rounds_within_reason;
+using test::turned;
 
 using Lines = std::vector<std::vector<Point2>>;
 
@@ -69,16 +70,6 @@ void expect_inside(const Layer& layer, const Lines& lines) {
             EXPECT_GT(edges.distance_squared(segment_between(line[i - 1], line[i]), 0), 0)
                 << "a line meets the outline at " << line[i].x << ' ' << line[i].y;
     }
-}
-
-Layer turned(const Layer& layer, double degrees, Point2 by) {
-    const double angle = degrees * std::numbers::pi / 180;
-    std::vector<Contour> rings = test::contours(layer);
-    for (Contour& ring : rings)
-        for (Point2& p : ring)
-            p = {p.x * std::cos(angle) - p.y * std::sin(angle) + by.x,
-                 p.x * std::sin(angle) + p.y * std::cos(angle) + by.y};
-    return normal_layer(rings);
 }
 
 TEST(MiddleLines, OfAFinRunAlongItFromEndToEnd) {
@@ -201,31 +192,6 @@ TEST(MiddleLines, AreTheSameWhateverElseThereIs) {
     ASSERT_EQ(more.size(), 3U);
     EXPECT_NE(std::find(more.begin(), more.end(), alone.front()), more.end());
     EXPECT_TRUE(lines_of(Layer{}).empty());
-}
-
-TEST(NarrowPlaces, AreNoneWhereAllIsWide) {
-    for (const Contour& ring : {rectangle(0, 0, 10, 10), regular_polygon(300, 5), regular_polygon(5, 2)})
-        EXPECT_EQ(narrow_points(normal_layer({ring}), offset(normal_layer({ring}), -0.05), 0.05).rings, 0U);
-    const Layer plate = normal_layer({rectangle(0, 0, 10, 10), reversed(regular_polygon(40, 1))});
-    EXPECT_EQ(narrow_points(plate, offset(plate, -0.05), 0.05).rings, 0U);
-}
-
-TEST(UnreachedArea, IsExactWhereNothingAndWhereAllIsReached) {
-    Random random(3);
-    for (int round = 0; round < rounds_within_reason(200); ++round) {
-        const double length = random.real(0.1, 20);
-        const double thick = random.real(0.01, 0.3);
-        const Layer wall = turned(layer_of({rectangle(0, 0, length, thick)}), random.real(0, 360), {});
-        EXPECT_NEAR(unreached_area(wall, {}), length * thick, 1e-9);
-        const std::vector<Stroke> far{{{50, 50}, {60, 60}, 0.1}};
-        EXPECT_NEAR(unreached_area(wall, far), length * thick, 1e-9);
-        const std::vector<Stroke> all{{{-30, 0}, {30, 0}, 40}};
-        EXPECT_EQ(unreached_area(wall, all), 0);
-    }
-    // Half of it is reached, to a few steps.
-    const Layer wall = layer_of({rectangle(0, 0, 10, 0.2)});
-    const std::vector<Stroke> half{{{-1, 0}, {11, 0}, 0.1}};
-    EXPECT_NEAR(unreached_area(wall, half), 1, 0.02);
 }
 
 } // namespace

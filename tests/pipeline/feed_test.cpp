@@ -1,0 +1,126 @@
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/write/mesh_writer.hpp"
+
+#include "fixtures/expect_error.hpp"
+#include "fixtures/layer_checks.hpp"
+#include "fixtures/rounds.hpp"
+#include "parts/shapes.hpp"
+#include "pipeline/feed.hpp"
+#include "temporary_folder.hpp"
+#include "thread_processes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace lamella::feed_cases {
+namespace {
+
+/// Too little for the whole mesh, but enough for a range. Messages between processes take some, too.
+std::uint64_t little_memory(std::size_t processes) {
+    return processes == 1 ? 52'000'000 : 70'000'000;
+}
+
+class FeedOfFiles : public testing::Test {
+  protected:
+    FeedOfFiles() {
+        write_stl(folder_.file("torus.stl"), make_torus(20, 8, test::slowed ? 60 : 300, 200));
+        write_stl(folder_.file("box.stl"), make_box(9, 8, 7));
+        job_.inputs = {{.path = folder_.file("torus.stl"), .placement = translation(30, 30, 9)},
+                       {.path = folder_.file("box.stl"), .placement = translation(80, 5, 0), .copies = 2}};
+        job_.layer_statistics = true;
+    }
+
+    [[nodiscard]] Plan plan() const {
+        const Plate plate = load_plate(job_.inputs);
+        return plan_uniform(plate.box.min.z, plate.box.max.z, {.layer_height = 0.25});
+    }
+
+    TemporaryFolder folder_;
+    FileJob job_;
+};
+
+// The oracle reads each file as a whole.
+TEST_F(FeedOfFiles, GivesEachRangeTheTrianglesOfItsLayers) {
+    const Plate whole = load_plate(job_.inputs);
+    const Plan planes = plan();
+    const LayerStack expected = slice(whole, planes);
+    PlaneCounts counts(planes.layers.size());
+    for (const PlatePart& part : whole.parts)
+        counts.add(count_planes(whole.shapes[part.shape].mesh, planes));
+    double sum = 0;
+    for (const PlatePart& part : whole.parts)
+        sum += volume(whole.shapes[part.shape].mesh);
+
+    for (const bool little : {false, true})
+        for (const std::size_t processes : {1U, 2U, 3U}) {
+            job_.max_memory = little ? little_memory(processes) : 0;
+            std::vector<std::uint64_t> hashes(planes.layers.size(), 0);
+            std::vector<int> taken(planes.layers.size(), 0);
+            std::mutex mutex;
+            test::run_processes(processes, [&](Communicator& own) {
+                const Execution execution{.threads = 2};
+                Feed feed(job_, engines().front(), own, execution);
+                EXPECT_EQ(feed.plate().box, whole.box);
+                if (little && processes == 1) {
+                    EXPECT_TRUE(feed.in_ranges());
+                }
+                ASSERT_EQ(feed.plate().parts.size(), whole.parts.size());
+                for (std::size_t shape = 0; shape < whole.shapes.size(); ++shape)
+                    EXPECT_EQ(feed.triangles(shape), whole.shapes[shape].mesh.size());
+                PlaneCounts found = feed.count(planes, execution);
+                for (std::size_t p = 0; p < planes.layers.size(); ++p) {
+                    EXPECT_EQ(found.begins(p), counts.begins(p));
+                    EXPECT_EQ(found.ends(p), counts.ends(p));
+                }
+                if (feed.meshes() == nullptr) {
+                    EXPECT_NEAR(feed.volume_mm3(), sum, 1e-9 * sum);
+                }
+                std::vector<PlaneRange> division;
+                const auto n = static_cast<std::uint32_t>(planes.layers.size());
+                for (std::uint32_t p = 0; p < own.size(); ++p)
+                    division.push_back({n * p / static_cast<std::uint32_t>(own.size()),
+                                        n * (p + 1) / static_cast<std::uint32_t>(own.size())});
+                const std::vector<PlaneRange> ranges = feed.bring(planes, division, execution);
+                std::uint32_t next = division[own.process()].begin;
+                for (std::size_t r = 0; r < ranges.size(); ++r) {
+                    EXPECT_EQ(ranges[r].begin, next) << "without gaps";
+                    next = ranges[r].end;
+                    const LayerStack layers = slice(feed.take(r, execution), part_of(planes, ranges[r]));
+                    const std::lock_guard lock(mutex);
+                    for (std::uint32_t k = 0; k < ranges[r].size(); ++k) {
+                        hashes[ranges[r].begin + k] = content_hash(layers[k]);
+                        ++taken[ranges[r].begin + k];
+                    }
+                }
+                EXPECT_EQ(next, division[own.process()].end);
+            });
+            EXPECT_EQ(hashes, test::hashes(expected)) << little << ' ' << processes;
+            EXPECT_EQ(std::count(taken.begin(), taken.end(), 1), std::ssize(taken)) << "each plane once";
+        }
+}
+
+TEST_F(FeedOfFiles, RefusesStandardInputForSeveralProcesses) {
+    job_.inputs = {{.path = "-"}};
+    const Error error = test::common_failure(
+        2, [&](Communicator& own) { const Feed feed(job_, engines().front(), own, {}); });
+    EXPECT_EQ(error.kind(), ErrorKind::usage);
+    EXPECT_NE(std::string(error.what()).find("standard input"), std::string::npos);
+}
+
+TEST_F(FeedOfFiles, NamesTheOptionThatNeedsTheWholeMesh) {
+    job_.max_memory = 1'000'000;
+    job_.inspect = true;
+    test::expect_error(ErrorKind::limit,
+                       {"torus.stl", "`max_memory`", "`inspect`, which needs the whole mesh"},
+                       [&] { const Feed feed(job_, engines().front(), alone(), {.threads = 1}); });
+}
+
+} // namespace
+} // namespace lamella::feed_cases
