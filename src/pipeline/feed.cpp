@@ -6,6 +6,7 @@
 #include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "core/pages.hpp"
+#include "core/progress.hpp"
 #include "core/stopwatch.hpp"
 #include "mesh/folds.hpp"
 #include "pipeline/agreement.hpp"
@@ -280,12 +281,10 @@ std::uint64_t Feed::bytes_of(const File& file, const std::optional<RecordRange>&
 MeshFile Feed::stream(const File& file, const TriangleSink& sink, const Execution& execution,
                       const std::optional<RecordRange>& part) {
     const Stopwatch reading;
-    Execution counted = execution;
-    if (execution.progress)
-        counted.progress = [&](const Progress& progress) {
-            execution.progress(
-                {Stage::read, std::min(bytes_read_ + progress.done, bytes_to_read_), bytes_to_read_});
-        };
+    const Execution counted = with_progress(execution, [&](const Progress& progress) {
+        return std::optional(
+            Progress{Stage::read, std::min(bytes_read_ + progress.done, bytes_to_read_), bytes_to_read_});
+    });
     MeshFile read = file.input.stream(sink, reading_, counted, part);
     bytes_read_ += bytes_of(file, part);
     figures_.read_seconds += reading.seconds();
@@ -643,9 +642,7 @@ Plate Feed::take(std::size_t range, const Execution& execution) {
         return plate;
     }
     RangeStore store(*plan_, std::span(&ranges_[range], 1), counts_);
-    Execution silent = execution; // the end of reading has already been reported
-    silent.progress = nullptr;
-    bring_own(ranges_[range], store, silent);
+    bring_own(ranges_[range], store, without_progress(execution)); // the end of reading was already reported
     take_from(store, 0);
     return plate;
 }

@@ -13,6 +13,15 @@
 
 namespace lamella {
 
+std::vector<std::uint32_t> files_of(const Plate& plate) {
+    std::vector<std::uint32_t> files;
+    for (const PlatePart& part : plate.parts)
+        files.push_back(static_cast<std::uint32_t>(plate.shapes[part.shape].input));
+    for (const PlateNegative& negative : plate.negatives)
+        files.push_back(static_cast<std::uint32_t>(plate.shapes[negative.shape].input));
+    return files;
+}
+
 LayerTotals::LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes,
                          const std::vector<bool>& supports, std::vector<std::uint32_t> files)
     : closed_(job.repair.close_gaps_mm ? planes.size() : 0), changes_(job.steps.any() ? planes.size() : 0),

@@ -3,6 +3,7 @@
 // Gathers figures of layers on their way to the output.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -16,6 +17,9 @@
 #include <vector>
 
 namespace lamella {
+
+/// Returns the index of the file of each part, and then of each negative volume.
+[[nodiscard]] std::vector<std::uint32_t> files_of(const Plate& plate);
 
 /// Has a row for each plane, and adds the rows in their order at the end. So any number of threads, ranges
 /// and processes gives the same figures, bit for bit.

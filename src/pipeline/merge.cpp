@@ -9,6 +9,7 @@
 #include "container/common_layer_format.hpp"
 #include "container/gzip.hpp"
 #include "contour/same_height.hpp"
+#include "core/progress.hpp"
 #include "system/atomic_file.hpp"
 #include "system/byte_source.hpp"
 #include "system/memory_size.hpp"
@@ -450,17 +451,19 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
         // Formats without indices count each file from 0.
         const LayerStack& known = file.parts.front().layers;
         const std::uint64_t moved = next > known.front().index ? next - known.front().index : 0;
-        for (std::size_t i = 0; i < known.size(); ++i) {
+        const auto moved_plane = [&](std::size_t i) {
             ScanVectors plane = plane_of(file, i, parts);
             for (Layer& layer : plane.polylines) {
                 layer.index += moved;
                 if (i == 0 && std::abs(layer.bottom - top) <= rounded)
                     layer.bottom = top;
             }
-            top = plane.polylines.front().top;
-            next = plane.polylines.front().index + 1;
-            writer->prepare(plane)();
-        }
+            return plane;
+        };
+        write_planes(*writer, known.size(), moved_plane,
+                     without_progress(execution)); // a stage must not repeat for each file
+        top = known.back().top;
+        next = known.back().index + moved + 1;
     }
     writer->finish();
     result.bytes = writer->bytes();

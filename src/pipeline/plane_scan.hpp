@@ -5,6 +5,7 @@
 #include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/layer_limits.hpp"
+#include "lamella/pipeline/plate.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 
@@ -31,6 +32,9 @@ struct PlaneVectors {
     std::vector<InvertedRings> inverted; ///< those of each part; no vectors are made of them
     std::uint64_t hash = 0;              ///< of `vectors`: see content_hash
 };
+
+/// Returns for each part whether it is a support.
+[[nodiscard]] std::vector<bool> supports_of(const Plate& plate);
 
 /// Returns the exposures that figures are counted for: those of parts, then those of supports, if there are
 /// any of each. `supports` is true for each part that is a support.

@@ -4,6 +4,7 @@
 
 #include "core/executor.hpp"
 #include "core/ordered_stage.hpp"
+#include "core/progress.hpp"
 #include "core/stopwatch.hpp"
 #include "slicing/plane_ranges.hpp"
 #include "slicing/shrunken_contours.hpp"
@@ -30,16 +31,13 @@ class JointProgress {
     [[nodiscard]] Execution next(const Execution& execution) {
         for (Count& count : counts_)
             count = {count.before + count.total, 0};
-        Execution run = execution;
-        if (execution.progress)
-            run.progress = [this, &execution](const Progress& progress) {
-                Count& count = counts_.at(static_cast<std::size_t>(progress.stage));
-                count.total = progress.total;
-                const std::uint64_t all = progress.stage == Stage::slice ? planes_ : triangles_;
-                const std::uint64_t done = count.before + progress.done;
-                execution.progress({progress.stage, done, std::max(all, done)});
-            };
-        return run;
+        return with_progress(execution, [this](const Progress& progress) {
+            Count& count = counts_.at(static_cast<std::size_t>(progress.stage));
+            count.total = progress.total;
+            const std::uint64_t all = progress.stage == Stage::slice ? planes_ : triangles_;
+            const std::uint64_t done = count.before + progress.done;
+            return std::optional(Progress{progress.stage, done, std::max(all, done)});
+        });
     }
 
   private:
@@ -126,13 +124,9 @@ std::vector<PlaneRange> windows(const Plate& plate, const Plan& plan, std::uint6
 
 /// Returns an execution that does not report the progress of slicing.
 Execution without_slicing(const Execution& execution) {
-    Execution run = execution;
-    if (execution.progress)
-        run.progress = [&execution](const Progress& progress) {
-            if (progress.stage != Stage::slice)
-                execution.progress(progress);
-        };
-    return run;
+    return with_progress(execution, [](const Progress& progress) {
+        return progress.stage == Stage::slice ? std::nullopt : std::optional(progress);
+    });
 }
 
 /// For each plane of a run the first one that may still be on its way while it is worked on: so that there

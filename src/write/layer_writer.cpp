@@ -351,6 +351,18 @@ void write_in_order(std::size_t planes, const Prepare& prepare, const Execution&
     progress.finish();
 }
 
+/// Writes a whole file; `prepare(writer, plane)` formats a plane.
+template <class Prepare>
+std::vector<std::string> write_file(const std::string& path, const LayerFormat& format, std::size_t planes,
+                                    const LayerFileInfo& info, const LayerWriteOptions& options,
+                                    const Execution& execution, const Prepare& prepare) {
+    const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
+    write_in_order(
+        planes, [&](std::size_t plane) { return prepare(*writer, plane); }, execution);
+    writer->finish();
+    return writer->warnings();
+}
+
 } // namespace
 
 void write_planes(LayerWriter& writer, std::size_t planes,
@@ -375,39 +387,29 @@ std::vector<std::string> write_layers(const std::string& path, std::span<const L
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const Layer> layers, const LayerFileInfo& info,
                                       const LayerWriteOptions& options, const Execution& execution) {
-    const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
-    write_in_order(
-        layers.size(), [&](std::size_t i) { return writer->prepare(layers[i]); }, execution);
-    writer->finish();
-    return writer->warnings();
+    return write_file(path, format, layers.size(), info, options, execution,
+                      [&](LayerWriter& writer, std::size_t i) { return writer.prepare(layers[i]); });
 }
 
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const ScanVectors> planes, const LayerFileInfo& info,
                                       const LayerWriteOptions& options, const Execution& execution) {
-    const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
-    write_in_order(
-        planes.size(), [&](std::size_t i) { return writer->prepare(planes[i]); }, execution);
-    writer->finish();
-    return writer->warnings();
+    return write_file(path, format, planes.size(), info, options, execution,
+                      [&](LayerWriter& writer, std::size_t i) { return writer.prepare(planes[i]); });
 }
 
 std::vector<std::string> write_layers(const std::string& path, const LayerFormat& format,
                                       std::span<const LayerStack> parts, const LayerFileInfo& info,
                                       const LayerWriteOptions& options, const Execution& execution) {
     check_same_planes(parts, info);
-    const std::unique_ptr<LayerWriter> writer = open_layer_writer(path, format, info, options);
-    const std::size_t planes = parts.empty() ? 0 : parts.front().size();
-    const auto prepare = [&](std::size_t i) {
-        std::vector<Layer> plane;
-        plane.reserve(parts.size());
-        for (const LayerStack& part : parts)
-            plane.push_back(part[i]);
-        return writer->prepare(plane);
-    };
-    write_in_order(planes, prepare, execution);
-    writer->finish();
-    return writer->warnings();
+    return write_file(path, format, parts.empty() ? 0 : parts.front().size(), info, options, execution,
+                      [&](LayerWriter& writer, std::size_t i) {
+                          std::vector<Layer> plane;
+                          plane.reserve(parts.size());
+                          for (const LayerStack& part : parts)
+                              plane.push_back(part[i]);
+                          return writer.prepare(plane);
+                      });
 }
 
 } // namespace lamella

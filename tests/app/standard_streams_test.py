@@ -54,7 +54,7 @@ class StandardStreams(ProgramTest):
                 (5, "standard output", ["slice", "-", *job, "--max-output", "100"], CONTENTS["box.stl"]),
                 (4, "standard input", ["slice", "-", *job, "--strict"], opened),
                 (2, "standard input", ["slice", "-", *job, "--layer-height", "9"], opened),
-                (2, 'standard input, part "part"', ["slice", "-", "box.stl", *job, "--z-range", "7:8"], opened)]:
+                (2, "standard input", ["slice", "-", "box.stl", *job, "--z-range", "7:8"], opened)]:
             with self.subTest(arguments):
                 self.fail_with(code, f"^lamella: error: {named}: [^-]", *arguments, stdin=stdin)
 

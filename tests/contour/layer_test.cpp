@@ -1,11 +1,13 @@
 #include "lamella/contour/layer.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/layers.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -104,6 +106,14 @@ TEST(Layer, PassesTheCheckWhereAllLengthsAreFiniteAndWithinReach) {
         changed.z = bad;
         test::expect_error(ErrorKind::usage, {"layer 7, its heights: found"}, [&] { check(changed); });
     }
+}
+
+TEST(Layer, ThatWasMovedFromHasNoContours) {
+    Layer layer = test::layer_of({test::rectangle(0, 0, 1, 1)}, {{{2, 2}, {3, 3}}});
+    const Layer taken = std::move(layer);
+    EXPECT_EQ(taken.contours(), 2U);
+    EXPECT_EQ(layer.contours(), 0U);    // NOLINT(bugprone-use-after-move): that is what is tested
+    EXPECT_EQ(layer.open_chains(), 0U); // NOLINT(bugprone-use-after-move)
 }
 
 TEST(MergedLayers, OfNoneAreAnEmptyLayer) {

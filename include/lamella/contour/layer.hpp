@@ -5,6 +5,7 @@
 
 #include "lamella/core/point.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -60,8 +61,9 @@ struct Layer {
     std::vector<std::uint64_t> offsets{0};
     std::size_t rings = 0;
 
-    [[nodiscard]] std::size_t contours() const noexcept { return offsets.size() - 1; }
-    [[nodiscard]] std::size_t open_chains() const noexcept { return contours() - rings; }
+    /// 0 for a layer that was moved from, whose `offsets` are empty.
+    [[nodiscard]] std::size_t contours() const noexcept { return offsets.empty() ? 0 : offsets.size() - 1; }
+    [[nodiscard]] std::size_t open_chains() const noexcept { return contours() - std::min(rings, contours()); }
     [[nodiscard]] bool closed(std::size_t i) const noexcept { return i < rings; }
     [[nodiscard]] double thickness() const noexcept { return top - bottom; }
     [[nodiscard]] std::span<const Point2> contour(std::size_t i) const noexcept {

@@ -1,0 +1,40 @@
+#pragma once
+
+// Plans the planes of a job, and divides them among processes and shards.
+
+#include "lamella/core/execution.hpp"
+#include "lamella/pipeline/plate.hpp"
+#include "lamella/pipeline/processes.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/slicing/plan.hpp"
+
+#include "pipeline/feed.hpp"
+
+#include <cstddef>
+#include <vector>
+
+namespace lamella {
+
+/// The planes that are sliced, and the range of them that is written. The other planes are neighbours that
+/// skins depend on.
+struct JobPlan {
+    Plan plan;
+    PlaneRange written;
+};
+
+/// Throws Error{input} for a part without height.
+void check_heights(const Plate& plate);
+
+/// Returns the planes of the job. Throws the errors of `plan_of`.
+[[nodiscard]] JobPlan plan_job(const FileJob& job, const Plate& plate, const Execution& execution);
+
+/// Returns a range extended by the neighbours that skins depend on, in a plan of `planned` planes.
+[[nodiscard]] PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t planned);
+
+/// Divides the planes that are written into ranges of equal work. Returns the range of each process, empty
+/// ones at the end if there are more processes than planes; or the range of the shard. Throws Error{usage}
+/// for a shard that does not exist.
+[[nodiscard]] std::vector<PlaneRange> divide(const FileJob& job, const JobPlan& planes, Feed& feed,
+                                             Communicator& processes, const Execution& execution);
+
+} // namespace lamella
