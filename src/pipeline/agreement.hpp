@@ -9,9 +9,9 @@
 
 namespace lamella {
 
-/// Runs a step without communication, and waits for all processes. If it throws on some of them, all throw
-/// the error of the first of these (preferably not a cancellation), as Error. An exception on a single
-/// process passes unchanged.
+/// Runs a step without communication, and waits for all processes. If it throws on some processes, all
+/// processes throw the error of the first of these as Error, and prefer one that is not a cancellation. An
+/// exception on a single process passes unchanged.
 void in_agreement(Communicator& processes, const std::function<void()>& step);
 
 } // namespace lamella

@@ -35,7 +35,7 @@ std::vector<std::string> hatched_labels(const LayerFile& file) {
     return labels;
 }
 
-/// Parts whose hatches are compared with one another: those of each label, or all.
+/// Lists of parts whose hatches are compared together: one list for each label, or one of all parts.
 using HatchedParts = std::vector<std::vector<const LayerPart*>>;
 
 HatchedParts hatched_parts(const LayerFile& file, const std::vector<std::string>& labels, bool by_label) {
@@ -59,7 +59,7 @@ std::vector<Point2> ends_of(const std::vector<const LayerPart*>& parts, std::siz
     return ends;
 }
 
-/// Returns how far a format may have moved the ends of lines.
+/// Returns the largest distance by which a format may have moved the ends of lines.
 double moved_ends(const LayerFile& file) {
     double most = 0;
     for (const LayerPart& part : file.parts)
@@ -99,7 +99,7 @@ void compare_parameters(const LayerPart& first, const LayerPart& second, bool on
     }
 }
 
-/// Returns the parts that expose anything; in some formats these are all.
+/// Returns the parts that have vectors. Some formats list no other parts.
 std::vector<const LayerPart*> exposed_parts(const LayerFile& file) {
     std::vector<const LayerPart*> parts;
     for (const LayerPart& part : file.parts)
@@ -139,7 +139,7 @@ bool in_order(std::vector<PartPair> pairs) {
                           [](const PartPair& a, const PartPair& b) { return a.second < b.second; });
 }
 
-/// Returns the pairs of exposures; none if an exposure has no partner.
+/// Returns the pairs of exposures, or an empty list if an exposure has no partner.
 std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile& second,
                                         FileComparison& result) {
     const bool one_format = first.format == second.format;
@@ -158,7 +158,7 @@ std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile&
             return std::tuple(part.exposure->region, part.exposure->kind, part.exposure->contour);
         },
         compare);
-    if (one_format) { // else not all formats keep labels and regions
+    if (one_format) { // some formats do not keep labels and regions
         for (const LayerPart* const part : ones)
             result.only_first.push_back(part->label);
         for (const LayerPart* const part : others)
@@ -195,15 +195,15 @@ bool exposed_alike(std::span<const PartPair> pairs, std::size_t first, std::size
     });
 }
 
-/// Returns whether the contours of each exposure of a plane, which agree with those of its partner, are in
-/// the same order, each from the same point.
+/// Returns whether the contours of each exposure of a plane have the order and the start points of its
+/// partner. Requires that the contours agree.
 bool followed_alike(std::span<const PartPair> pairs, std::size_t first, std::size_t second,
                     double tolerance_mm) {
     return std::all_of(pairs.begin(), pairs.end(), [&](const PartPair& pair) {
         const Layer& one = pair.first->layers[first];
         const Layer& other = pair.second->layers[second];
         if (one.contours() != other.contours())
-            return true; // some are too small to be matched
+            return true; // some contours are too small to be matched
         for (std::size_t i = 0; i < one.contours(); ++i)
             if (!one.contour(i).empty() && !other.contour(i).empty() &&
                 distance(one.contour(i).front(), other.contour(i).front()) > tolerance_mm)

@@ -32,7 +32,7 @@ namespace lamella {
 namespace {
 
 constexpr std::uint64_t passes = 3;
-constexpr std::uint64_t record_bytes = 50; // of a binary STL file
+constexpr std::uint64_t record_bytes = 50; // of a record of a binary STL file
 
 /// Returns the first option that needs the whole mesh in memory, as messages name it; "" if there is none.
 std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& engine) {
@@ -53,7 +53,7 @@ std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& en
     return {};
 }
 
-/// Returns the records out of n that a process reads. They are whole chunks of the ordered sum
+/// Returns the range of n records that a process reads. It consists of whole chunks of the ordered sum
 /// (`fold_chunk`), so that sums have the same bits as in a single process.
 RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes) {
     const std::uint64_t chunks = (n + fold_chunk - 1) / fold_chunk;
@@ -63,8 +63,8 @@ RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes)
     return {bound(process), bound(process + 1)};
 }
 
-/// Returns ranges of records that contain all chunks with a triangle cut by one of the planes. Two ranges at
-/// a short distance are joined, so that the chunks between them are read, too.
+/// Returns ranges of records that contain all chunks with a triangle cut by one of the planes. Ranges at a
+/// short distance are joined; the chunks between them are then read, too.
 std::vector<RecordRange> records_on(PlaneRange planes, std::span<const PlaneRange> cuts,
                                     std::uint64_t records) {
     constexpr std::uint64_t close = 4 * fold_chunk;
@@ -106,11 +106,11 @@ struct Seen {
     Box3 box;
     std::uint64_t unusable = 0;
     std::uint64_t first_unusable = 0; ///< set if `unusable` > 0
-    Point3f first_corner;             ///< set if there is any triangle
+    Point3f first_corner;             ///< set if there are triangles
 };
 
-/// Throws if meshes that cannot be sliced in ranges exceed the memory limit. Called after each file, which is
-/// the last of `files`.
+/// Throws if meshes that cannot be sliced in ranges exceed the memory limit. It is called after each file is
+/// read; the file at `path` is the last of `files`.
 void check_size(const std::string& path, std::span<const MeshFile> files, const JobMemory& memory,
                 unsigned threads) {
     std::vector<const Mesh*> meshes;
@@ -203,7 +203,7 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
     const unsigned threads = thread_count(execution);
     std::vector<MeshFile> meshes;
     for (MeshInput& file : inputs) {
-        const MeshInput input = std::move(file); // frees a copy in memory once it is parsed
+        const MeshInput input = std::move(file); // a copy in memory is freed when the file has been parsed
         const bool stl = input.can_stream();
         meshes.push_back(input.read(reading_, execution));
         if (memory_.asked && !stl)
@@ -277,7 +277,7 @@ std::uint64_t Feed::bytes_of(const File& file, const std::optional<RecordRange>&
     return part ? record_bytes * (part->end - part->begin) : file.input.bytes();
 }
 
-/// Streams a file. Progress reports the three passes as one.
+/// Streams a file. The three passes are reported as one stage of progress.
 MeshFile Feed::stream(const File& file, const TriangleSink& sink, const Execution& execution,
                       const std::optional<RecordRange>& part) {
     const Stopwatch reading;
@@ -448,7 +448,7 @@ std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange
 }
 
 /// Returns true if the records that all ranges need are together at most twice the records of all files.
-/// Reading again then takes less time than storing all triangles once. Known only after `count`.
+/// Reading again then takes less time than storing all triangles once. Requires a call of `count`.
 bool Feed::is_cheap_to_read_again() const {
     constexpr std::uint64_t times_the_files = 2;
     if (ranges_.size() <= 1)
@@ -512,7 +512,7 @@ std::vector<PlaneRange> Feed::ranges_of(const Plan& plan, PlaneRange mine, unsig
     return ranges;
 }
 
-/// The third pass, if this process reads all files: reads the chunks that these planes cut.
+/// The third pass of a process that reads all files. Reads the chunks that these planes cut.
 void Feed::bring_own(PlaneRange planes, RangeStore& store, const Execution& execution) {
     for (const File& file : files_) {
         std::atomic<bool> fits{true};
@@ -537,8 +537,8 @@ void Feed::bring_own(PlaneRange planes, RangeStore& store, const Execution& exec
         throw changed_while_read(path_of(*shape));
 }
 
-/// The third pass, if each process reads a part. It reads a bounded number of triangles between exchanges, so
-/// that triangles in transit take little memory.
+/// The third pass of processes that each read a part of the files. A process reads a bounded number of
+/// triangles between exchanges, so that triangles in transit take little memory.
 void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, const Execution& execution) {
     using Outgoing = std::vector<std::vector<Triangle3f>>; // by process
     const RangeFinder finder(plan, division);
@@ -590,7 +590,7 @@ void Feed::exchange(const Plan& plan, std::span<const PlaneRange> division, cons
     });
 }
 
-/// Sends triangles to the other processes. Returns those that they send, and the ones kept here.
+/// Sends triangles to the other processes. Returns the received triangles, and those that this process keeps.
 TriangleSoup Feed::exchanged(std::span<const std::vector<Triangle3f>> outgoing) {
     std::vector<std::uint64_t> sizes;
     std::vector<std::span<const std::byte>> out;

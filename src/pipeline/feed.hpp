@@ -25,30 +25,30 @@
 
 namespace lamella {
 
-/// A plate whose meshes are in memory, or one whose triangles stay in their files and are streamed in three
-/// passes:
+/// The plate of a job. Either its meshes are in memory, or its triangles stay in their files and are streamed
+/// in three passes:
 ///
 ///     open     the files, and measure their extent
 ///     count    the triangles that each plane of the plan cuts
 ///     bring    the triangles to a store, where they wait for the planes that cut them
 ///
-/// Re-reading a file is faster than storing its triangles, and takes no disk space. So if the triangles of
-/// each range of planes are contiguous enough in the file, nothing is stored, and each range is read when it
-/// is taken. If several processes slice the job and the files can be divided, each process reads its part of
-/// every file, and they communicate after each pass. So all processes must make one Feed of the same job, and
-/// call its functions in the same order.
+/// Reading a file again is faster than storing its triangles, and takes no disk space. So if the triangles of
+/// each range of planes are contiguous enough in the file, no triangle is stored, and a range is read when
+/// `take` is called. If several processes slice the job and the files can be divided, each process reads its
+/// part of every file, and the processes communicate after each pass. So each process must create one Feed of
+/// the same job, and all must call its functions in the same order.
 class Feed {
   public:
-    /// Reads the files of the job. Only measures them if they do not fit into its memory, or if several
-    /// processes can divide them. Throws the errors of load_plate, and Error{limit} if ranges of planes do
-    /// not fit into memory either.
+    /// Reads the files of the job. If they do not fit into the memory of the job, or if several processes can
+    /// divide them, only measures the files. Throws the errors of load_plate, and Error{limit} if the meshes
+    /// fit into memory neither as a whole nor in ranges.
     Feed(const FileJob& job, const Engine& engine, Communicator& processes, const Execution& execution);
     /// Takes a plate that is already in memory.
     Feed(const FileJob& job, Plate plate, Communicator& processes);
 
     /// Files, parts and boxes; meshes only if they are in memory.
     [[nodiscard]] const Plate& plate() const noexcept { return plate_; }
-    /// Returns the plate, to prepare its meshes; nullptr if they stay in their files.
+    /// Returns the plate, so that its meshes can be prepared; nullptr if the triangles stay in their files.
     [[nodiscard]] Plate* meshes() noexcept { return files_.empty() ? &plate_ : nullptr; }
     /// True if the memory of the job is too small for the meshes.
     [[nodiscard]] bool in_ranges() const noexcept { return in_ranges_; }
@@ -62,10 +62,10 @@ class Feed {
     /// of `count`.
     [[nodiscard]] double volume_mm3() const noexcept { return volume_mm3_; }
 
-    /// Level faces of the parts of a file that lie within rounding of a plane, over all processes, in
-    /// ascending planes. If the triangles stay in their files, requires a call of `count` with the same plan;
-    /// otherwise a call of `begin_near_faces`, and of `show_near_faces` for each triangle of all shapes, from
-    /// any thread.
+    /// Horizontal faces of the parts of a file that lie within rounding error of a plane, over all processes,
+    /// in ascending planes. If the triangles stay in their files, requires a call of `count` with the same
+    /// plan. Otherwise requires a call of `begin_near_faces`, then calls of `show_near_faces` for all
+    /// triangles of all shapes, from any threads.
     struct NearPlane {
         std::size_t file = 0;
         std::uint32_t plane = 0;
@@ -101,7 +101,7 @@ class Feed {
         std::optional<std::uint64_t> records; ///< number of records of a binary file, when it was opened
         std::optional<RecordRange> part;      ///< read by this process; unset: the whole file
         std::vector<std::size_t> shapes;      ///< of the plate that are made from it
-        std::uint64_t triangles = 0;          ///< number of usable ones, over all processes
+        std::uint64_t triangles = 0;          ///< number of usable triangles, over all processes
         Point3f first_corner;                 ///< as stored
         /// For each chunk of a binary file that one process reads: the range of planes that cut its
         /// triangles. Empty for other files.
@@ -130,21 +130,21 @@ class Feed {
     JobMemory memory_;
     Communicator& processes_;
     Communicator*
-        among_; ///< the processes that divide the files; this process alone if each reads all of them
+        among_; ///< the processes that divide the files; only this process if each process reads all files
     MeshReadOptions reading_;
     bool measure_volume_;
-    std::optional<std::uint32_t> neighbours_; ///< of each plane that is scanned; unset: none is scanned
+    std::optional<std::uint32_t> neighbours_; ///< of each scanned plane; unset if none is scanned
     bool in_ranges_ = false;
     Plate plate_;
-    std::vector<File> files_; ///< if the triangles stay in them
+    std::vector<File> files_; ///< empty if the meshes are in memory
     std::uint64_t bytes_to_read_ = 0;
     std::uint64_t bytes_read_ = 0;
     std::vector<PlaneCounts> counts_; ///< by shape, over all processes
     std::deque<NearFaceFinder> near_; ///< by shape
     double volume_mm3_ = 0;
     std::vector<PlaneRange> ranges_;
-    std::optional<RangeStore> store_; ///< holds the triangles of all ranges; or
-    std::optional<Plan> plan_;        ///< selects the triangles of a range when it is taken
+    std::optional<RangeStore> store_; ///< the triangles of all ranges; unset if they are read on demand
+    std::optional<Plan> plan_;        ///< set if ranges are read on demand: selects their triangles
     ProcessFigures figures_;
 };
 

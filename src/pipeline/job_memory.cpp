@@ -9,11 +9,11 @@ namespace lamella {
 
 namespace {
 
-/// A point in flight and its text.
+/// Memory of a point in flight and of its text.
 constexpr std::uint64_t bytes_per_point = 56;
 
 constexpr std::uint64_t binary_record = 50;
-/// The shortest text of a facet.
+/// Length of the shortest text of a facet.
 constexpr std::uint64_t least_facet = 100;
 
 /// Upper bound on the memory of one triangle of a mesh, without its record or text.
@@ -35,7 +35,7 @@ std::uint64_t JobMemory::overhead(unsigned threads, std::uint64_t planes, std::s
                                   bool statistics) noexcept {
     constexpr std::uint64_t program = std::uint64_t{20} << 20;
     constexpr std::uint64_t thread = std::uint64_t{12} << 20;
-    constexpr std::uint64_t of_statistics = 1400; // a record, its JSON and the text of that
+    constexpr std::uint64_t of_statistics = 1400; // a record, its JSON values and their text
     // Each thread counts triangles, and their counts are added up.
     const std::uint64_t further_shape = 24 * (threads + std::uint64_t{1}) + 56;
     const std::uint64_t plane = 500 + further_shape * (shapes - 1) + (statistics ? of_statistics : 0);
@@ -49,7 +49,7 @@ std::uint64_t JobMemory::of_messages(std::size_t processes) const noexcept {
 std::uint64_t JobMemory::triangles_in_a_round(std::size_t processes) const noexcept {
     constexpr std::uint64_t fewest = 1 << 12;
     constexpr std::uint64_t most = 1 << 20; // larger messages are no faster
-    // Each triangle is held twice: outgoing and incoming.
+    // Each triangle is held twice, in outgoing and in incoming messages.
     return std::clamp(limit / 8 / (2 * sizeof(Triangle3f)) / processes, fewest, most);
 }
 

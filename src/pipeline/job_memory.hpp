@@ -1,6 +1,6 @@
 #pragma once
 
-// Memory that a job may take, and estimates of what it takes.
+// Limits and estimates of the memory of a job.
 
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/pipeline/slice_file.hpp"
@@ -19,34 +19,37 @@ struct JobMemory {
 
     explicit JobMemory(const FileJob& job);
 
-    /// Upper bound on the notes about planes. Without a bound set by the job it is at most a gigabyte, since
-    /// a layer height in the wrong unit asks for far more.
+    /// Upper bound on the memory of the data about planes. It is at most a gigabyte unless the job sets a
+    /// limit, since a layer height in the wrong unit requires far more.
     [[nodiscard]] std::uint64_t of_planes() const noexcept {
         return asked ? limit : std::min(limit, std::uint64_t{1} << 30);
     }
 
-    /// Upper bound on the points on their way through the sink: that of slice_to, or less so that they and
-    /// the data made of them take at most a quarter of the limit.
+    /// Upper bound on the points in flight through the sink. It is that of slice_to, or a smaller one with
+    /// which the points and the data made of them take at most a quarter of the limit.
     [[nodiscard]] std::uint64_t points_in_flight(unsigned threads) const noexcept;
 
-    /// Memory of the program, its threads and its notes about each plane. A plate has some notes for each
-    /// shape. `statistics` adds those of layer statistics.
+    /// Memory of the program, its threads and its data about each plane, some of which is stored for each
+    /// shape. `statistics` adds the memory of layer statistics.
     [[nodiscard]] static std::uint64_t overhead(unsigned threads, std::uint64_t planes,
                                                 std::size_t shapes = 1, bool statistics = false) noexcept;
 
     /// Memory of triangles in transit between processes, and of the output that a process keeps until all
-    /// write.
+    /// processes write.
     [[nodiscard]] std::uint64_t of_messages(std::size_t processes) const noexcept;
-    /// Number of triangles that each of several processes reads between two exchanges. Those in transit take
-    /// at most half of `of_messages`, even if all go to one process.
+    /// Number of triangles that each of several processes reads between two exchanges. These triangles take
+    /// at most half of `of_messages` in transit, even if all go to one process; but the number is at least
+    /// 4096.
     [[nodiscard]] std::uint64_t triangles_in_a_round(std::size_t processes) const noexcept;
     /// Bytes of the output that each of several processes keeps in memory: half of `of_messages`.
     [[nodiscard]] std::uint64_t of_output() const noexcept;
 
-    /// Bytes of standard input that are kept in memory: at most as many as could be sliced there.
+    /// Number of bytes of standard input that are kept in memory. A larger mesh could not be sliced in
+    /// memory.
     [[nodiscard]] std::uint64_t of_input(unsigned threads) const noexcept;
 
-    /// Upper bound on the memory for slicing meshes in memory one after the other, everything included.
+    /// Upper bound on the memory for slicing meshes in memory one after the other, including the memory of
+    /// the program.
     [[nodiscard]] std::uint64_t of_meshes(std::span<const Mesh* const> meshes,
                                           unsigned threads) const noexcept;
 

@@ -96,7 +96,7 @@ JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Co
                           waiting_.add(bytes);
                       }};
             info.chunk = &chunk_;
-            // Both apply to the whole file.
+            // These two options apply to the whole file.
             options.most_bytes = 0;
             options.strict = false;
         }
@@ -157,12 +157,12 @@ JobOutput::Written JobOutput::finish_file() {
     if (shared_) {
         written.bytes = write_shared();
     } else {
-        processes_.sum(std::span(&written.bytes, 1)); // others have 0
+        processes_.sum(std::span(&written.bytes, 1)); // the other processes have 0
     }
     return written;
 }
 
-/// Adds the losses of all ranges to those of the first one, which process 0 has written.
+/// Adds the losses of all ranges to those of the first range, which process 0 has written.
 void JobOutput::gather_losses() {
     const std::vector<std::string> all = processes_.gather(Packer().put(writer_->losses()).take());
     in_agreement(processes_, [&] {
@@ -221,7 +221,7 @@ void JobOutput::write_layers_of_others() {
         std::rethrow_exception(error);
 }
 
-/// Writes the range of each process at its offset, which follows from the sizes of those before.
+/// Writes the range of each process at its offset, which is the sum of the sizes of the ranges before it.
 std::uint64_t JobOutput::write_shared() {
     std::vector<std::uint64_t> sizes(processes_.size(), 0);
     sizes[processes_.process()] = waiting_.size();

@@ -22,15 +22,15 @@
 namespace lamella {
 
 /// The slice file of a job, and the page beside it. A single process writes while it slices. If there are
-/// several and the layers of the file lie one after the other (LayerFormat::chunks), each process writes its
-/// range of the file once all sizes are known. Layers for other formats, and for standard output, go to
-/// process 0, which writes. Nothing has its name before all of it is written. All processes must call these
-/// functions together.
+/// several processes, and the layers of the file lie one after the other (LayerFormat::chunks), each process
+/// writes its range of the file once all sizes are known. For other formats and for standard output, all
+/// layers are sent to process 0, which writes them. A file has its name only after all of it is written. All
+/// processes must call these functions together.
 class JobOutput {
   public:
     /// Creates the files, so that an unwritable path fails before hours of slicing. `mine` is the range of
-    /// planes of this process among those of `info`. Each process keeps up to `most_in_memory` bytes for the
-    /// others in memory.
+    /// planes of this process among those of `info`. Each process keeps up to `most_in_memory` bytes of its
+    /// output in memory.
     JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Communicator& processes,
               std::uint64_t most_in_memory);
 
@@ -38,14 +38,14 @@ class JobOutput {
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts);
     [[nodiscard]] std::function<void()> prepare(const ScanVectors& vectors);
 
-    /// Figures of the written file, once all layers of all processes have been passed on.
+    /// Figures of the written file. They are complete after the layers of all processes are written.
     struct Written {
         std::string format; ///< "" without a slice file
         std::uint64_t bytes = 0;
         std::vector<std::string> warnings;
     };
     [[nodiscard]] Written finish_file();
-    /// Ends the page, with these notes about the run; returns its warnings.
+    /// Ends the page with these notes, and returns the warnings of the page.
     [[nodiscard]] std::vector<std::string> finish_page(const PageNotes& notes);
     [[nodiscard]] bool has_page() const noexcept { return page_ != nullptr; }
 
@@ -65,16 +65,16 @@ class JobOutput {
     bool strict_;
     const LayerFormat* format_ = nullptr;
     std::unique_ptr<LayerWriter>
-        writer_; ///< of the file or of this process's range of it; null if another process writes
+        writer_; ///< writer of the file or of this process's range; null if another process writes
     std::unique_ptr<LayerPageWriter> page_;
 
     // For several processes:
-    bool shared_ = false;            ///< all of them write the file
+    bool shared_ = false;            ///< all processes write the file
     std::optional<AtomicFile> file_; ///< created by process 0
     std::string working_path_;
     LayerFileChunk chunk_;
     ByteStore waiting_;                   ///< the range's bytes, or layers as messages to process 0
-    std::vector<std::uint64_t> messages_; ///< their lengths
+    std::vector<std::uint64_t> messages_; ///< lengths of the messages
 };
 
 } // namespace lamella

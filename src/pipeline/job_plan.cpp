@@ -50,8 +50,8 @@ std::string highest_part(const Plate& plate) {
 /// Plans of this many layers take negligible memory.
 constexpr std::uint32_t few_layers = 100'000;
 
-/// Throws if the layer height exceeds the part, or if it makes more layers than fit into memory: a height in
-/// the wrong unit may be a thousand times too small.
+/// Throws if the layer height exceeds the part, or if it results in more layers than fit into memory. A
+/// height in the wrong unit may be a thousand times too small.
 void check_layer_heights(const FileJob& job, const UniformLayers& layers, const Plate& plate) {
     const Box3& box = plate.box;
     const double height = box.max.z - box.min.z;
@@ -98,7 +98,8 @@ void check_planes(const FileJob& job, const Plate& plate, std::uint64_t planes) 
                                      : "that layers may take unless `max_memory` says more"));
 }
 
-/// Returns the approximate number of layers. All of them are stacked, even those that are not selected.
+/// Returns the approximate number of layers of the whole part. Layers that are not selected count, too, since
+/// all layers are stacked first.
 double count_by_ranges(const HeightRanges& layers, double height) {
     double count = 0;
     double rest = height;

@@ -15,7 +15,7 @@
 
 namespace lamella {
 
-/// The planes that are sliced, and the range of them that is written. The other planes are neighbours that
+/// The planes that are sliced, and the range of planes that is written. The other planes are neighbours that
 /// skins depend on.
 struct JobPlan {
     Plan plan;
@@ -31,9 +31,9 @@ void check_heights(const Plate& plate);
 /// Returns a range extended by the neighbours that skins depend on, in a plan of `planned` planes.
 [[nodiscard]] PlaneRange with_neighbours(const FileJob& job, PlaneRange planes, std::size_t planned);
 
-/// Divides the planes that are written into ranges of equal work. Returns the range of each process, empty
-/// ones at the end if there are more processes than planes; or the range of the shard. Throws Error{usage}
-/// for a shard that does not exist.
+/// Divides the planes that are written into ranges of equal work. Returns the range of each process, or the
+/// range of the shard. If there are more processes than planes, the last ranges are empty. Throws
+/// Error{usage} for a shard that does not exist.
 [[nodiscard]] std::vector<PlaneRange> divide(const FileJob& job, const JobPlan& planes, Feed& feed,
                                              Communicator& processes, const Execution& execution);
 

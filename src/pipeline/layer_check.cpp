@@ -19,7 +19,7 @@ LayerCheck check_layer(const Layer& layer, const Rounding& rounding) {
     for (std::size_t i = layer.rings; i < layer.contours(); ++i)
         if (!layer.contour(i).empty())
             found.open_chains.add(layer, layer.contour(i).front());
-    // Beyond a number that nobody reads, crossings take minutes, and so does what lies within what.
+    // Finding all crossings may take minutes, and so may the nesting of contours that cross so often.
     const std::uint64_t enough = most_crossings(layer.points.size());
     const Crossings crossings = find_crossings(layer, 1, enough);
     if (crossings.count > 0)

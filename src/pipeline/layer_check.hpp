@@ -14,11 +14,11 @@
 
 namespace lamella {
 
-/// Findings of one kind, in the order of the layers.
+/// Number of defects of one kind, and the position of the first one in the order of layers.
 struct Finding {
     std::uint64_t total = 0;
-    bool or_more = false; ///< the search ended when there were this many
-    std::string position; ///< of the first: "layer 12 (z 0.375 mm) at (1, 2)"
+    bool or_more = false; ///< the search ended at this number
+    std::string position; ///< position of the first: "layer 12 (z 0.375 mm) at (1, 2)"
 
     void add(const Layer& layer, const Point2& at, std::uint64_t times = 1);
     void add(const Finding& other);

@@ -25,7 +25,7 @@ std::vector<const Layer*> from_the_lowest(std::span<const Layer> layers) {
     return ascending;
 }
 
-/// Returns how far equal heights of two layers may be apart.
+/// Returns the largest difference that rounding may make between equal heights of two layers.
 double moved_heights(const Layer& below, const Layer& above, const Rounding& rounding) {
     return moved_cut(below, rounding) + moved_cut(above, rounding) + same_height_mm;
 }

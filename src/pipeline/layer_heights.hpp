@@ -16,14 +16,15 @@
 
 namespace lamella {
 
-/// Returns the number of layers, in any order, that begin within the height of another one, by more than the
-/// format may have moved heights; layers that share all of it do not count. Describes them in `findings`.
+/// Returns the number of layers that begin within the height of another layer. An overlap by which the format
+/// may have moved heights does not count, nor do layers of equal bottom and top. The layers may be in any
+/// order. Describes the overlaps in `findings`.
 [[nodiscard]] std::uint64_t overlapping_heights(std::span<const Layer> layers, const Rounding& rounding,
                                                 std::vector<std::string>& findings);
 
-/// Returns the heights covered by layers in any order; none if there are no layers, or no triangles. A gap is
-/// larger than the format may have moved heights, and the mesh has material in its middle. Describes gaps in
-/// `findings`.
+/// Returns the heights covered by layers in any order; nullopt if there are no layers or no triangles. A gap
+/// counts if the format cannot have caused it by moving heights, and if the mesh has material in the middle
+/// of the gap. Describes the gaps in `findings`.
 [[nodiscard]] std::optional<CoveredHeights> covered_heights(std::span<const Layer> layers, const Mesh& mesh,
                                                             const Rounding& rounding,
                                                             const Execution& execution,

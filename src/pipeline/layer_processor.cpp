@@ -95,9 +95,9 @@ std::function<void()> LayerProcessor::operator()(std::span<const Layer> parts) {
     };
 }
 
-/// Returns the inverted rings of each part before the steps, which remove rings that bound no material.
-/// Empty if a fill rule defines the material, or if scan_plane finds them. Crossings are searched only if
-/// the steps would lose the rings that they reveal.
+/// Returns the inverted rings of each part before the steps, because the steps remove rings that bound no
+/// material. Returns an empty list if a fill rule defines the material, or if scan_plane finds these rings.
+/// Searches for crossings only if the steps would remove the rings that crossings reveal.
 std::vector<InvertedRings> LayerProcessor::inverted_of(std::span<const Layer> parts) const {
     std::vector<InvertedRings> inverted;
     const bool as_cut = !job_.steps.any() && plate_.negatives.empty();

@@ -55,7 +55,7 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
         changes_[position] = changes;
     if (bodies.empty())
         bodies = parts;
-    std::vector<OpenGaps> gaps; // of each body, if there are any
+    std::vector<OpenGaps> gaps; // gaps of each body; empty if there are none
     for (std::size_t i = 0; i < bodies.size(); ++i)
         if (bodies[i].open_chains() > 0) {
             gaps.resize(bodies.size());
@@ -200,7 +200,7 @@ void LayerTotals::gather(Communicator& processes) {
     }
 }
 
-/// Adds doubts in the order of the planes, so that sums have the same bits whichever thread came first.
+/// Adds doubts in the order of the planes, so that sums have the same bits for every order of threads.
 void LayerTotals::store_doubts(FileResult& result) const {
     result.doubts.assign(*std::max_element(files_.begin(), files_.end()) + std::size_t{1},
                          MeshDoubts{.layers = rows_.size()});

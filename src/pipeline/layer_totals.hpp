@@ -1,6 +1,6 @@
 #pragma once
 
-// Gathers figures of layers on their way to the output.
+// Gathers figures of the layers that are written.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/pipeline/plate.hpp"
@@ -21,20 +21,20 @@ namespace lamella {
 /// Returns the index of the file of each part, and then of each negative volume.
 [[nodiscard]] std::vector<std::uint32_t> files_of(const Plate& plate);
 
-/// Has a row for each plane, and adds the rows in their order at the end. So any number of threads, ranges
-/// and processes gives the same figures, bit for bit.
+/// Stores a row for each plane, and adds up the rows in their order at the end. So the figures are the same,
+/// bit for bit, for any number of threads, ranges and processes.
 class LayerTotals {
   public:
     /// `planes` are those of this process, possibly none. `supports` is true for each part that is a support.
-    /// `files` has the index of the file of each part, ascending, and then of each other body; if it is
-    /// empty, all belong to the first file.
+    /// `files` has the index of the file of each part, in ascending order, and then of each other body. If
+    /// `files` is empty, all bodies belong to the first file.
     LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, const std::vector<bool>& supports,
                 std::vector<std::uint32_t> files = {});
 
-    /// Adds the layers of all parts on one plane, as they are written, with the gaps closed and the changes
-    /// made in them. `inverted` has the inverted rings of each body, if they are already known. `bodies` are
-    /// examined for doubts about the mesh instead of the parts: parts and negative volumes before these are
-    /// subtracted. May be called from any thread, once for each plane.
+    /// Adds the layers of all parts on one plane, as they are written, with the closed gaps and the changes
+    /// by layer steps. `inverted` has the inverted rings of each body, if they are already known. `bodies`
+    /// are the parts and the negative volumes before the subtraction; doubts about the mesh are looked for in
+    /// `bodies` instead of the parts. May be called from any thread, once for each plane.
     void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes,
              std::span<const InvertedRings> inverted = {}, std::span<const Layer> bodies = {});
     /// Adds the figures of the scan vectors of a plane, and the material without vectors. May be called from
@@ -44,7 +44,7 @@ class LayerTotals {
     /// Number of points of the layers that were added.
     [[nodiscard]] std::uint64_t points() const noexcept;
 
-    /// Collects the rows of all processes on each of them. Call it once, after all layers were added.
+    /// Collects the rows of all processes on every process. Call it once, after all layers were added.
     void gather(Communicator& processes);
 
     /// Stores counts, sums and rows.
@@ -60,7 +60,7 @@ class LayerTotals {
     /// A sign of a defect in the mesh of a file, found on a plane.
     struct Doubt {
         std::uint32_t file = 0;
-        std::uint32_t unused = 0; ///< padding; no uninitialised bytes are sent between processes
+        std::uint32_t unused = 0; ///< padding, so that no uninitialised bytes are sent between processes
         std::uint64_t plane = 0;  ///< index of the plane
         OpenGaps open_gaps;
         InvertedRings inverted;
@@ -79,10 +79,10 @@ class LayerTotals {
 
     // One entry for each plane. There may be millions, so vectors that the job does not need stay empty.
     std::vector<Row> rows_;
-    std::vector<FileResult::Gaps> closed_;    ///< if gaps are closed
-    std::vector<LayerChanges> changes_;       ///< if there are steps
-    std::vector<LayerStatistics> statistics_; ///< if layers have statistics
-    std::vector<ExposureResult> exposures_;   ///< if there are scan vectors; without figures
+    std::vector<FileResult::Gaps> closed_;    ///< empty unless gaps are closed
+    std::vector<LayerChanges> changes_;       ///< empty unless there are layer steps
+    std::vector<LayerStatistics> statistics_; ///< empty unless the job has layer statistics
+    std::vector<ExposureResult> exposures_;   ///< without figures; empty unless there are scan vectors
     std::vector<ScanFigures> vectors_;        ///< the figures of each exposure, plane by plane
     std::vector<Counts> parts_;
     std::vector<std::uint32_t> files_; ///< of each body

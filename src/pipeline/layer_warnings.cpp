@@ -63,9 +63,10 @@ std::vector<InvertedRings> inverted_on_planes(std::span<const LayerStack> parts,
 
 std::string power_of_ten_above(double length_mm);
 
-/// Returns the reason why chains are open with such gaps, and a remedy.
+/// Returns the likely cause of open chains with gaps of this length, and a remedy.
 std::string open_gaps_text(double longest_mm) {
-    // More than the rounding error between the edge of a triangle and a vertex of its neighbours on it.
+    // Larger than the rounding error between an edge of a triangle and a vertex of another triangle on this
+    // edge.
     constexpr double slit = 1e-3;
     return longest_mm <= slit
                ? fmt::format(

@@ -102,7 +102,7 @@ void LayerWindow::work_on(const Complete& complete) {
 }
 
 // The ordered half of a plane runs after the parallel halves of all planes below, so the work on complete
-// planes is done.
+// planes has ended.
 void LayerWindow::finish(std::uint32_t last) {
     const PlaneRange its_users = users(last);
     for (std::uint32_t plane = its_users.begin; plane < its_users.end; ++plane) {

@@ -22,11 +22,11 @@ namespace lamella {
 [[nodiscard]] PlaneRange widened(PlaneRange planes, std::uint32_t below, std::uint32_t above,
                                  PlaneRange all) noexcept;
 
-/// Passes planes on together with their neighbours below and above. Each plane arrives once, in two halves as
-/// for a PlateSink. The parallel half stores its layers, and works on the planes whose neighbours are then
-/// complete. The ordered half of plane i emits the planes of which i is the last neighbour. So no thread
-/// waits for another, and memory holds a bounded range of layers. A layer equal to an adjacent one shares its
-/// points.
+/// Passes planes on together with their neighbours below and above. Each plane arrives once, and is processed
+/// in two halves as by a PlateSink. The parallel half stores the layers of the plane, and works on the planes
+/// whose neighbours are then complete. The ordered half of plane i emits the planes whose last neighbour is
+/// i. So no thread waits for another, and the number of layers in memory is bounded. Equal layers of adjacent
+/// planes share their points.
 class LayerWindow {
   public:
     /// Like PlateSink, for a plane with its neighbours.
@@ -50,7 +50,7 @@ class LayerWindow {
     using Parts = std::shared_ptr<const std::vector<ScanLayer>>;
     struct Held {
         Parts parts;
-        std::uint32_t users; ///< number of planes that still need it
+        std::uint32_t users; ///< number of planes that still need the layers
     };
     struct Complete {
         std::uint32_t plane;

@@ -62,8 +62,8 @@ double length_of_both(const Intervals& a, const Intervals& b) noexcept {
     return sum;
 }
 
-/// Returns the length of edges of lines of about one direction. Side by side they form rows; edges are the
-/// ends of rows, and where a row is covered and the next one is not.
+/// Returns the length of the edges of the area filled by lines of about one direction. The lines form rows.
+/// An edge is an end of a row, or a section where a row is covered and the next row is not.
 double around_rows(const std::vector<HatchVector>& lines, double distance) {
     // Averaging cancels rotations of short lines by rounding.
     Point2 direction;
@@ -121,7 +121,7 @@ double length_around(std::span<const Point2> lines, double distance_mm) {
     while (!left.empty()) {
         const HatchVector longest = left.front();
         constexpr double about_one_direction =
-            0.3; // sine of the largest angle; directions of patterns differ by more
+            0.3; // sine of the largest angle within one direction; those of a pattern differ by more
         std::vector<HatchVector> others;
         std::vector<HatchVector> alike;
         for (const HatchVector& line : left)

@@ -6,9 +6,9 @@
 
 namespace lamella {
 
-/// Returns an upper bound of the length of the edges of the area filled by lines, from the lines alone: two
-/// points each, in any order, `distance_mm` apart, in a few directions. Boundaries between directions count
-/// as edges, too, such as those of the squares of a chessboard. O(n log n).
+/// Returns an upper bound of the length of the edges of the area that lines fill. The lines have two points
+/// each, a few directions, and a distance of `distance_mm`; they may be in any order. Boundaries between
+/// directions count as edges, too, such as those of the squares of a chessboard. O(n log n).
 [[nodiscard]] double length_around(std::span<const Point2> lines, double distance_mm);
 
 } // namespace lamella

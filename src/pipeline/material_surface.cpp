@@ -36,8 +36,8 @@ Polygon clipped(const Polygon& polygon, double Point3::*axis, double at, bool ab
     return kept;
 }
 
-/// Returns the part of a triangle inside of a box. Horizontal faces of the box are not inside: a triangle in
-/// them bounds no material.
+/// Returns the part of a triangle inside of a box. A triangle in a horizontal face of the box is not inside,
+/// because it bounds no material.
 Polygon inside_of(const Box3& box, const Triangle3& triangle) {
     const auto [low, high] = std::minmax({triangle[0].z, triangle[1].z, triangle[2].z});
     if (high <= box.min.z || low >= box.max.z)

@@ -8,9 +8,9 @@
 
 namespace lamella {
 
-/// Returns the triangles of all parts as one mesh, and those of negative volumes as far as they lie in the
-/// box of a part from which they are subtracted: there they may bound material. The box of the result is that
-/// of the parts.
+/// Returns the triangles of all parts as one mesh. The mesh includes triangles of negative volumes, clipped
+/// to the boxes of the parts from which these are subtracted, since they may bound material there. The box of
+/// the result is that of the parts.
 [[nodiscard]] Mesh material_surface(const Plate& plate, const Execution& execution = {});
 
 } // namespace lamella

@@ -94,16 +94,16 @@ std::vector<std::string> labels_of(const ShardFile& shard) {
     return labels;
 }
 
-/// Returns whether parts may be absent: some formats list only parts that are not empty, and a shard may have
-/// no skin, or end below a part.
+/// Returns whether parts may be absent from the file. Some formats list only parts that are not empty; and a
+/// shard of scan vectors may have no skin, or end below a part.
 bool may_lack_parts(const ShardFile& shard) {
     return layer_format(shard.format, shard.path).filled_parts ||
            std::all_of(shard.parts.begin(), shard.parts.end(),
                        [](const PartInfo& part) { return part.exposure.has_value(); });
 }
 
-/// Returns the largest distance allowed between the end of one file and the beginning of the next one.
-/// Programs that do not state their rounding of heights round them by up to a hundredth of a layer.
+/// Returns the largest distance allowed between the end of one file and the beginning of the next one. Some
+/// programs round heights by up to a hundredth of a layer and do not state it.
 double slack_between(const ShardFile& below, const ShardFile& above) {
     return below.rounded_heights + above.rounded_heights +
            std::min(below.thinnest_mm, above.thinnest_mm) / 100 + same_height_mm;
@@ -135,7 +135,8 @@ void check_neighbours(const ShardFile& below, const ShardFile& above) {
                            below.top, above.bottom));
 }
 
-/// Returns the files in ascending order, after checking that they belong together as far as files can show.
+/// Returns the files in ascending order. Throws if neighbours differ in format, units, rule or parts, or if
+/// their heights do not adjoin.
 std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const LayerReadOptions& reading,
                                    const Execution& execution) {
     if (paths.empty())
@@ -150,9 +151,9 @@ std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const Lay
     return shards;
 }
 
-/// Checks that `output` is not an input. The output is the first argument; if it is forgotten, the first
-/// input takes its position, and its layers adjoin those of the others. An earlier result does not adjoin
-/// them.
+/// Throws if the existing file `output` appears to be an input. The first argument names the output. If a
+/// user forgets it, the first input is taken for the output; the layers of that file adjoin those of the
+/// inputs. Layers of an earlier result do not.
 void check_output(const std::string& output, std::span<const ShardFile> shards,
                   const LayerReadOptions& reading, const Execution& execution) {
     std::error_code error;
@@ -179,8 +180,8 @@ void check_output(const std::string& output, std::span<const ShardFile> shards,
 
 // ------------------------------------------------------------------------------- Common Layer Interface
 
-/// A file in the layout of our writer: a header with the number of layers, a layer without contours that
-/// gives the bottom of the first one, and the layers.
+/// A file in the layout of our writer. It consists of a header with the number of layers, a layer without
+/// contours at the bottom of the first real layer, and the real layers.
 struct CommonLayerFile {
     ByteSource source;
     std::string_view before_count; ///< the header up to the number of layers
@@ -196,8 +197,8 @@ struct CommonLayerFile {
                             path));
 }
 
-/// Returns the end of the first layer, which the binary form must begin with. Checks that the last command
-/// ends at the end of the file.
+/// Returns the offset of the end of the first layer, with which the binary form must begin. Throws unless the
+/// last command ends at the end of the file.
 std::size_t end_of_first_layer(std::string_view text, std::size_t begin, const std::string& path) {
     const auto size_at = [&](std::size_t at) {
         const std::optional<std::uint64_t> size = common_layer_command_size(text.substr(at));
@@ -227,8 +228,9 @@ CommonLayerFile take_apart(const ShardFile& shard, const LayerReadOptions& readi
                          {},
                          {}};
     const std::string_view text = file.source.text();
-    // The number of layers ends the header. In a header with comments, a line that looks like a key need not
-    // be one; and files of other programs may have data of their own.
+    // The number of layers must be the last line of the header. Headers with comments are excluded, since a
+    // line of a comment may look like a key; so are headers of other programs, which may have data of their
+    // own.
     const std::string count = fmt::format("{}", shard.layers + 1);
     const std::string counted = fmt::format("\n$$LAYERS/{}\n$$HEADEREND", count);
     const std::size_t end = text.find("\n$$LAYERS/");
@@ -260,7 +262,7 @@ CommonLayerFile take_apart(const ShardFile& shard, const LayerReadOptions& readi
     return file;
 }
 
-/// Compares the lines of the headers, which must agree except for the number of layers.
+/// Throws unless the lines of the headers agree except for the number of layers.
 void check_heads(const std::string& one, std::string_view header, const std::string& other,
                  std::string_view other_header) {
     if (header == other_header)
@@ -321,7 +323,7 @@ struct KnownPart {
     std::size_t waits_for = 0;          ///< number of parts that must precede it
 };
 
-/// Throws if a part has different parameters in two files: neither is silently replaced by the other.
+/// Throws if a part has different parameters in two files, so that no parameters are replaced silently.
 void check_parameters(const KnownPart& known, const PartInfo& part, const std::string& path) {
     const auto refuse = [&](std::string_view name, const auto& one, const auto& other) {
         throw Error(
@@ -349,10 +351,10 @@ void check_parameters(const KnownPart& known, const PartInfo& part, const std::s
 }
 
 /// Returns the parts of all files, with their united boxes, in an order consistent with each file. If the
-/// order of parts is not determined, those of lower files come first.
+/// files do not determine the order of two parts, the part of the lower file comes first.
 std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
     std::vector<KnownPart> all;
-    // Indices by label and by the number of parts of the same label before it in its file.
+    // Indices of parts by label, and by the number of preceding parts with the same label in a file.
     std::map<std::pair<std::string_view, std::size_t>, std::size_t> numbers;
     for (const ShardFile& shard : shards) {
         std::map<std::string_view, std::size_t> met;
@@ -386,7 +388,7 @@ std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
         parts.push_back(std::move(part.info));
     }
     if (parts.size() < all.size()) {
-        // Follows the predecessors of any blocked part until a part repeats: that part is on the cycle.
+        // Follows the predecessors of any blocked part until a part repeats. This part is on the cycle.
         const auto waits = [](const KnownPart& part) {
             return part.waits_for > 0;
         };
@@ -405,8 +407,8 @@ std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
     return parts;
 }
 
-/// Returns the layer of each part on a plane of a file, with its hatch lines; an empty layer if the file does
-/// not list the part.
+/// Returns the layer of each part on a plane of a file, with its hatch lines. The layer is empty if the file
+/// does not list the part.
 ScanVectors plane_of(const LayerFile& file, std::size_t plane, const std::vector<PartInfo>& parts) {
     const Layer& any = file.parts.front().layers[plane];
     ScanVectors vectors;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Reference layers: those of a mesh, cut at all heights that a format may have rounded to the given one.
+// Reference layers of a mesh, cut at the heights that a format may have rounded to a given height.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
@@ -17,8 +17,9 @@
 
 namespace lamella {
 
-/// Returns the results of cut(plan) for the plane of each layer: first at the height of the layer and, if the
-/// format rounds, as far below and above as it may have moved the cut.
+/// Returns the results of cut(plan) for the plane of each layer. The first result is at the height of the
+/// layer. If the format rounds, the next results are at the lowest and the highest height that it may have
+/// rounded to this one.
 template <class Cut>
 auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, PlaneRule rule, double snap_mm,
                    const Cut& cut) {
@@ -45,15 +46,15 @@ auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, Plan
     return of_layer;
 }
 
-/// Returns all steps except `simplify`: the last digits decide which points it removes, so its moves are
-/// tolerated instead.
+/// Returns all steps except `simplify`. The last digits of coordinates decide which points `simplify`
+/// removes, so its moves are tolerated instead.
 inline LayerSteps steps_to_repeat(LayerSteps steps) {
     steps.simplify_mm = 0;
     return steps;
 }
 
-/// Returns the mitre limit and, if the format rounds, one below and one above it: at corners of exactly the
-/// limiting angle, 60 degrees by default, rounding decides whether mitres are truncated.
+/// Returns the mitre limit and, if the format rounds, a lower and a higher limit. At corners of exactly the
+/// limiting angle, which is 60 degrees by default, rounding decides whether mitres are truncated.
 inline std::vector<double> limits_of_mitres(double limit, const Rounding& rounding) {
     constexpr double spread = 0.01;
     return rounding == Rounding{}

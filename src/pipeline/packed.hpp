@@ -17,8 +17,8 @@
 
 namespace lamella {
 
-/// Returns true for types without padding; does not compile for others. Padding is uninitialised, and must
-/// not become part of a message.
+/// Returns true for types without padding, and does not compile for other types. Padding is uninitialised,
+/// and must not become part of a message.
 template <class T>
 constexpr bool without_gaps_between_members() noexcept {
     if constexpr (!std::has_unique_object_representations_v<T> && !std::is_floating_point_v<T>) {

@@ -16,7 +16,8 @@
 
 namespace lamella {
 
-/// The layers of all parts on a plane, on the planes below and on those above; the nearest plane is first.
+/// The layers of all parts on a plane, on the planes below it and on the planes above it. The nearest plane
+/// is first.
 struct PlaneLayers {
     std::uint32_t plane = 0; ///< number of the plane among those that are scanned
     std::span<const ScanLayer> parts = {};
@@ -29,21 +30,21 @@ struct PlaneVectors {
     std::vector<ScanFigures> figures; ///< one for each of `plane_exposures`
     /// Area of each part that no vector reaches; 0 if the strategy accepts it.
     std::vector<double> unreached_mm2;
-    std::vector<InvertedRings> inverted; ///< those of each part; no vectors are made of them
+    std::vector<InvertedRings> inverted; ///< inverted rings of each part, which have no vectors
     std::uint64_t hash = 0;              ///< of `vectors`: see content_hash
 };
 
 /// Returns for each part whether it is a support.
 [[nodiscard]] std::vector<bool> supports_of(const Plate& plate);
 
-/// Returns the exposures that figures are counted for: those of parts, then those of supports, if there are
-/// any of each. `supports` is true for each part that is a support.
+/// Returns the exposures that have figures: those of ordinary parts, if there are any, then those of
+/// supports, if there are any. `supports` is true for each part that is a support.
 [[nodiscard]] std::vector<Exposure> plane_exposures(const std::vector<bool>& supports,
                                                     const ScanStrategy& strategy);
 
 /// Computes the scan vectors of all parts on a plane; see `scan`. The beam exposes one part after the other.
-/// `caches` and `names` have an entry for each part; a name begins errors and may be "". `limits` holds for
-/// all parts together.
+/// `caches` and `names` have an entry for each part. Error messages begin with the name, which may be "".
+/// `limits` apply to all parts together.
 [[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
                                       std::span<const std::string> names, const ScanStrategy& strategy,
                                       std::vector<InsetCache>& caches, const LayerLimits& limits);

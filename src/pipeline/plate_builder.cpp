@@ -183,8 +183,8 @@ Plate PlateBuilder::finish() {
         if (group.front() != i)
             continue;
         const Mesh& mesh = objects_[instance.input][instance.object].mesh;
-        // A shape that is not shared is placed completely, so that a part gives the same bits alone and among
-        // others.
+        // A shape of a single instance gets the complete placement, so that the layers of a part have the
+        // same bits whether or not the plate has other parts.
         Transform placement = instance.placement;
         if (group.size() > 1)
             placement.offset[0] = placement.offset[1] = 0;

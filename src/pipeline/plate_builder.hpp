@@ -29,8 +29,8 @@ class PlateBuilder {
   public:
     using BoxOf = std::function<Box3(const Mesh& mesh, const Transform& placement)>;
 
-    /// Parts that take more than `max_memory` bytes beside their meshes are Error{limit}; 0: as many as there
-    /// may be.
+    /// If parts take more than `max_memory` bytes besides their meshes, `add` throws Error{limit}. 0 means
+    /// that only the number of parts is limited.
     explicit PlateBuilder(std::uint64_t max_memory = 0) : max_memory_(max_memory) {}
 
     /// Adds a file. Calls `box_of` once for each instance. Throws as load_plate.
@@ -67,7 +67,7 @@ class PlateBuilder {
     std::map<std::tuple<std::size_t, std::uint64_t, std::uint64_t>, std::vector<std::size_t>> bodies_;
 };
 
-/// Works as load_plate, for files that have been read already: one for each input. `max_memory`: as of
+/// Works as load_plate, for files that have been read already: one for each input. `max_memory` is that of
 /// PlateBuilder.
 [[nodiscard]] Plate build_plate(std::span<const PlateInput> inputs, std::vector<MeshFile> files,
                                 const Execution& execution, std::uint64_t max_memory = 0);

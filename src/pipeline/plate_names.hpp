@@ -17,7 +17,7 @@ namespace lamella {
 /// Returns the name of a part: its file, and its label if the file has several parts: "a.stl", "plate.3mf,
 /// part "ball"".
 [[nodiscard]] std::string name_of_part(const Plate& plate, std::size_t part);
-/// Returns the name of the first part of a shape: with its label if its file has several shapes.
+/// Returns the name of the first part of a shape. It includes the label if the file has several shapes.
 [[nodiscard]] std::string name_of_shape(const Plate& plate, std::size_t shape);
 
 } // namespace lamella

@@ -19,7 +19,7 @@
 namespace lamella {
 namespace {
 
-/// Reports the progress of several runs of one kind as one.
+/// Reports the progress of several runs of the slicer as one.
 class JointProgress {
   public:
     void expect(std::uint64_t triangles, std::uint64_t planes) {
@@ -74,8 +74,8 @@ void for_bodies(const Plate& plate, const Visit& visit) {
         visit(negative);
 }
 
-/// Returns for each shape the planes between its lowest and its highest point, or within the snap distance of
-/// these: on all others it has no contours.
+/// Returns for each shape the planes on which it can have contours. These are the planes between its lowest
+/// and its highest point, extended by the snap distance.
 std::vector<PlaneRange> planes_of_shapes(const Plate& plate, const Plan& plan) {
     const auto planes_where = [&plan](auto&& holds) {
         return static_cast<std::uint32_t>(
@@ -94,7 +94,7 @@ std::vector<PlaneRange> planes_of_shapes(const Plate& plate, const Plan& plan) {
     return planes;
 }
 
-/// Returns the planes in both ranges; an empty range if there are none.
+/// Returns the intersection of two ranges, which may be empty.
 PlaneRange common(PlaneRange a, PlaneRange b) {
     const std::uint32_t begin = std::max(a.begin, b.begin);
     return {begin, std::max(begin, std::min(a.end, b.end))};
@@ -129,9 +129,9 @@ Execution without_slicing(const Execution& execution) {
     });
 }
 
-/// For each plane of a run the first one that may still be on its way while it is worked on: so that there
-/// are no more than `most` of them, nor more than `most_points` points of all parts (0: any number); a layer
-/// without points counts as some.
+/// Returns for each plane of a range the first plane that may still be in flight when work on it begins. So
+/// at most `most` planes, and at most `most_points` points of all parts (0: any number), are in flight. A
+/// single plane may have more points. Each layer adds its own memory, in units of points.
 std::vector<std::uint32_t> first_on_the_way(const Plate& plate, PlaneRange run, std::uint32_t most,
                                             std::uint64_t most_points,
                                             const std::vector<ShapeLayers>& shapes) {
@@ -147,7 +147,7 @@ std::vector<std::uint32_t> first_on_the_way(const Plate& plate, PlaneRange run, 
     };
     std::vector<std::uint32_t> first(run.size());
     std::vector<std::uint64_t> points(run.size());
-    std::uint64_t sum = 0; // of those on their way
+    std::uint64_t sum = 0; // of the planes in flight
     std::uint32_t begin = 0;
     for (std::uint32_t i = 0; i < run.size(); ++i) {
         points[i] = points_on(run.begin + i);
@@ -159,8 +159,8 @@ std::vector<std::uint32_t> first_on_the_way(const Plate& plate, PlaneRange run, 
     return first;
 }
 
-/// The layers of all parts on a run of planes, formatted in parallel, written in order, with `at_once` of
-/// them on their way at most. Empties the shapes.
+/// Passes the layers of all parts on a range of planes to the sink in parallel, and delivers the results in
+/// order. At most `at_once` planes are in flight. Empties the shapes.
 void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRange run, std::uint32_t at_once,
           std::uint64_t points_in_flight, std::vector<ShapeLayers>& shapes, Executor& executor,
           ProgressMeter& progress) {
@@ -180,7 +180,7 @@ void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRang
             const bool has = planes.begin <= plane && plane < planes.end;
             parts.push_back(has ? moved(layers[plane - planes.begin], body.dx, body.dy) : none);
         });
-        for (auto& [planes, layers] : shapes) // nobody else looks at this plane
+        for (auto& [planes, layers] : shapes) // no other thread reads this plane
             if (planes.begin <= plane && plane < planes.end)
                 layers[plane - planes.begin] = {};
         delivery.deliver(static_cast<std::uint32_t>(i), sink(parts));
@@ -188,7 +188,7 @@ void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRang
     executor.check_cancelled();
 }
 
-/// Returns the visitor of a shape; empty if there is none.
+/// Returns the visitor of one shape; empty if `visitor` is empty.
 TriangleVisitor visitor_of(std::size_t shape, const ShapeVisitor& visitor) {
     if (!visitor)
         return {};
@@ -201,8 +201,8 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
                         const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
                         SinkCost cost, const ShapeVisitor& visitor) {
     SliceReport report;
-    // Each range visits all triangles, so ranges are few and large. Engines that weld would weld again for
-    // each range.
+    // The slicer visits all triangles for each range, so ranges should be few and large. An engine that welds
+    // would weld again for each range, so it gets a single range.
     constexpr std::uint64_t windows_per_limit = 2;
     const auto all = static_cast<std::uint32_t>(plan.layers.size());
     const std::vector<PlaneRange> runs =
@@ -222,7 +222,8 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
     std::optional<ProgressMeter> emitted;
     std::vector<bool> seen(planes.size(), false);
     Executor executor(execution);
-    // Nobody is to wait for a plane that takes longer; where much is made of each, no more than one a thread.
+    // With four planes for each thread, threads seldom wait for a plane that takes longer. If the sink
+    // expands layers, memory allows only one plane for each thread.
     const std::uint32_t at_once = (sink_counts ? 1 : 4) * executor.workers();
     for (const PlaneRange& run : runs) {
         std::vector<ShapeLayers> shapes(planes.size());

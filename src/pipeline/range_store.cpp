@@ -13,8 +13,9 @@ RangeStore::RangeStore(const Plan& plan, std::span<const PlaneRange> ranges,
     std::vector<RangeSurvey> surveys;
     for (const PlaneCounts& shape : counts)
         surveys.emplace_back(shape);
-    // Threads that write to one file at the same time block one another in the operating system; and hundreds
-    // of ranges may need more files than a process can open.
+    // Several files are used because threads that write to one file at the same time block one another in the
+    // operating system. Their number is limited because a process can open only a limited number of files,
+    // and there may be hundreds of ranges.
     constexpr std::size_t most_files = 16;
     std::vector<std::uint64_t> totals(std::min(ranges_, most_files), 0);
     for (std::size_t range = 0; range < ranges_; ++range)
@@ -37,7 +38,7 @@ RangeStore::RangeStore(const Plan& plan, std::span<const PlaneRange> ranges,
 }
 
 bool RangeStore::add(std::size_t shape, const TriangleSoup& batch) {
-    // A triangle may be cut by planes of all ranges, so copies are made in chunks of this size.
+    // A triangle may be cut by planes of all ranges. So the number of copies made at once is limited.
     constexpr std::uint64_t copies_at_once = std::uint64_t{1} << 15;
     std::vector<RangeFinder::Touched> touched;
     finder_.find(batch, touched);

@@ -50,7 +50,7 @@ LayerFileInfo with_exposures(const LayerFileInfo& info, const ScanStrategy& stra
 
 namespace {
 
-/// Returns the names of the parts of a file in errors.
+/// Returns the names of the parts of a file for error messages.
 std::vector<std::string> names_of(const LayerFileInfo& info, const std::string& file) {
     std::vector<std::string> names;
     for (const PartInfo& part : info.parts) {

@@ -36,8 +36,8 @@
 namespace lamella {
 namespace {
 
-/// Returns a bound of the layers of a body in this box after the steps. It is not tight: only sharp corners
-/// move farther than the sides, and open chains do not move.
+/// Returns a box that contains the layers of a body in `box` after the steps. The result is not tight, since
+/// only sharp corners move farther than the sides, and open chains do not move.
 Box3 box_after(const LayerSteps& steps, Box3 box) {
     const bool mitre = steps.offset_corners.shape == OffsetCorner::mitre;
     const double reach = std::max(0.0, steps.offset_mm) * (mitre ? steps.offset_corners.longest_mitre() : 1);
@@ -62,8 +62,8 @@ LayerFileInfo file_info(const FileJob& job, const Plate& plate, const Plan& plan
     return job.scan ? with_exposures(info, *job.scan) : info;
 }
 
-/// Inspects every shape. With `keep_welded` the shapes stay welded, so that an engine that welds need not do
-/// it again. Returns the sums over all parts, each of which is a solid of its own.
+/// Inspects every shape. With `keep_welded` the shapes stay welded, so that an engine that welds need not
+/// weld again. Returns the sums over all parts. Each part counts as a solid of its own.
 Inspection inspect_plate(Plate& plate, bool keep_welded, bool strict, std::vector<std::size_t>& unsound,
                          const Execution& execution) {
     std::vector<Inspection> found;
@@ -98,7 +98,7 @@ struct Prepared {
     std::vector<std::size_t> unsound; ///< indices of files
     std::vector<FileResult::MeshRepair> repairs;
     double volume_mm3 = 0;
-    double seconds = 0; ///< without the volume
+    double seconds = 0; ///< without computing the volume
 };
 
 Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const Execution& execution) {
@@ -107,7 +107,7 @@ Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const E
     const bool inspected = job.inspect || job.strict;
     const bool indexed = std::any_of(plate.shapes.begin(), plate.shapes.end(),
                                      [](const PlateShape& shape) { return shape.mesh.indexed() != nullptr; });
-    // Slicing would join them, too; doing it here frees the mesh as it was read.
+    // Slicing would weld the vertices, too; welding here frees the unwelded mesh.
     for (PlateShape& shape : plate.shapes)
         shape.mesh = shape.mesh.with_joined_vertices(execution);
     if (inspected)
@@ -148,7 +148,8 @@ Execution in_range(PlaneRange range, PlaneRange mine, const Execution& execution
     });
 }
 
-/// Takes the longest times of all processes, since they work at the same time, and the sums of counts.
+/// Replaces times by the longest of all processes, since processes work at the same time, and counts by sums
+/// over all processes.
 void gather(Communicator& processes, FileResult::Seconds& seconds, SliceReport& report) {
     if (processes.size() == 1)
         return;
@@ -199,8 +200,8 @@ void check_job(const FileJob& job, Communicator& processes) {
         check_strategy(*job.scan);
 }
 
-/// Returns the visitor that looks for near faces in the triangles that are sliced. Empty if they stay in
-/// their files, where `Feed::count` looks for them, or if there can be none.
+/// Returns the visitor that finds near faces among the sliced triangles. It is empty if triangles stay in
+/// their files, because `Feed::count` then finds the near faces, or if there can be none.
 ShapeVisitor near_face_visitor(Feed& feed, const Plan& plan) {
     if (feed.meshes() == nullptr)
         return {};
@@ -237,7 +238,7 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
                 whole ? execution : in_range(ranges[s], sliced[processes.process()], execution), engine,
                 points_in_flight, cost, visitor);
         }
-        if (visitor && ranges.empty()) // no planes here, but near faces are counted for all processes
+        if (visitor && ranges.empty()) // all processes count near faces
             for (std::size_t shape = 0; shape < feed.plate().shapes.size(); ++shape) {
                 const Mesh& mesh = feed.plate().shapes[shape].mesh;
                 visitor(shape, mesh, 0, mesh.size());
@@ -260,7 +261,7 @@ void refuse_defects(const FileJob& job, const FileResult& result) {
     for (std::size_t file = 0; file < result.doubts.size(); ++file)
         if (const std::vector<std::string> doubts = result.doubts[file].texts(); !doubts.empty())
             refuse(job.inputs[file].path, doubts.front());
-    // Other shards may have contours.
+    // If a shard has no contours, other shards may still have some.
     if (!job.shard && result.changes && result.changes->changed_layers > 0 && result.report.contours == 0)
         refuse(name_of(job.inputs),
                fmt::format("nothing is left of any of {} layers after the steps", result.report.layers));

@@ -43,7 +43,8 @@ class Extent {
     Point3f first_corner_;
 };
 
-/// The volume of a mesh from its chunks, equal bit for bit to `volume` if these are the chunks that it sums.
+/// The volume of a mesh, computed from its chunks. It equals the result of `volume`, bit for bit, if the
+/// chunks are those that `volume` sums.
 class VolumeSum {
   public:
     VolumeSum(const Transform& placement, const Point3f& first)

@@ -38,20 +38,21 @@ std::string gaps_text(std::span<const Verification::OpenLayer> layers) {
         worst->gaps.from.x, worst->gaps.from.y, worst->gaps.to.x, worst->gaps.to.y);
 }
 
-/// Returns the largest difference between the area of a layer and that of the mesh's section if each of its
-/// points is off by up to half a step of the format in x and y. `extent` is that of the mesh.
+/// Returns the largest possible difference between the area of a layer and that of the section of the mesh,
+/// if rounding moved each point of the layer by up to half a step of the format in x and y. `extent` is the
+/// extent of the mesh.
 double area_tolerance(const Layer& layer, const LayerMeasure& measure, const Rounding& rounding,
                       double extent) {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();
     const double largest = largest_coordinate(layer.points.span());
     const double quantum = rounding.step_at(largest) / 2;
     const auto points = static_cast<double>(measure.points);
-    // Rings smaller than a unit may have vanished: the perimeter is therefore a few units longer.
+    // The perimeter is increased by a few steps, because rings smaller than a step may have vanished.
     const double moved_points =
         (measure.perimeter_mm + 8 * quantum) * (std::sqrt(2.0) * quantum + 16 * epsilon * largest) +
         2 * points * quantum * quantum;
-    // Both areas are sums of products of coordinates, one for each point, which cancel to the area. Errors of
-    // sums grow with the root of the number of terms.
+    // Each area is a sum of products of coordinates, one for each point, that mostly cancel. The rounding
+    // error of a sum grows with the root of the number of terms.
     return moved_points + epsilon * extent * extent * (16 + 4 * std::sqrt(points));
 }
 
@@ -116,8 +117,9 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
                 [&](const AreaMoments& a, const AreaMoments& b) { return a.*sum < b.*sum; });
             return std::max((*least).*sum - moments.*sum, moments.*sum - (*greatest).*sum);
         };
-        // Rounding decides for each corner separately whether its mitre is truncated. If this happens on one
-        // side of the origin only, it moves the centroid beyond that of all or none truncated.
+        // Rounding decides for each corner separately whether its mitre is truncated. If mitres are truncated
+        // only on one side of the origin, the centroid moves farther than if all mitres or none were
+        // truncated.
         double undecided_mm2 = 0;
         const std::size_t cuts = sections[i].size() / limits.size();
         for (std::size_t k = cuts; k < sections[i].size(); ++k)
@@ -152,7 +154,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
     if (result.displaced > 0) {
         const auto centre = [&](const AreaMoments& section) -> std::string {
             if (section.area_mm2 == 0)
-                return "nowhere"; // bodies that cancel each other
+                return "nowhere"; // the areas of bodies cancel
             const auto to_nanometres = [](double mm) {
                 return std::round(mm * 1e6) / 1e6 + 0.0;
             };
@@ -187,8 +189,8 @@ PlaneRule place_cuts(LayerStack& layers, SliceAt at) {
         const double cut = at == SliceAt::bottom ? layer.bottom
                            : at == SliceAt::top  ? layer.top
                                                  : layer.bottom + (layer.top - layer.bottom) / 2;
-        // A height in the file takes precedence: a last cut at the top of a mesh must not end up above it by
-        // a rounding error.
+        // A height in the file takes precedence if it differs only by rounding: the last cut may be at the
+        // top of the mesh, and must not move above it.
         if (std::abs(layer.z - cut) > same_height_mm)
             layer.z = cut;
     }

@@ -92,12 +92,12 @@ double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept
                                                 : hatch_depth(contours, hatch_of(strategy, exposure.region));
 }
 
-/// Returns how far inside of the outline of the part the lines of a contour are at most.
+/// Returns the largest distance of the lines of a contour from the outline of the part.
 double deepest_line(const Exposure& exposure, const ScanStrategy& strategy) noexcept {
     const ContourRule& contours = contours_of(strategy, exposure.region);
     double depth = depth_of(exposure, strategy);
     if (exposure.contour != 0 && exposure.contour < contours.count)
-        return depth; // of 0 the number is not known
+        return depth; // number 0 means that the number is unknown
     const auto too_thin_for = [&](const HatchRule& hatch) {
         depth = std::max(depth, hatch_depth(contours, hatch) + surely_hatched(hatch) / 2);
     };
@@ -112,7 +112,7 @@ double deepest_line(const Exposure& exposure, const ScanStrategy& strategy) noex
 /// Findings about the contours of one number.
 struct ContourRow {
     Finding missing;
-    Finding elsewhere; ///< wrong area for its depth
+    Finding elsewhere; ///< the area is not that at the depth of the contour
 
     void add(const ContourRow& other) {
         missing.add(other.missing);
@@ -127,7 +127,7 @@ struct PlaneCheck : ContourFindings {
     Finding miscovered;
     Finding unreached;
     Finding inverted;
-    std::map<std::uint32_t, ContourRow> rows; ///< by number of contours, for those with findings
+    std::map<std::uint32_t, ContourRow> rows; ///< by contour number; only contours with findings
     std::uint64_t contour_vectors = 0;
     std::uint64_t hatch_vectors = 0;
     std::uint64_t unbounded = 0;
@@ -137,7 +137,7 @@ struct PlaneCheck : ContourFindings {
     double inverted_mm3 = 0;
 };
 
-/// Known sections of the material of a plane, and further possible ones: a format may have moved the cut.
+/// Possible sections of the material of a plane. There are several if the format may have moved the cut.
 struct Bounds {
     std::vector<Layer> sections; ///< the first is at the height in the file
     double depth = 0;            ///< distance of their outlines from that of the part
@@ -145,8 +145,9 @@ struct Bounds {
 
 class Slack {
   public:
-    /// A line may end half a distance beside the edge of the area, and areas narrower than the shortest line
-    /// have none. Stripes and islands overlap, and each leaves out lines that are too short.
+    /// The area covered by lines may end half a line distance beside the edge of the filled area. Areas
+    /// narrower than the shortest line have no lines. Stripes and islands overlap, and each leaves out lines
+    /// that are too short.
     void add(const HatchRule& rule) {
         const bool cells = rule.pattern != HatchPattern::lines && rule.pattern != HatchPattern::meander;
         strip_less_ = std::max(strip_less_, rule.distance / 2 + rule.shortest);
@@ -154,7 +155,7 @@ class Slack {
         if (!cells)
             return;
         const double longer = 1 + rule.overlap / rule.cell;
-        // Each square has all lines that reach into it; lines in hexagons end at the border.
+        // A square has all lines whose width reaches into it; lines in hexagons end at the border.
         constexpr double rounding = 1e-9;
         const double wider = rule.pattern == HatchPattern::chessboard
                                  ? std::ceil((rule.cell + std::max(rule.overlap, rule.distance)) /
@@ -220,7 +221,8 @@ struct HatchLine {
     [[nodiscard]] double length() const noexcept { return ends == nullptr ? 0 : distance(ends[0], ends[1]); }
 };
 
-/// Returns the longest line of each plane and rule that has lines, for enough of the lowest planes.
+/// Returns the longest line for each plane and rule with lines. Looks at the lowest planes until there are
+/// enough lines.
 std::vector<HatchLine> longest_lines(const std::vector<Group>& groups, const ScanStrategy& strategy,
                                      std::size_t planes) {
     constexpr std::size_t enough = 32;
@@ -243,8 +245,8 @@ std::vector<HatchLine> longest_lines(const std::vector<Group>& groups, const Sca
     return lines;
 }
 
-/// Returns the number of layers of the plan before the first of these: the number for which most of the lines
-/// are at their expected positions.
+/// Returns the number of layers of the plan below the first layer of the file. It is the number for which the
+/// most lines are at their expected positions.
 std::uint64_t layers_before(const std::vector<HatchLine>& lines, double tolerance, const Executor& executor) {
     constexpr std::uint64_t most = 1 << 17;
     std::uint64_t best = 0;
@@ -342,13 +344,13 @@ class VectorCheck {
     }
 
   private:
-    /// Follows `scan`: overlapping bodies are united at a depth of 0, too.
+    /// As in `scan`, overlapping bodies are united even if the depth is 0.
     static Layer moved_inwards(const Layer& section, double depth, const OffsetCorners& corners = {}) {
         return depth == 0 ? fill(section, FillRule::positive).layer : offset(section, -depth, corners);
     }
 
-    /// Returns findings about contours of one number, which must neither cross nor lie within one another's
-    /// material.
+    /// Returns findings about contours of one number. These must not cross, and none may lie within the
+    /// material of another.
     [[nodiscard]] ContourFindings of_one_exposure(const Exposure& exposure, const Layer& vectors) const {
         ContourFindings found = check_layer(vectors, options_.granted()).found;
         found.misoriented.add(found.tangled);
@@ -357,7 +359,7 @@ class VectorCheck {
         return found;
     }
 
-    /// Returns whether the strategy has lines for an exposure.
+    /// Returns whether the strategy prescribes lines for an exposure.
     [[nodiscard]] bool asks_for_lines(const Exposure& exposure) const noexcept {
         const ScanStrategy& strategy = *options_.strategy;
         return exposure.kind == VectorKind::hatch &&
@@ -385,7 +387,7 @@ class VectorCheck {
     }
 
     void find_outside(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
-        // Grown a little, so that points on an edge are inside.
+        // The material is grown a little, so that points on an edge are inside.
         Layer material = bounds.sections.front();
         for (std::size_t i = 1; i < bounds.sections.size(); ++i)
             material = combine(material, bounds.sections[i], BooleanOperation::unite);
@@ -394,8 +396,8 @@ class VectorCheck {
         for (const LayerPart* const part : group.exposures) {
             const double depth =
                 options_.strategy ? depth_of(*part->exposure, *options_.strategy) - bounds.depth : 0;
-            // Lines of a contour run along the middle of walls that are too thin for it, those of the
-            // innermost one also of what is too thin for a hatch.
+            // Lines of a contour run along the middle of walls that are too thin for the contour. Lines of
+            // the innermost contour also run along the middle of areas that are too thin for a hatch.
             const bool in_walls = part->exposure->kind == VectorKind::contour;
             if (in_walls && options_.strategy)
                 find_in_thick(
@@ -447,7 +449,7 @@ class VectorCheck {
             const double nearest = edges_.distance_squared(segment_between(from, to), squared_ / 2);
             if (!inside_ || nearest < squared_)
                 outside_.add(layer_, from);
-            known_ = nearest >= squared_; // else it may have crossed an edge
+            known_ = nearest >= squared_; // otherwise the beam may have crossed an edge
             at_ = to;
         }
 
@@ -503,7 +505,7 @@ class VectorCheck {
         }
         const Layer* section = &bounds.sections.front();
         LayerMeasure
-            to_fill; // of the first section with material: rounded heights may lie outside of the part
+            to_fill; // of the first section with material, since rounded heights may be outside of the part
         LayerMeasure largest;
         double least = std::numeric_limits<double>::infinity();
         for (const Layer& moved : bounds.sections) {
@@ -528,8 +530,7 @@ class VectorCheck {
         found.filled_mm2 += to_fill.area_mm2;
     }
 
-    /// Measures the material out of reach for each section that the file may mean, and keeps the smallest
-    /// result.
+    /// Measures the unreached material of each possible section, and keeps the smallest result.
     void measure_unreached(const Group& group, std::size_t plane, const Bounds& bounds,
                            PlaneCheck& found) const {
         const ScanStrategy& strategy = *options_.strategy;
@@ -561,7 +562,7 @@ class VectorCheck {
 
     const VerifyOptions& options_;
     double rounding_;  ///< tolerance of ends of lines
-    double tolerance_; ///< tolerance of edges of the material, simplification included
+    double tolerance_; ///< tolerance of edges of the material, including simplification
     std::uint64_t before_;
 };
 
@@ -623,7 +624,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         for (const Layer& layer : part.layers)
             check(layer);
     const std::vector<Group> groups = groups_of(parts, options.mesh.has_value());
-    // Requirements on contours apply to each part. A mesh of several parts does not distinguish them.
+    // Requirements on contours apply to each part. A mesh does not distinguish parts.
     const std::vector<Group> of_parts = options.strategy ? groups_of(parts, false) : std::vector<Group>();
     VectorVerification result;
     const auto check_number = [&] {
