@@ -16,10 +16,10 @@ double squared_distance(const Point2& p, const Point2& q) noexcept {
     return (q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y);
 }
 
-/// Follows a ring once around, from a point of it.
+/// Follows a ring once around, starting from a point on it.
 class Follower {
   public:
-    /// Begins at a point on the edge that begins at a corner.
+    /// Begins at the point `from`, which is on the edge that begins at `corner`.
     Follower(std::span<const Point2> ring, std::size_t corner, const Point2& from)
         : ring_(ring), start_(from), at_(from), next_(corner + 1) {}
 
@@ -39,7 +39,7 @@ class Follower {
     std::span<const Point2> ring_;
     Point2 start_;
     Point2 at_;
-    std::size_t next_;                    ///< next corner; counts on after the end of the ring
+    std::size_t next_; ///< index of the next corner; continues to increase after the end of the ring
     std::size_t left_ = ring_.size() + 1; ///< remaining corners, including the return to the start
 };
 
@@ -56,7 +56,7 @@ std::size_t nearest_edge(std::span<const Point2> ring, const Point2& p, Point2& 
     return nearest;
 }
 
-/// Returns whether both can be followed from corner to corner of the same index.
+/// Returns whether the corners of equal index of both rings are near each other.
 bool corner_by_corner(std::span<const Point2> a, std::span<const Point2> b, double squared) noexcept {
     double largest = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
@@ -75,7 +75,8 @@ bool run_alongside(std::span<const Point2> a, std::span<const Point2> b, double 
         return false;
     Follower first(a, 0, a.front());
     Follower second(b, corner, position);
-    // Advances to the next corner of one ring or of both, whichever leaves the two points nearest.
+    // Advances to the next corner of one ring or of both rings. Chooses the step after which the two points
+    // are nearest to each other.
     while (!first.over() || !second.over()) {
         const bool both = !first.over() && !second.over();
         if (both && first.next() != second.next()) {
@@ -128,7 +129,7 @@ std::vector<std::uint32_t> rings_alongside(const Layer& a, const Layer& b, doubl
             found[i] = j;
         }
     };
-    std::vector<Box2> boxes; // of b's rings, filled when first needed
+    std::vector<Box2> boxes; // boxes of the rings of b, computed when first needed
     std::uint32_t likely = 0;
     for (std::size_t i = 0; i < a.rings; ++i) {
         try_pair(i, likely);

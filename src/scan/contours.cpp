@@ -32,7 +32,7 @@ std::size_t farthest(std::span<const Point2> ring, double degrees) noexcept {
 /// Returns the point at which the ring turns most to the left, where its material is.
 std::size_t sharpest(std::span<const Point2> ring) noexcept {
     std::size_t best = 0;
-    double least = std::numeric_limits<double>::infinity(); // -1 folds to the left, 3 to the right
+    double least = std::numeric_limits<double>::infinity(); // -1: folds back to the left, 3: to the right
     for (std::size_t i = 0; i < ring.size(); ++i) {
         const Point2& before = ring[(i == 0 ? ring.size() : i) - 1];
         const Point2& after = ring[i + 1 == ring.size() ? 0 : i + 1];
@@ -57,7 +57,7 @@ struct Start {
     double strip = 0;
 };
 
-/// Assigns strips along x. Each strip has about as many rings as there are strips.
+/// Divides the start points into strips along x. Each strip has about as many rings as there are strips.
 void put_into_strips(std::vector<Start>& starts) {
     const auto [low, high] = std::minmax_element(
         starts.begin(), starts.end(), [](const Start& a, const Start& b) { return a.at.y < b.at.y; });

@@ -9,9 +9,9 @@
 
 namespace lamella {
 
-/// Returns the rings of a layer in normal form in scanning order. Rings with start points in the same strip
-/// of the layer follow one another, in alternating directions from strip to strip. `number` is the index of
-/// the contour, from outside. O(n + c log c) for n points in c rings.
+/// Returns the rings of a layer in normal form in scanning order. The layer is divided into strips. Rings
+/// with start points in the same strip follow one another, in a direction that alternates from strip to
+/// strip. `number` is the number of the contour; the outermost is 1. O(n + c log c) for n points in c rings.
 [[nodiscard]] Layer followed(const Layer& rings, const ContourRule& rule, std::uint32_t number,
                              std::uint64_t seed);
 

@@ -58,7 +58,7 @@ std::vector<Point2> line_by_line(const HatchLines& lines, const HatchRule& rule,
     return points;
 }
 
-// For cell indices, which check_cells has limited to 2^30. (std::floor is a function call.)
+// Rounds down to a cell index, which check_cells limits to 2^30. std::floor would be a function call.
 std::int32_t floor_of(double number) noexcept {
     const auto towards_zero = static_cast<std::int32_t>(number);
     return towards_zero - static_cast<std::int32_t>(towards_zero > number);
@@ -81,7 +81,7 @@ void for_long_enough(std::span<const double> ends, const HatchRule& rule, const 
             visit(ends[k], ends[k + 1]);
 }
 
-/// Cells that a piece of a line meets: every n-th from the first to the last.
+/// The cells that a piece of a line intersects: every n-th cell from the first to the last.
 struct CellRange {
     std::int32_t first;
     std::int32_t last;
@@ -91,8 +91,8 @@ struct CellRange {
     }
 };
 
-/// The piece of a line in a stripe may be too short if it ends just beyond the border of two stripes. The
-/// neighbour is then extended.
+/// Returns the stripes that get a piece of a line. If the line ends just beyond the border of two stripes,
+/// its piece in the last one may be too short. Then the piece in the neighbouring stripe is extended instead.
 CellRange stripes_of(double begin, double end, const HatchRule& rule) noexcept {
     const double width = rule.cell;
     CellRange stripes{floor_of(begin / width), 0};
@@ -122,14 +122,14 @@ void cut_into_stripes(const HatchLines& lines, const HatchRule& rule, const Laye
     }
 }
 
-/// Extent of a line in a row of cells to both sides of the middle of each cell.
+/// The extent of a line in a cell of a row, to both sides of the middle of the cell.
 struct Reach {
     double half;  ///< including the overlap with neighbours
     double cover; ///< extent of the cell itself; less would leave gaps between cells
 };
 
 /// A row of cells along a line: cell k extends `reach` to both sides of pitch * (k + offset). The line has
-/// pieces of every n-th cell, one of which is cell `one`.
+/// pieces in every n-th cell; cell `one` is one of these cells.
 struct CellRow {
     std::int32_t row;
     double pitch;
@@ -145,7 +145,7 @@ struct CellRow {
 };
 
 /// Calls add(k, from, to) for each piece of a line in the cells of a row that is long enough. A piece that is
-/// too short because the cell ends there is extended beyond the border of the cell, where there is material.
+/// too short because the cell ends is extended beyond the border of the cell into the material there.
 template <std::int32_t n, class Add>
 void cut_into_cells(std::span<const double> ends, const CellRow& cells, const HatchRule& rule,
                     const Add& add) {
@@ -169,17 +169,18 @@ void cut_into_cells(std::span<const double> ends, const CellRow& cells, const Ha
     });
 }
 
-/// Returns the largest distance from a cell at which a line still covers part of the cell with its half of
-/// the line distance. Reduced by rounding, so that lines that only touch the cell are excluded.
+/// Returns the largest distance from a cell at which a line still covers a part of the cell. A line covers
+/// half of the line distance to both sides. The result is slightly reduced, so that a line does not count if
+/// its strip only touches the cell.
 double beside(const HatchRule& rule) noexcept {
     constexpr double rounding = 1e-9;
     return rule.distance * (0.5 - rounding);
 }
 
-// Squares of one colour have lines along the frame, those of the other colour across it: the latter are the
-// squares of the first colour in the frame rotated by a right angle. A line between two rows belongs to both
-// if it is nearer to the border than half the overlap or half a distance; otherwise a strip along the border
-// would belong to no square.
+// Squares of one colour have lines along the frame, and squares of the other colour have lines across it. In
+// a frame rotated by a right angle, the second colour becomes the first. A line belongs to both adjacent rows
+// if its distance from the border between them is less than half of the overlap or half of the line distance.
+// Otherwise a strip along the border would belong to no square.
 struct Squares {
     static constexpr std::int32_t colours = 2;
 
@@ -208,13 +209,13 @@ struct Squares {
     }
 };
 
-// Hexagons stand on a corner, in rows along the frame: the one in row r at index q has its middle at u = cell
-// * (q + r / 2) and v = cell * r * sqrt(3) / 2. A rotation by a sixth of a turn maps (q, r) to (-r, q + r),
-// and the same rows lie along the rotated frame. Each of three colours, (q - r) modulo 3, has lines of one of
-// three directions; one rotation maps colour c to -c.
+// Hexagons stand on a corner, in rows along the frame. The hexagon at index q in row r has its middle at u =
+// cell * (q + r / 2) and v = cell * r * sqrt(3) / 2. A rotation by 60 degrees maps (q, r) to (-r, q + r), so
+// the hexagons also form rows along the rotated frame. The colour of a hexagon is (q - r) modulo 3. Each
+// colour has one of three directions of lines. A rotation maps colour c to -c.
 //
-// At a slanted border, a line ends where its half of the distance leaves the hexagon: so lines and their
-// halves cover the hexagon up to its corners.
+// At a slanted border, a line ends where the whole strip that it covers has left the hexagon. So the strips
+// cover the hexagon up to its corners.
 struct Hexagons {
     static constexpr std::int32_t colours = 3;
 
@@ -259,7 +260,7 @@ struct Hexagons {
 
 /// Returns a quick upper bound of the number of pieces into which lines in all directions are cut.
 std::uint64_t pieces_at_most(const std::vector<HatchLines>& lines, const HatchRule& rule) {
-    double length = 0; // with the overlap of cells at both ends
+    double length = 0; // including the overlap of cells at both ends
     double count = 0;
     for (const HatchLines& one : lines)
         for (std::size_t i = 0; i < one.size(); ++i)
@@ -317,7 +318,7 @@ void check_cells(const Layer& area, const HatchRule& rule, const LayerBudget& bu
 }
 
 /// Returns an upper bound of the number of pieces into which all lines are cut. It is nearly exact if the
-/// quick bound exceeds the limit. Throws Error{limit} if there are too many.
+/// quick upper bound exceeds a limit. Throws Error{limit} if there are too many.
 std::uint64_t count_pieces(const std::vector<HatchLines>& lines, const HatchRule& rule,
                            const LayerBudget& budget) {
     constexpr std::uint64_t most = std::uint64_t{1} << 22;
@@ -339,7 +340,7 @@ std::uint64_t count_pieces(const std::vector<HatchLines>& lines, const HatchRule
     return pieces;
 }
 
-/// Returns whether line i, if it exists, has a piece between two positions that is long enough.
+/// Returns whether line i exists and has a sufficiently long piece between two positions.
 bool has_piece(const HatchLines& lines, std::int64_t i, double from, double to, const HatchRule& rule) {
     if (i < 0 || i >= static_cast<std::int64_t>(lines.size()))
         return false;
@@ -352,7 +353,7 @@ bool has_piece(const HatchLines& lines, std::int64_t i, double from, double to, 
     return false;
 }
 
-/// Returns the area of pieces that are too short for lines and have no line beside them.
+/// Returns the area of pieces that are too short for hatch lines and have no hatch line beside them.
 double too_short(const HatchLines& lines, const HatchRule& rule, const LayerBudget& budget) {
     double length = 0;
     for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -373,7 +374,8 @@ double too_short(const HatchLines& lines, const HatchRule& rule, const LayerBudg
     return length * rule.distance;
 }
 
-/// Returns the area between two lines that has no line beside it, estimated by lines across.
+/// Returns an estimate, by perpendicular lines, of the area that lies between two lines and has no hatch line
+/// beside it.
 double between_lines(const HatchArea& area, const HatchLines& lines, const HatchRule& rule,
                      const LayerBudget& budget) {
     const double apart = 5 * rule.distance;
@@ -387,7 +389,7 @@ double between_lines(const HatchArea& area, const HatchLines& lines, const Hatch
         for (std::size_t k = 0; k < ends.size(); k += 2) {
             if (ends[k + 1] - ends[k] >= rule.distance)
                 continue;
-            const double number = std::ceil(ends[k] / rule.distance); // of the first line above
+            const double number = std::ceil(ends[k] / rule.distance); // number of the first line above
             if (number * rule.distance <= ends[k + 1])
                 continue;
             const std::int64_t line = static_cast<std::int64_t>(number) - lines.first();
@@ -399,7 +401,8 @@ double between_lines(const HatchArea& area, const HatchLines& lines, const Hatch
     return length * apart;
 }
 
-/// Returns whether there may be bare spots. Other directions cover the area between lines of one.
+/// Returns whether there may be bare spots. If there are several directions, lines of the others cover the
+/// area between two lines of one direction.
 bool may_leave_bare(const HatchArea& area, const std::vector<HatchLines>& lines, const HatchRule& rule,
                     const LayerBudget& budget) {
     double bare = 0;
@@ -429,7 +432,8 @@ double line_phase(HatchPattern pattern) noexcept {
     return pattern == HatchPattern::chessboard ? 0.5 : 0;
 }
 
-// In a circle of this diameter, a line at most half a distance from the centre is `shortest` long.
+// A line through a circle of this diameter is at least `shortest` long if it is at most half a line distance
+// from the centre.
 double surely_hatched(const HatchRule& rule) noexcept {
     return std::sqrt(rule.shortest * rule.shortest + rule.distance * rule.distance);
 }

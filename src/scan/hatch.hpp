@@ -13,10 +13,10 @@
 
 namespace lamella {
 
-/// The area to fill. All layers must consist of rings that bound material and do not cross. Layers are
+/// The area to fill. All its layers must consist of rings that bound material and do not cross. They are
 /// combined along each line, without operations on polygons.
 struct HatchArea {
-    // NOLINTNEXTLINE(google-explicit-constructor): most areas are a layer
+    // NOLINTNEXTLINE(google-explicit-constructor): most areas are a single layer
     HatchArea(const Layer& all) : within(all) {}
 
     const Layer& within;
@@ -24,23 +24,24 @@ struct HatchArea {
     std::vector<const Layer*> without = {}; ///< layers to subtract
 };
 
-/// Returns the directions of the lines of a layer: islands have lines in two or three. For each direction,
-/// line k lies at v = (k + `line_phase`) * distance in its LineFrame.
+/// Returns the directions of the lines of a layer: two for squares, three for hexagons, one for other
+/// patterns. For each direction, line k lies at v = (k + `line_phase`) * distance in its LineFrame.
 [[nodiscard]] std::vector<CosSin> line_angles(const HatchRule& rule, std::uint64_t layer);
 /// Returns the phase of the lines. Squares begin half a distance before their first line, so that squares
 /// whose size is an integer multiple of the distance meet without a gap and without an overlap.
 [[nodiscard]] double line_phase(HatchPattern pattern) noexcept;
 
 /// Returns the hatch lines, two points each, as in ScanVectors::hatches. The index of `within` defines the
-/// rotation of the lines and, with the seed, the order of islands. `bare`, if given, becomes whether there
-/// may be spots narrower than `surely_hatched` without a line within its distance: pieces that are too short
-/// have no lines, and strips may lie between two lines. Spots of a total area of a few squares of half the
-/// distance do not count. Throws the errors of HatchLines, and Error{limit} for more than 2^28 stripes or
-/// islands in a row, 2^22 pieces of lines or 2^21 islands, or more pieces or islands than the budget allows.
+/// rotation of the lines and, with the seed, the order of islands. `bare`, if given, is set to true if there
+/// may be spots without a hatch line within the line distance. Such spots are narrower than `surely_hatched`:
+/// pieces that are too short have no lines, and narrow strips may lie between two lines. Spots do not count
+/// if their total area is at most the square of half the line distance. Throws the errors of HatchLines, and
+/// Error{limit} for more than 2^28 stripes or islands in a row, 2^22 pieces of lines or 2^21 islands, or more
+/// pieces or islands than the budget allows.
 [[nodiscard]] PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed,
                                bool* bare = nullptr, const LayerBudget& budget = {});
 
-/// Returns the width of material that is hatched wherever the lines come to lie.
+/// Returns the width from which on material is hatched for any position of the lines.
 [[nodiscard]] double surely_hatched(const HatchRule& rule) noexcept;
 
 } // namespace lamella

@@ -27,13 +27,14 @@ struct RankedPoint {
     std::int32_t rank; ///< number of the layer's lines below it
 };
 
-/// Rounds up numbers within 2^52. (std::ceil is a function call.)
+/// Rounds up numbers of at most 2^52. std::ceil would be a function call.
 std::int64_t rounded_up(double number) noexcept {
     const auto towards_zero = static_cast<std::int64_t>(number);
     return towards_zero + static_cast<std::int64_t>(static_cast<double>(towards_zero) < number);
 }
 
-/// Sorts the ends of a line. Insertion is faster for few values, and most lines meet a part a few times.
+/// Sorts the ends of a line. Insertion sort is faster for few values, and most lines intersect a part a few
+/// times only.
 void sort_ends(std::span<double> ends) {
     constexpr std::size_t few = 48;
     if (ends.size() > few) {
@@ -51,10 +52,10 @@ void sort_ends(std::span<double> ends) {
 
 } // namespace
 
-// The rule of slicing in one dimension less. Each point has a rank, the number of lines below it, which
-// depends on the point only. An edge meets the lines between the ranks of its ends. So a closed ring meets
-// each line an even number of times, regardless of the rounding of ranks, and lines through vertices and
-// along edges need no special cases.
+// This is the rule of slicing in one dimension less. The rank of a point is the number of lines below it, and
+// depends on the point only. An edge intersects the lines between the ranks of its ends. So a closed ring
+// intersects each line an even number of times, however ranks are rounded. Lines through vertices and along
+// edges need no special cases.
 
 HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double phase,
                        const LayerBudget& budget)
@@ -75,7 +76,7 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double
         most = std::max(most, points[i].v);
     }
     const double below =
-        std::ceil(least / distance - phase); // the first line, or a line through the lowest point
+        std::ceil(least / distance - phase); // of the first line; it may pass through the lowest point
     const double lines = std::ceil(most / distance - phase) - below;
     if (!(std::abs(below) < 0x1p52 && lines <= static_cast<double>(most_lines)))
         throw Error(
@@ -86,7 +87,7 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double
     for (RankedPoint& p : points)
         p.rank = static_cast<std::int32_t>(rounded_up(p.v / distance - phase) - first_);
 
-    // Sort each edge into the lines that it meets, by counting, summing up and writing.
+    // Assigns each edge to the lines that it intersects, by a counting sort.
     left.need(static_cast<std::uint64_t>(lines), 2 * sizeof(std::uint32_t), "hatch lines", larger_distance);
     const auto for_edges = [&](const auto& visit) {
         for (std::size_t ring = 0; ring < layer.rings; ++ring) {
@@ -98,7 +99,8 @@ HatchLines::HatchLines(const Layer& layer, CosSin angle, double distance, double
             }
         }
     };
-    // First how many more edges meet a line than meet the one below; then the position of its ends.
+    // First holds by how much the number of edges on a line exceeds that on the line below, then the index of
+    // the first end on the line.
     begins_.assign(static_cast<std::size_t>(lines) + 1, 0);
     for_edges([&](const RankedPoint& a, const RankedPoint& b) {
         ++begins_[static_cast<std::size_t>(std::min(a.rank, b.rank))];
@@ -145,7 +147,7 @@ void HatchLines::subtract(const HatchLines& others, const LayerBudget& budget) {
     keep<false>(others, budget);
 }
 
-/// Keeps what is inside or outside of the others. Equal ends are merged, so no piece has length 0.
+/// Keeps the pieces inside or outside of the others. Merges equal ends, so that no piece has length 0.
 template <bool inside>
 void HatchLines::keep(const HatchLines& others, const LayerBudget& budget) {
     assert(distance_ == others.distance_ && phase_ == others.phase_);

@@ -31,13 +31,13 @@ struct LineFrame {
 class HatchLines {
   public:
     /// `layer` must consist of rings that bound material and do not cross. Throws Error{limit} for more than
-    /// 2^22 lines, 2^23 pieces of them, or more than the budget allows, before memory is allocated; and
-    /// Error{cancelled}. O(points + ends), plus sorting the ends of each line.
+    /// 2^22 lines, 2^23 pieces of them, or more than the budget allows, before memory is allocated. Throws
+    /// Error{cancelled}, too. O(points + ends), plus sorting the ends of each line.
     HatchLines(const Layer& layer, CosSin angle, double distance, double phase = 0,
                const LayerBudget& budget = {});
 
-    /// Intersect each line with the other lines, or subtract these from it. The other lines must have the
-    /// same angle, distance and phase. O(lines + ends).
+    /// Intersects the lines with other lines, or subtracts other lines from them. The other lines must have
+    /// the same angle, distance and phase. O(lines + ends).
     void intersect(const HatchLines& others, const LayerBudget& budget = {});
     void subtract(const HatchLines& others, const LayerBudget& budget = {});
 
@@ -72,7 +72,7 @@ class HatchLines {
     double distance_;
     double phase_;
     std::int64_t first_ = 0;
-    std::vector<std::uint32_t> begins_{0}; ///< of the ends of each line, and one past the last
+    std::vector<std::uint32_t> begins_{0}; ///< index of the first end of each line, then the number of ends
     std::vector<double> ends_;
 };
 

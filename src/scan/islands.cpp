@@ -43,7 +43,7 @@ void Islands::make_room_for_cells() {
     cells_.reserve(room);
 }
 
-// The order of cells along a line mostly equals that along the previous line.
+// Lookups are fast because the order of cells along a line mostly equals that along the previous line.
 std::uint32_t Islands::number_of(Cell cell) {
     if (!cells_.empty()) {
         const std::uint32_t guess = cells_[last_].after;
@@ -61,7 +61,7 @@ std::uint32_t Islands::number_of(Cell cell) {
     return last_ = found->second;
 }
 
-// Every other row is built from its end.
+// Every other row is exposed from its end.
 PointArray Islands::points_in_rows() && {
     std::vector<std::uint32_t> order(cells_.size());
     std::iota(order.begin(), order.end(), 0U);

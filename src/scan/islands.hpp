@@ -25,18 +25,18 @@ struct Cell {
     friend auto operator<=>(const Cell&, const Cell&) = default;
 };
 
-/// Pieces of lines, cell by cell; in each cell line by line, in alternating directions. O(pieces + c log c)
-/// for c cells.
+/// Pieces of lines, sorted by cells. Within a cell they are sorted by lines, in alternating directions.
+/// O(pieces + c log c) for c cells.
 class Islands {
   public:
-    /// Including its two points.
+    /// Memory of a piece and of its two points.
     static constexpr std::uint64_t bytes_of_piece = 56;
 
-    /// Allocates memory for at most this many pieces. Throws Error{limit} if these, or later their cells,
-    /// exceed the budget; `add` throws it for more than 2^21 cells.
+    /// Allocates memory for at most this many pieces. Throws Error{limit} if the pieces exceed the budget.
+    /// `add` throws it if the cells do, or if there are more than 2^21.
     Islands(std::uint64_t pieces, const LayerBudget& budget);
 
-    /// Begins the pieces of these lines, which must outlive this object.
+    /// Makes later calls of `add` refer to these lines, which must outlive this object.
     void begin(const HatchLines& lines) { directions_.push_back({&lines, pieces_.size()}); }
     /// Adds a piece of line i. All lines of a cell must have the same direction.
     void add(Cell cell, std::size_t i, double from, double to) {
@@ -55,10 +55,10 @@ class Islands {
 
     struct Position {
         Cell cell;
-        std::uint32_t after = 0;      ///< the cell that was last searched for after this one
-        std::size_t points = 0;       ///< number in this cell
-        std::ptrdiff_t next = 0;      ///< position of its next point
-        std::ptrdiff_t step = 1;      ///< from there to the position of the following point
+        std::uint32_t after = 0;      ///< the cell that was looked up after this one, the last time
+        std::size_t points = 0;       ///< number of points in this cell
+        std::ptrdiff_t next = 0;      ///< index of its next point
+        std::ptrdiff_t step = 1;      ///< from this index to that of the following point
         std::uint32_t line = no_line; ///< line of the last piece
         bool back = true;             ///< true if that line runs backwards
         std::ptrdiff_t line_begin = 0;
@@ -71,7 +71,7 @@ class Islands {
     };
     struct Direction {
         const HatchLines* lines;
-        std::size_t begin; ///< of its pieces
+        std::size_t begin; ///< index of its first piece
     };
     std::uint32_t number_of(Cell cell);
     void make_room_for_cells();
@@ -82,7 +82,7 @@ class Islands {
     LayerBudget budget_; ///< for cells
     std::vector<Position> cells_;
     std::unordered_map<std::uint64_t, std::uint32_t> number_; ///< by row and column
-    std::uint32_t last_ = 0;                                  ///< last cell that was searched for
+    std::uint32_t last_ = 0;                                  ///< the cell that was looked up last
     std::vector<Piece> pieces_;
     std::vector<Direction> directions_;
     std::vector<Point2> points_;

@@ -62,7 +62,7 @@ class Cells {
     std::vector<Entry> all_;
 };
 
-/// A circle that touches the outline at two points at least.
+/// A circle that touches the outline at two or more points.
 struct Touching {
     Point2 middle;
     double radius = 0;
@@ -86,7 +86,7 @@ class Outlines {
     Outlines(const Layer& positions, double width, double thinnest, const LayerBudget& budget)
         : positions_(positions), budget_(budget), width_(width), thinnest_(thinnest),
           unit_(unit_of(positions, width)), cells_(unit_) {
-        // Touching circles on both sides of each area, and the lines built from them.
+        // Both sides of each area have touching circles, from which the lines are built.
         constexpr std::uint64_t bytes_each = 3 * sizeof(Touching) + 2 * sizeof(Point2);
         budget.need(4 * static_cast<std::uint64_t>(measure(positions).perimeter_mm / unit_) +
                         positions.points.size(),
@@ -147,9 +147,9 @@ class Outlines {
         return found;
     }
 
-    /// Returns the largest circle that touches the outline at p from inside. If a circle is too large, the
-    /// next one also touches the point of the outline nearest to its centre. Returns none if the two points
-    /// are not opposite each other.
+    /// Returns the largest circle that touches the outline at p from inside. While a circle is too large, it
+    /// is replaced by one that also touches the point of the outline nearest to its centre. Returns nullopt
+    /// if the two points are not opposite each other.
     [[nodiscard]] std::optional<Touching> touching(const Point2& p, const Point2& inwards) const {
         constexpr int most = 50;
         constexpr double rounding = 1e-7;
@@ -182,8 +182,8 @@ class Outlines {
         return std::nullopt;
     }
 
-    /// Cuts the axis at samples without a circle, at distances from the previous circle, and where it turns
-    /// back: around a round end it is traversed twice.
+    /// Divides the axis at samples without a circle, at samples far from the previous circle, and where the
+    /// axis turns back. It turns back at a round end, around which it is traversed twice.
     void add_axes(const std::vector<std::optional<Touching>>& found, std::vector<Axis>& all) const {
         const std::size_t count = found.size();
         std::vector<bool> cut(count, false);
@@ -227,9 +227,11 @@ class Outlines {
     Cells cells_;
 };
 
-/// Removes copies: both sides of an area have the same axis, so points near to a longer axis are removed.
+/// Removes copies of axes. Both sides of an area have the same axis, so points near a longer axis are
+/// removed.
 std::vector<Axis> without_copies(std::vector<Axis> axes, double near) {
-    // By integer multiples of a millionth: lengths of both sides of an area are equal except for rounding.
+    // Lengths are compared as integer multiples of a millionth, because those of both sides of an area differ
+    // by rounding.
     std::vector<std::pair<double, std::size_t>> order;
     for (const Axis& axis : axes)
         order.emplace_back(-std::floor(axis.length() / near * 0x1p20), order.size());
@@ -283,7 +285,8 @@ std::vector<Axis> without_copies(std::vector<Axis> axes, double near) {
     return kept;
 }
 
-/// Removes points that are no farther than the tolerance from the segment between others (Douglas, Peucker).
+/// Removes points that are within the tolerance of the segment between the remaining points (Douglas,
+/// Peucker).
 std::vector<Point2> straightened(const std::vector<Point2>& points, double tolerance) {
     std::vector<bool> kept(points.size(), false);
     kept.front() = kept.back() = true;
@@ -312,7 +315,8 @@ std::vector<Point2> straightened(const std::vector<Point2>& points, double toler
     return result;
 }
 
-/// Extends an end of a line: three quarters of the radius of the circle there are still within it.
+/// Extends an end of a line by three quarters of the radius of its touching circle, so that it stays within
+/// the circle.
 void lengthen(std::vector<Point2>& points, double radius, bool at_begin) {
     Point2& end = at_begin ? points.front() : points.back();
     const Point2& before = at_begin ? points[1] : points[points.size() - 2];

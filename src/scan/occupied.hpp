@@ -12,8 +12,8 @@
 
 namespace lamella {
 
-/// The occupied cells of a coarse grid over a layer, for a quick test of boxes far from everything. Locations
-/// beyond the layer count as at its edge.
+/// The occupied cells of a coarse grid over a layer. They quickly exclude boxes that are far from all
+/// contents. Points beyond the layer count as points at its edge.
 class Occupied {
   public:
     explicit Occupied(const Layer& layer) : whole_(box_of(layer.points.span())) {}
@@ -24,7 +24,7 @@ class Occupied {
             return true;
         });
     }
-    /// Returns whether there may be something within a box.
+    /// Returns whether a box may contain something.
     [[nodiscard]] bool any_within(const Box2& box) {
         return !for_rows(box, [](std::uint64_t& row, std::uint64_t columns) { return (row & columns) == 0; });
     }

@@ -66,7 +66,7 @@ struct InsetCache::Insets {
           filled(hatch_depth(contours, strategy.hatch)),
           moved(offsets(layer, distances, {}, nullptr, limits)) {
         for (std::size_t i = 0; i < distances.size(); ++i)
-            if (distances[i] == 0) // offsets() skips it, and rings without collinear points may touch again
+            if (distances[i] == 0) // offsets() skips 0, and rings without collinear points may touch again
                 moved[i] = united(layer, limits);
         double depth = 0;
         const auto step_to = [&](double next) {
@@ -86,7 +86,7 @@ struct InsetCache::Insets {
         lines.resize(contours.count);
     }
 
-    /// Returns whether these are also the insets of another layer.
+    /// Returns whether these insets are also those of another layer.
     [[nodiscard]] bool fit(const Layer& other, const ScanStrategy& strategy,
                            std::span<const double> by) const {
         const ContourRule& rule = strategy.contours;
@@ -105,13 +105,13 @@ struct InsetCache::Insets {
     Layer layer;
     std::vector<double> distances;
     ContourRule contours;
-    double filled; ///< depth from which the hatch of the core fills
+    double filled; ///< depth from which on the hatch of the core fills the material
     std::vector<Layer> moved;
-    /// For each contour, from the outermost one on, the area that is too narrow for it but within the
-    /// contours before it; then the same for the hatch of the core.
+    /// For each contour, from the outermost one on, the area that is within the previous contour but too
+    /// narrow for this one. The last entry is the same for the hatch of the core.
     std::vector<Layer> narrow;
-    /// For each contour, the lines along the middle of areas that are too narrow for it and not reached by
-    /// those before it.
+    /// For each contour, the lines along the middle of areas that are too narrow for it and that the previous
+    /// contours do not reach.
     std::vector<std::vector<std::vector<Point2>>> lines;
 };
 
@@ -156,7 +156,7 @@ PointArray pieces_of(const std::vector<std::vector<Point2>>& lines) {
     return PointArray(std::move(pieces));
 }
 
-/// Returns all vectors of a layer, by its exposures.
+/// Returns all vectors of a layer, exposure by exposure.
 std::vector<Stroke> strokes_of(const ScanVectors& vectors, std::span<const Exposure> all,
                                const ScanStrategy& strategy, const LayerBudget& budget) {
     std::uint64_t count = 0;
@@ -173,8 +173,8 @@ std::vector<Stroke> strokes_of(const ScanVectors& vectors, std::span<const Expos
     return strokes;
 }
 
-/// Returns lines along the middle of areas that are too narrow for a hatch, if its lines and the contours
-/// leave more than a negligible part of them bare.
+/// Returns lines along the middle of areas that are too narrow for a hatch. Areas count only if hatch lines
+/// and contours leave more than a negligible part of them bare.
 std::vector<std::vector<Point2>> lines_amid_bare(const Layer& positions, std::span<const Stroke> strokes,
                                                  const ContourRule& contours, const HatchRule& hatch,
                                                  const LayerBudget& budget) {
@@ -184,7 +184,7 @@ std::vector<std::vector<Point2>> lines_amid_bare(const Layer& positions, std::sp
                         contour_reach(contours) * (more_than_reached - 1), budget);
 }
 
-/// Returns the part of an area that belongs to a region. Where both skins apply, it is downskin.
+/// Returns the part of an area that belongs to a region. Area in both skins belongs to the downskin.
 Layer in_region(const Layer& positions, ScanRegion region, const Skin& downskin, const Skin& upskin,
                 const LayerLimits& limits) {
     const auto cut = [&limits](const Layer& layer, const Skin& skin, bool inside) {
@@ -203,8 +203,8 @@ Layer in_region(const Layer& positions, ScanRegion region, const Skin& downskin,
 
 } // namespace
 
-// A point may have moved by `moved_point`, and the segment between its neighbours as much the other way.
-// Adjoining bodies are united first, because different points of their rings may be removed.
+// A point may have moved by `moved_point`, and the segment between its neighbours by as much in the opposite
+// direction. Adjoining bodies are united first, because different points of their rings may be removed.
 ScanLayer::ScanLayer(const Layer& layer, const Rounding& rounding, const LayerLimits& limits) {
     const Overlay overlay(layer, limits);
     if (!overlay.clean())
@@ -243,7 +243,7 @@ ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
         HatchArea area(all);
         if (own != nullptr && !own->whole())
             area.also_within = &own->with_overlap();
-        // Where both skins apply, it is downskin.
+        // Area in both skins belongs to the downskin.
         for (const Skin* const other : {&downskin, &upskin}) {
             if (other == own)
                 break;
@@ -316,7 +316,7 @@ ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
     return {std::move(result), std::move(unreached)};
 }
 
-// A support is scanned as a part without skins, by its own rules.
+// A support is scanned as a part without skins, by the rules for supports.
 ScannedLayer scan_support(const ScanLayer& layer, const ScanStrategy& strategy, const ScanOptions& options) {
     check_strategy(strategy); // so that errors name fields of supports
     return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), options);

@@ -7,7 +7,8 @@
 
 namespace lamella {
 
-/// Applies the finalizer of splitmix64 (Steele, Lea, Flood 2014) once for each number.
+/// Returns a hash of the seed and the numbers: applies the finalizer of splitmix64 (Steele, Lea, Flood 2014)
+/// once for each number.
 [[nodiscard]] constexpr std::uint64_t seeded(std::uint64_t seed,
                                              std::initializer_list<std::uint64_t> numbers) noexcept {
     for (const std::uint64_t number : numbers) {

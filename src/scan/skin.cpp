@@ -32,15 +32,16 @@ Layer rings_of(const Layer& layer, const Chosen& chosen) {
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
-/// Returns for each ring of a layer whether it matters where the layer differs from another one: it has no
-/// ring alongside in the other layer, or is closer than `reach` to a ring of either layer that has none.
-/// `partners` holds for each ring that of the other layer. Returns an empty vector if the layers are equal.
+/// Returns for each ring of a layer whether it affects the difference to another layer. A ring does if it has
+/// no ring alongside in the other layer, or if it is closer than `reach` to such a ring of either layer.
+/// `partners` holds for each ring the ring alongside in the other layer. Returns an empty vector if the
+/// layers are equal.
 std::vector<bool> differing(const Layer& layer, const Layer& other, std::span<const std::uint32_t> partners,
                             double reach) {
     if (layer.rings == other.rings && std::find(partners.begin(), partners.end(), no_ring) == partners.end())
         return {};
     std::vector<bool> alone(other.rings, true);
-    std::vector<Box2> boxes(layer.rings, Box2{}); // of pairs
+    std::vector<Box2> boxes(layer.rings, Box2{}); // boxes of pairs of rings
     Occupied occupied(layer);
     const auto add = [&](std::span<const Point2> ring) {
         if (!ring.empty())
@@ -67,28 +68,29 @@ std::vector<bool> differing(const Layer& layer, const Layer& other, std::span<co
 /// A neighbour that differs from the layer.
 struct Differing {
     std::size_t number;                  ///< 0 for the nearest one
-    std::vector<std::uint32_t> partners; ///< for each ring of the layer the neighbour's ring alongside
+    std::vector<std::uint32_t> partners; ///< the neighbour's ring alongside each ring of the layer
 };
 
-/// Upper bound of the relative amount by which the farthest neighbour is grown more than the nearest one.
+/// Upper bound of the relative difference in growth between the farthest and the nearest neighbour.
 constexpr double spread = 0.01;
 
-/// Number of neighbours subtracted at once: the rings of each pair of these cross one another, too.
+/// Number of neighbours that are subtracted at once. It is small because the rings of each two of them cross
+/// one another, too.
 constexpr std::size_t most_at_once = 4;
 
-/// Returns the layer minus the intersection of its neighbours, where it is at least `narrowest` wide, shrunk
-/// by half of that.
+/// Returns the layer minus the intersection of its neighbours, shrunk by half of `narrowest`. So areas
+/// narrower than `narrowest` vanish.
 ///
-/// The difference is not computed directly. The layers of a prism are equal except for rounding: corners of
-/// its walls are the same on all layers, and other points lie where edges of triangles slant across the
-/// walls. So the layer is shrunk and each neighbour is grown before it is subtracted, which shrinks the
-/// difference. Each neighbour is grown slightly more than the one before it. Such rings then do not meet at
-/// all, which takes a fraction of the time, and no slivers remain. The layer is shrunk slightly less, so that
-/// the skin, when grown again, reaches beyond the outline and leaves no slivers there either.
+/// The difference is not computed directly. The layers of a prism are equal except for rounding: they share
+/// the corners of the walls, but have other points where edges of triangles slant across the walls. So the
+/// layer is shrunk, and each neighbour is grown before it is subtracted, which shrinks the difference. Each
+/// neighbour is grown slightly more than the one before it. Then nearly equal rings do not intersect at all,
+/// which takes a fraction of the time and leaves no slivers. The layer is shrunk slightly less, so that the
+/// skin, when grown again, reaches beyond the outline and leaves no slivers there either.
 ///
-/// Rings alongside each other have the same winding number at a point, unless the point lies between them;
-/// then it is nearer than half of `narrowest` to one of them. So the remaining area lies within rings that
-/// have none alongside, and only rings near to these are processed.
+/// Rings alongside each other have the same winding number at a point unless it lies between them; such a
+/// point is nearer than half of `narrowest` to one of the rings. So the remaining area lies within rings that
+/// have no ring alongside, and only rings near these are processed.
 Layer uncovered_area(const Layer& layer, std::span<const ScanLayer> neighbours, double narrowest,
                      const LayerLimits& limits) {
     const auto count = static_cast<double>(neighbours.size());
@@ -137,7 +139,7 @@ bool adjoin(const Layer& a, const Layer& b) noexcept {
     return b.bottom <= a.top + same_height_mm && a.bottom <= b.top + same_height_mm;
 }
 
-/// Returns the neighbours before the first gap in height: there is no material in a gap.
+/// Returns the neighbours before the first gap in height, since the part ends at a gap.
 std::span<const ScanLayer> adjoining(const ScanLayer& layer, std::span<const ScanLayer> neighbours) noexcept {
     const ScanLayer* last = &layer;
     std::size_t count = 0;

@@ -15,14 +15,14 @@ namespace lamella {
 class Skin {
   public:
     /// `neighbours` are the layers above or below, from the nearest one on. If there are fewer than the rule
-    /// requires, the part ends there. It also ends at a gap between the heights of a neighbour and the one
-    /// before it.
+    /// requires, the part ends there. It also ends at a gap in height before a neighbour.
     Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const SkinRule& rule,
          const LayerLimits& limits = {});
 
     /// Returns whether the entire layer is skin, because the part ends there.
     [[nodiscard]] bool whole() const noexcept { return whole_; }
-    /// Returns the skin otherwise, as rings that do not cross; it may reach beyond the layer.
+    /// Returns the skin as rings that do not cross. It may reach beyond the layer. Requires that `whole` is
+    /// false.
     [[nodiscard]] const Layer& area() const noexcept { return area_; }
     /// Returns the skin and the area closer to it than the overlap.
     [[nodiscard]] const Layer& with_overlap() const noexcept { return with_overlap_; }

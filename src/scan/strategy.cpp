@@ -59,10 +59,10 @@ void check(std::string_view rule, const HatchRule& hatch) {
     const bool cells = has_cells(hatch.pattern);
     if (cells && !(hatch.cell > 2 * hatch.overlap)) // the error names `cell` because options can set it
         refuse(rule, "cell", hatch.cell, fmt::format("above {:g}, twice the overlap", 2 * hatch.overlap));
-    // Otherwise every line in a cell would be shorter than `shortest`, except for rounding.
+    // In smaller cells, every line would be shorter than `shortest`, except for rounding.
     if (cells && !(hatch.cell > hatch.shortest))
         refuse(rule, "cell", hatch.cell, fmt::format("above {:g}, the shortest line", hatch.shortest));
-    constexpr double largest_cell = 1e9; // far below the size at which rounding blurs the cell of a line
+    constexpr double largest_cell = 1e9; // far below the size at which rounding blurs cells
     if (cells && hatch.cell > largest_cell)
         refuse(rule, "cell", hatch.cell, fmt::format("at most {:g} mm", largest_cell));
     check(rule, hatch.parameters);

@@ -4,7 +4,7 @@
 
 namespace lamella {
 
-// Texts omit default values; these are printed from a strategy.
+// The texts omit default values, which are printed from a default strategy.
 
 std::span<const StrategyField<ContourRule>> contour_fields() noexcept {
     static constexpr std::array<StrategyField<ContourRule>, 9> fields{

@@ -1,6 +1,6 @@
 #pragma once
 
-// Supports as parts without skins.
+// Treats supports as parts without skins.
 
 #include "lamella/scan/strategy.hpp"
 
@@ -8,7 +8,7 @@
 
 namespace lamella {
 
-/// Returns a strategy whose core is exposed by the rule of supports.
+/// Returns a strategy without skins whose core follows the rule for supports.
 [[nodiscard]] inline ScanStrategy without_skins(const SupportRule& support, std::uint64_t seed) {
     ScanStrategy strategy;
     strategy.contours = support.contours;

@@ -32,12 +32,12 @@ struct Corner {
     double lengths; ///< product of their lengths
     double after;   ///< length of the side after it
 
-    /// Returns whether it is sharper than the limit of mitres, 60 degrees.
+    /// Returns whether the corner is sharper than the limit of mitres, 60 degrees.
     [[nodiscard]] bool sharp() const noexcept { return cross > 0 && dot < -0.5 * lengths; }
     /// Returns the tangent of half of the angle by which the ring turns.
     [[nodiscard]] double tangent() const noexcept { return cross / (lengths + dot); }
-    /// Returns the area that it adds to the strips along both sides when these are offset outwards by 1. A
-    /// sharp corner is cut off: it adds the area of two corners of half the turn.
+    /// Returns the area that the corner adds to the strips along its sides when the ring is offset outwards
+    /// by 1. The mitre of a sharp corner is truncated, so it adds the area of two corners of half the turn.
     [[nodiscard]] double grown() const noexcept {
         if (!sharp())
             return lengths + dot > 0 ? tangent() : 0;
@@ -63,8 +63,8 @@ void for_corners(std::span<const Point2> ring, const Visit& visit) {
     }
 }
 
-/// Returns the area inside of the rings after they are grown, provided that grown parts do not meet. They may
-/// meet near the ends of necks, by less than the square of the distance each.
+/// Returns the area inside of the rings after they are grown. Requires that grown rings do not overlap. Near
+/// the end of a neck they may, by less than the square of the distance.
 double grown_area(const Layer& layer, double by) {
     static_assert(OffsetCorners{}.mitre_limit == 2);
     double area = 0;
@@ -116,7 +116,8 @@ bool side_by_side(const Layer& layer, const Layer& inset) noexcept {
     return true;
 }
 
-/// The interval of a line within reach of a stroke; it is connected because the stroke's outline is convex.
+/// The interval of a line that a stroke reaches. It is a single interval because the outline of a stroke is
+/// convex.
 class Within {
   public:
     void add(double u) noexcept {
@@ -227,7 +228,7 @@ double unreached_area(const Layer& positions, std::span<const Stroke> strokes, c
     const double least = least_reach(strokes);
     if (!std::isfinite(least))
         return std::max(0.0, area);
-    // Diagonal to the usual directions of walls and hatches.
+    // This angle is oblique to the usual directions of walls and hatches.
     constexpr double angle = 27.18;
     constexpr double most_lines = 1 << 15;
     const double distance =
@@ -298,7 +299,7 @@ double unreached_area(const Layer& positions, std::span<const Stroke> strokes, c
 Layer bare_points(const Layer& positions, std::span<const Stroke> strokes, const LayerBudget& budget) {
     const double reach = least_reach(strokes);
     const double accepted =
-        std::isfinite(reach) ? reach * reach / 32 : 0; // many of them are not negligible together
+        std::isfinite(reach) ? reach * reach / 32 : 0; // small, since many such areas are not negligible
     if (!(unreached_area(positions, strokes, budget) > accepted))
         return {};
     Occupied occupied(positions);
