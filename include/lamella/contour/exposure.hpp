@@ -51,11 +51,11 @@ struct ParameterSet {
     friend bool operator==(const ParameterSet&, const ParameterSet&) = default;
 };
 
-/// Returns parameters for vectors of which only the coordinates are known: no name, and all values 0.
+/// Returns parameters for vectors of unknown parameters: no name, and all values 0.
 [[nodiscard]] ParameterSet unknown_parameters();
 
 /// The scan vectors of one plane, exposure by exposure. A machine executes the rings of an exposure, then its
-/// chains, then its hatch lines, each group in its order; so the polylines are not in normal form.
+/// chains, then its hatch lines, each in the given order. So the polylines are not in normal form.
 struct ScanVectors {
     std::vector<Layer> polylines; ///< of each exposure, with the heights of the plane
     std::vector<PointArray>
@@ -71,9 +71,10 @@ struct ScanVectors {
 /// Throws as `check(const Layer&)` does, and Error{usage} if an end of a hatch line is missing. O(points).
 void check(const ScanVectors& vectors);
 
-/// Returns a 64-bit hash of the vectors in their order: `stack_hash` of a hash of each exposure, which is
-/// XXH3 (64 bits, seed 0) over the bytes that `content_hash(const Layer&)` takes, followed by x and y of the
-/// ends of hatch lines, if there are any. Heights are ignored. O(n), at the speed of memory.
+/// Returns a 64-bit hash of the vectors in their order. It is the `stack_hash` of the hashes of the
+/// exposures. The hash of an exposure is XXH3 (64 bits, seed 0) over the bytes that `content_hash(const
+/// Layer&)` hashes, followed by x and y of the ends of its hatch lines. Heights are ignored. O(n), at the
+/// speed of memory.
 [[nodiscard]] std::uint64_t content_hash(const ScanVectors& vectors) noexcept;
 
 /// Properties of the vectors of one part that a machine executes together, with the same parameters.
@@ -81,7 +82,7 @@ struct Exposure {
     std::string part = "part"; ///< label of the part
     ScanRegion region = ScanRegion::core;
     VectorKind kind = VectorKind::contour;
-    std::uint32_t contour = 0; ///< number of the contour, the outermost is 1; 0 for hatches
+    std::uint32_t contour = 0; ///< number of the contour; 1 for the outermost, 0 for hatches
     ParameterSet parameters;
 
     /// Returns a name such as "core contour 1" or "upskin hatch".
@@ -102,14 +103,14 @@ struct ScanFigures {
     /// Time from the speeds and delays of the parameter sets; acceleration is not considered.
     double build_seconds = 0;
     double energy_j = 0;      ///< power times marking time
-    double unreached_mm2 = 0; ///< material to be scanned by these vectors that no vector of the layer reaches
+    double unreached_mm2 = 0; ///< material that these vectors should scan, but no vector of the layer reaches
 
     ScanFigures& operator+=(const ScanFigures& other) noexcept;
 };
 
 /// Measures vectors executed one after the other with one parameter set: polylines, then hatch lines. `beam`
-/// is the position before the first vector and is set to the position after the last one. Moves at speed 0,
-/// which stands for a speed that the file does not specify, count as if they took no time. O(vectors).
+/// is the position before the first vector and is set to the position after the last one. A speed of 0 means
+/// that the file does not specify it; such moves take no time. O(vectors).
 [[nodiscard]] ScanFigures measure_vectors(const Layer& polylines, std::span<const Point2> hatches,
                                           const ParameterSet& parameters, std::optional<Point2>& beam);
 

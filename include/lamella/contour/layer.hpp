@@ -61,9 +61,11 @@ struct Layer {
     std::vector<std::uint64_t> offsets{0};
     std::size_t rings = 0;
 
-    /// 0 for a layer that was moved from, whose `offsets` are empty.
+    /// Returns the number of contours. It is 0 for a layer that was moved from, whose `offsets` are empty.
     [[nodiscard]] std::size_t contours() const noexcept { return offsets.empty() ? 0 : offsets.size() - 1; }
-    [[nodiscard]] std::size_t open_chains() const noexcept { return contours() - std::min(rings, contours()); }
+    [[nodiscard]] std::size_t open_chains() const noexcept {
+        return contours() - std::min(rings, contours());
+    }
     [[nodiscard]] bool closed(std::size_t i) const noexcept { return i < rings; }
     [[nodiscard]] double thickness() const noexcept { return top - bottom; }
     [[nodiscard]] std::span<const Point2> contour(std::size_t i) const noexcept {
@@ -71,8 +73,8 @@ struct Layer {
     }
 };
 
-/// Throws Error{usage} that names the layer and the contour if a coordinate or height is NaN or infinite, or
-/// so large that sums overflow. Writers of slice files require a layer that passes this check. O(points).
+/// Throws Error{usage} that names the layer and the contour if a coordinate or height is NaN, infinite, or so
+/// large that sums overflow. Writers of slice files require a layer that passes this check. O(points).
 void check(const Layer& layer);
 
 /// Layers in ascending z.

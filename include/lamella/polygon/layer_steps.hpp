@@ -41,7 +41,7 @@ struct LayerChanges {
     std::uint64_t rings_united = 0;   ///< the rings of these groups
     std::uint64_t rings_reversed = 0; ///< by `fill`
     std::uint64_t rings_dropped = 0;  ///< by `fill`, `largest_body` and `without_small_rings`
-    std::uint64_t rings_vanished = 0; ///< by `offset`: rings of which nothing remains
+    std::uint64_t rings_vanished = 0; ///< by `offset`: rings that vanish
     std::uint64_t points_dropped = 0; ///< by `simplify`
     double area_before_mm2 = 0;       ///< of the changed layers
     double area_after_mm2 = 0;
@@ -49,7 +49,7 @@ struct LayerChanges {
     LayerChanges& operator+=(const LayerChanges& other) noexcept;
 };
 
-/// Throws the Error{usage} that the functions of the steps throw for invalid parameters.
+/// Throws Error{usage} for invalid parameters, as the functions of the steps do.
 void check_steps(const LayerSteps& steps);
 
 /// Applies the steps, and adds the changes to `changes`. A layer that no step changes is returned bit for
@@ -58,7 +58,7 @@ void check_steps(const LayerSteps& steps);
                                const LayerLimits& limits = {});
 
 /// Applies the steps to the layers of all parts on one plane. All changes on a plane count as one changed
-/// layer. `names`, if given, are the names of the parts for error messages. Throws the errors of the steps.
+/// layer. `names` are the names of the parts for error messages, or empty. Throws the errors of the steps.
 [[nodiscard]] std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
                                                      LayerChanges& changes, const LayerLimits& limits = {},
                                                      std::span<const std::string> names = {});

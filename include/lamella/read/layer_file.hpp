@@ -22,7 +22,7 @@ struct LayerReadOptions {
     /// Largest number of bytes that the decompressed file and the layers may take; otherwise Error{limit} is
     /// thrown before they are allocated. 0: three quarters of the available memory.
     std::uint64_t max_memory = 0;
-    /// Bytes of `max_memory` that files read before still take (see `memory_of`).
+    /// Bytes of `max_memory` that previously read files still take (see `memory_of`).
     std::uint64_t held = 0;
 };
 
@@ -31,10 +31,10 @@ struct LayerPart {
     /// "" if the file has no label. Some readers append a number to make labels unique.
     std::string label;
     LayerStack layers;
-    /// Set if the layers are scan vectors. Their order is that of execution; they are not in normal form.
+    /// Set if the layers are scan vectors. These have the order of execution and are not in normal form.
     /// Parameters that the file does not specify are 0.
     std::optional<Exposure> exposure = {};
-    bool support = false; ///< the file marks it as support; only 3MF can
+    bool support = false; ///< true if the file marks it as a support; only 3MF files can
     /// Hatch lines of each layer, two points for each line; empty if the part has none.
     std::vector<PointArray> hatches = {};
 
@@ -49,7 +49,7 @@ struct LayerFile {
     std::string path;
     std::string format;  ///< name of the format as in `layer_formats`, such as "cli"
     double units_mm = 0; ///< millimetres per coordinate unit of the file; coordinates are already millimetres
-    Rounding rounding = {}; ///< of coordinates and heights, by the format
+    Rounding rounding = {}; ///< rounding of coordinates and heights by the format
     /// The rule by which the layers were cut, if the format specifies it; otherwise section_above.
     PlaneRule rule = PlaneRule::section_above;
     std::vector<LayerPart> parts = {};      ///< at least one; all have the same planes
@@ -71,12 +71,12 @@ struct LayerFile {
 /// Returns the bytes that the layers of a file take. O(layers).
 [[nodiscard]] std::uint64_t memory_of(const LayerFile& file) noexcept;
 
-/// Reads a slice file, whose format is recognised by its content: Common Layer Interface (binary or ASCII),
+/// Reads a slice file and recognises its format by the content: Common Layer Interface (binary or ASCII),
 /// layered SVG, SLC, 3MF with slice stacks, layers as JSON, NumPy arrays, ILT, Open Vector Format or 3MF with
-/// toolpaths. Each may be compressed with gzip. "-" reads standard input. Layers are in ascending z, and in
-/// normal form except those with an exposure. Values that the format lacks are derived from others. For
-/// example, the Common Layer Interface stores only the tops of layers; the cut is assumed to be half-way up.
-/// Throws Error{input} that reports the file, the byte or line, the text found and the text expected.
+/// toolpaths. Each may be compressed with gzip. "-" reads standard input. Layers are in ascending z. Layers
+/// without an exposure are in normal form. Values that the format does not store are derived from others. For
+/// example, the Common Layer Interface stores only the tops of layers, so the cut is assumed to be half-way
+/// up. Throws Error{input} that reports the file, the byte or line, the text found and the text expected.
 [[nodiscard]] LayerFile read_layers(const std::string& path, const LayerReadOptions& options = {},
                                     const Execution& execution = {});
 

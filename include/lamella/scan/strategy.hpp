@@ -18,7 +18,7 @@ enum class HatchPattern : std::uint8_t {
     meander,    ///< one by one, in alternating directions
     stripes,    ///< cut into stripes; lines run across them in alternating directions, stripe by stripe
     chessboard, ///< cut into squares, each hatched across the direction of its neighbours
-    hexagons,   ///< cut into hexagons, each hatched in one of three directions that differ between neighbours
+    hexagons,   ///< cut into hexagons, each hatched in one of three directions; neighbours differ
 };
 [[nodiscard]] std::string_view hatch_pattern_name(HatchPattern pattern) noexcept;
 
@@ -31,9 +31,9 @@ enum class IslandOrder : std::uint8_t {
 
 /// Parallel lines that fill an area.
 ///
-/// They lie at multiples of `distance` from a line through the origin of the machine; in squares, they lie
-/// half a distance beside these multiples. Stripes and islands form a grid from the same origin. Lines and
-/// grid do not depend on part, shard and neighbours. Angles are measured counter-clockwise from the x axis.
+/// Lines lie at multiples of `distance` from a line through the origin of the machine; in squares, they are
+/// shifted by half of `distance`. Stripes and islands form a grid from the same origin. Lines and grid are
+/// the same for all parts and shards. Angles are measured counter-clockwise from the x axis.
 struct HatchRule {
     HatchPattern pattern = HatchPattern::stripes;
     double distance = 0.1;    ///< between lines, above 0
@@ -41,8 +41,8 @@ struct HatchRule {
     double turn_degrees = 67; ///< from each layer to the next
     double border = 0.05;  ///< from the innermost contour, or the outline of the part, to the ends of lines
     double shortest = 0.1; ///< shorter lines are left out
-    /// Width of a stripe or square, or of a hexagon from side to side; above 0. For patterns with cells also
-    /// above `shortest` and at most 1e9.
+    /// Width of a stripe or square, or of a hexagon from side to side; above 0. For patterns with cells, it
+    /// must also be above `shortest` and at most 1e9.
     double cell = 5;
     /// Overlap of neighbouring stripes or islands, for patterns with cells; less than half of `cell`.
     double overlap = 0.1;
@@ -53,7 +53,7 @@ struct HatchRule {
 /// The start point of a contour.
 enum class StartPoint : std::uint8_t {
     aligned,  ///< the corner that is farthest in a direction
-    sharpest, ///< the sharpest convex corner; if there is none, the concave one that turns least
+    sharpest, ///< the sharpest convex corner; if there is none, the least sharp concave corner
     random,   ///< a corner chosen by the seed of the strategy
 };
 [[nodiscard]] std::string_view start_point_name(StartPoint start) noexcept;
@@ -69,7 +69,7 @@ enum class ThinWalls : std::uint8_t {
 };
 [[nodiscard]] std::string_view thin_walls_name(ThinWalls walls) noexcept;
 
-/// Largest values of a strategy.
+/// Largest numbers of contours and of skin layers.
 inline constexpr std::uint32_t most_contours = 100;
 inline constexpr std::uint32_t most_skin_layers = 1000;
 
@@ -84,25 +84,25 @@ struct ContourRule {
     StartPoint start = StartPoint::aligned;
     double start_direction_degrees = 90; ///< of StartPoint::aligned
     /// Treatment of walls thinner than twice the beam's offset. With ThinWalls::line, walls at least
-    /// `thinnest` wide get lines, which are stored as hatches (two points each) in the exposure of the
+    /// `thinnest` wide get lines. These are stored as hatches (two points each) in the exposure of the
     /// outermost contour. Where an inner contour does not fit, its exposure has lines, too. The exposure of
-    /// the innermost contour also has lines where hatch lines miss narrow areas.
+    /// the innermost contour also has lines in narrow areas that hatch lines miss.
     ThinWalls thin_walls = ThinWalls::line;
     double thinnest = 0.05;
     ParameterSet parameters{.name = "contour", .power_w = 120, .speed_mm_s = 500};
 };
 
-/// A region of the layer that has less than `layers` layers of material above it, or below.
+/// A region of a layer with fewer than `layers` layers of material above it (upskin) or below it (downskin).
 struct SkinRule {
     std::uint32_t layers = 0; ///< at most `most_skin_layers`; 0: no such region
     /// Strips narrower than this are not skin: rounding and sloping walls leave such strips at edges, in
-    /// grooves and on ribs. The limit is accurate to 1 %. By default the width of a line.
+    /// grooves and on ribs. The limit is accurate to 1 %. The default is the width of a line.
     double narrowest = 0.1;
-    double overlap = 0.1; ///< by which the region is grown into the core
+    double overlap = 0.1; ///< distance by which the region is grown into the core
     HatchRule hatch;
 };
 
-/// Rules for support parts, which need not be dense: by default with wider hatch spacing and less energy.
+/// Rules for support parts. These need not be dense, so the default is a wider hatch spacing and less energy.
 struct SupportRule {
     ContourRule contours{.parameters = {.name = "support", .power_w = 120, .speed_mm_s = 1000}};
     HatchRule hatch{.pattern = HatchPattern::meander,
@@ -118,13 +118,13 @@ struct ScanStrategy {
     SkinRule downskin{.hatch = {.parameters = {.name = "downskin", .power_w = 120, .speed_mm_s = 1200}}};
     SupportRule support; ///< for support parts, which have no skins
     std::uint64_t seed = 1;
-    /// Area of a part's layer, in mm^2, that all vectors may leave unreached without a warning.
+    /// Area, in mm^2, of a layer of a part that vectors may leave unreached without a warning.
     double accepted_mm2 = 0.005;
 };
 
-/// Returns the depth of a contour inside of the part's outline. `number` is 1 for the outermost one.
+/// Returns the distance of a contour from the outline of the part. `number` is 1 for the outermost contour.
 [[nodiscard]] double contour_depth(const ContourRule& rule, std::uint32_t number) noexcept;
-/// Returns the depth at which lines end.
+/// Returns the distance from the outline of the part at which hatch lines end.
 [[nodiscard]] double hatch_depth(const ContourRule& contours, const HatchRule& rule) noexcept;
 
 /// Throws Error{usage} that names the field for values out of range.
@@ -133,7 +133,7 @@ void check_strategy(const ScanStrategy& strategy);
 /// Returns the exposures of each layer of a part, in the order in which they are executed.
 [[nodiscard]] std::vector<Exposure> exposures(const ScanStrategy& strategy, const std::string& part);
 
-/// Does the same for a part that is a support.
+/// Returns the exposures of each layer of a support part.
 [[nodiscard]] std::vector<Exposure> support_exposures(const ScanStrategy& strategy, const std::string& part);
 
 } // namespace lamella

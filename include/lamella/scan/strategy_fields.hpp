@@ -1,7 +1,7 @@
 #pragma once
 
-// Tables of all fields of a scan strategy. Strategy files are read and written by these tables; statistics,
-// the corresponding options and Python's attributes use them, too.
+// Tables of all fields of a scan strategy. They define strategy files, statistics, the corresponding options
+// and Python's attributes.
 
 #include "lamella/scan/strategy.hpp"
 
@@ -18,7 +18,7 @@ namespace lamella {
 /// One field of a struct of a strategy.
 template <class Rule>
 struct StrategyField {
-    std::string_view name; ///< in files; that of the member
+    std::string_view name; ///< name in files, which is that of the member
     std::string_view unit; ///< such as "mm"; empty if there is none
     std::string_view help;
     std::variant<double Rule::*, std::uint32_t Rule::*, std::uint64_t Rule::*, bool Rule::*,

@@ -20,15 +20,15 @@ struct AlongXY {
 /// Options of the formats png, png-zip, sl1 and sl1s: the pixels of the image, and how they map to the part.
 /// The centre of the part's box is at the centre of the display.
 struct ImageOptions {
-    /// Size of a pixel, number of pixels, and size of the display; any two of them determine the third. The
+    /// Size of a pixel, number of pixels, and size of the display. Two of them determine the third. The
     /// defaults are the values of the printer (sl1, sl1s). Without a printer, pixels are 0.05 mm wide, and
-    /// there are as many as the part needs.
+    /// the image is as large as the part.
     std::optional<AlongXY<double>> pixel_mm = {};
     std::optional<AlongXY<std::uint32_t>> pixels = {};
     std::optional<AlongXY<double>> display_mm = {};
 
     /// Orientation, as PrusaSlicer defines it: with `portrait` the display is mounted upright in the printer,
-    /// and x runs along the rows of the image, from below. Mirrored displays are seen from the other side.
+    /// and x runs from the bottom of the image to its top. Mirrored displays are seen from the other side.
     /// The defaults are the values of the printer; without a printer an image shows the layer as seen from
     /// above.
     std::optional<bool> portrait = {};
@@ -49,7 +49,7 @@ struct ExposureOptions {
     std::int64_t created_s = 0;
 };
 
-/// Returns the environment variable SOURCE_DATE_EPOCH, in seconds since 1970, by which reproducible builds
+/// Returns the environment variable SOURCE_DATE_EPOCH, in seconds since 1970, with which reproducible builds
 /// set the time (reproducible-builds.org); 0 if it is not set. Throws Error{usage} if its value is not a
 /// time.
 [[nodiscard]] std::int64_t source_date();

@@ -40,7 +40,7 @@ struct PageLocation {
     std::string text;           ///< describes this location
     std::vector<Point3> points; ///< one point, or a line through several; at least one
     bool closed = false;        ///< true if the line leads back to its first point
-    std::uint64_t found = 0;    ///< number of locations of this kind, listed or not; 0: unknown
+    std::uint64_t found = 0;    ///< number of all locations of this kind, including unlisted ones; 0: unknown
 };
 
 /// Changes that layer steps made to a plane before it was added to the page.
@@ -65,12 +65,13 @@ struct PageNotes {
 /// and the thinning of layers beyond PageOptions::budget_bytes.
 class LayerPageWriter : public LayerWriter {
   public:
-    /// Adds notes to the page, in this order. May be called at any time before `finish`, by one thread at a
-    /// time.
+    /// Adds notes to the page after those added before. May be called at any time before `finish`, by one
+    /// thread at a time.
     virtual void add_notes(PageNotes notes) = 0;
 };
 
-/// Opens a page writer. Throws as open_layer_writer does, and Error{usage} if the options have no viewer.
+/// Opens a page writer. Throws the errors of open_layer_writer, and Error{usage} if the options have no
+/// viewer.
 [[nodiscard]] std::unique_ptr<LayerPageWriter>
 open_layer_page(const std::string& path, const LayerFileInfo& info, const PageOptions& options);
 
@@ -79,9 +80,9 @@ inline constexpr std::size_t page_triangles = 300'000;
 
 /// Writes the page of a mesh: its surface, its shells, the locations listed in the diagnosis, and the notes.
 /// Vertices are moved to the centres of the cells of a cubic grid, and triangles without three different
-/// corners are left out. The cell edge is the smallest of 1/65536, 1/32768, ... of the longest edge of the
-/// mesh's box that leaves at most `page_triangles` triangles. The page reports the number of triangles left
-/// out. "-" is standard output.
+/// corners are left out. The edge of a cell is 1/65536, 1/32768, ... of the longest edge of the box of the
+/// mesh: the smallest for which at most `page_triangles` triangles remain. The page reports the number of
+/// triangles left out. "-" is standard output.
 ///
 /// Throws Error{output}, Error{cancelled}, and Error{usage} if the options have no viewer. O(n) for each cell
 /// edge that is tried.

@@ -29,22 +29,22 @@ struct PartInfo {
     Box3 box = {}; ///< mm; empty if unknown
     /// If set, the part's layers are scan vectors; see `scan`.
     std::optional<Exposure> exposure = {};
-    bool support = false; ///< scanned with the parameters for supports; 3MF files mark it
+    bool support = false; ///< true for a support, which has parameters of its own; 3MF files mark it
 };
 
 /// Returns the box of the contours and hatch lines of a part, from the bottom of its first layer to the top
 /// of its last. It is empty if there are none. O(points).
 [[nodiscard]] Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches = {}) noexcept;
 
-/// Counts of content that a range of layers loses in a file, because its format cannot hold it: the figures
-/// behind LayerWriter::warnings. They are numbers only, so that processes can send them to one another.
+/// Counts of the content of a range of layers that the format of a file cannot hold. LayerWriter::warnings is
+/// derived from them. All members are numbers, so that processes can send them to one another.
 struct WriteLosses {
-    /// Number of losses of a kind, and height of the lowest in mm.
+    /// Number of losses of a kind, and the height of the lowest one in mm.
     struct Kind {
         std::uint64_t count = 0;
         double z = 0;
 
-        /// Adds losses above these.
+        /// Adds the losses of layers above these.
         void add(const Kind& above) noexcept;
     };
     /// Losses by rounding.
@@ -52,8 +52,8 @@ struct WriteLosses {
         static constexpr std::uint64_t no_layer = ~std::uint64_t{0};
 
         double moved_mm = 0;             ///< largest move of a point
-        std::uint64_t merged = 0;        ///< points equal to the one before
-        std::uint64_t contours = 0;      ///< of which no point is left
+        std::uint64_t merged = 0;        ///< points equal to the previous point
+        std::uint64_t contours = 0;      ///< contours without any remaining point
         std::uint64_t lines = 0;         ///< hatch lines that shrank to a point
         std::uint64_t layer = no_layer;  ///< index of the first layer with any of these
         double moved_heights_mm = 0;     ///< largest move of a height
@@ -64,20 +64,19 @@ struct WriteLosses {
 
     Kind open_chains;
     Kind hatches;                  ///< hatch lines
-    Kind gaps;                     ///< layers that do not begin at the top of the one before
+    Kind gaps;                     ///< layers that do not begin at the top of the previous layer
     Kind cuts;                     ///< layers that were not cut at mid-height
-    std::uint64_t bottom_cuts = 0; ///< those of them cut at their bottom
-    std::uint64_t top_cuts = 0;    ///< those cut at their top
+    std::uint64_t bottom_cuts = 0; ///< layers that were cut at their bottom
+    std::uint64_t top_cuts = 0;    ///< layers that were cut at their top
     Rounded rounded;
 
     /// Adds the losses of layers above these.
     void add(const WriteLosses& above) noexcept;
 };
 
-/// A range of the layers of a slice file, for formats whose files consist of the layers one after the other
-/// (LayerFormat::chunks). Several processes can thus write one file: the file is the concatenation of the
-/// ranges.
-/// Its warnings are those of the writer of the first range, once the losses of the others are added to it.
+/// A range of the layers of a slice file. Several processes can write one file if the format stores layers
+/// one after the other (LayerFormat::chunks): the file is the concatenation of the ranges. The writer of the
+/// first range reports the warnings of the file after the losses of the other ranges are added to it.
 struct LayerFileChunk {
     std::uint64_t before = 0; ///< number of layers of the file below this range
     std::uint64_t layers = 0; ///< number of layers of this range
@@ -106,13 +105,12 @@ struct PageOptions {
     /// The built viewer, an HTML page with a placeholder for the data: the text of share/lamella/viewer.html
     /// of an installation. It must outlive the writer.
     std::string_view viewer = {};
-    /// Reason why `viewer` is empty, for the error message if a page is requested. It must outlive the
-    /// options.
+    /// Reason why `viewer` is empty, which the error message reports. It must outlive the options.
     std::string_view no_viewer = "PageOptions::viewer is empty";
     /// Title of the page.
     std::string title = "Lamella";
-    /// Upper bounds on the bytes that all layers take in the page, and on the points of one layer. Hatch
-    /// lines, points and small rings of layers are left out to stay within both.
+    /// Upper bounds on the bytes of all layers in the page, and on the points of one layer. Layers lose hatch
+    /// lines, points and small rings to stay within both bounds.
     std::uint64_t budget_bytes = std::uint64_t{24} << 20;
     std::uint64_t layer_points = 250'000;
 };
@@ -120,10 +118,10 @@ struct PageOptions {
 struct LayerWriteOptions {
     static constexpr double usual_units_mm = 0.001;
 
-    /// Throws Error{limit} if the layers take more bytes of the file than this; 0: no limit. The end of a
-    /// file, such as the directory of an archive, does not count.
+    /// Upper bound on the bytes of the layers in the file; otherwise Error{limit} is thrown. 0: no limit. The
+    /// end of a file, such as the directory of an archive, does not count.
     std::uint64_t most_bytes = 0;
-    /// Throws Error{defect} at the end of the file if there are warnings (LayerWriter::warnings).
+    /// If true, `finish` throws Error{defect} if there are warnings (LayerWriter::warnings).
     bool strict = false;
     /// Common Layer Interface: millimetres per coordinate unit. The ASCII and the short binary form round
     /// coordinates to multiples of it; the long binary form rounds to single precision.
@@ -174,9 +172,9 @@ struct LayerFormat {
 [[nodiscard]] const LayerFormat& layer_format(std::string_view name, const std::string& path);
 
 /// Writes one slice file. Layers must arrive in ascending z. No file appears at the path before `finish`:
-/// until then data are in an unnamed file in the same folder or, if the file system does not support such
-/// files, in a hidden one. A writer destroyed before `finish` leaves no file behind. "-" writes standard
-/// output.
+/// until then data are in an unnamed file in the same folder. If the file system does not support unnamed
+/// files, they are in a hidden file. A writer destroyed before `finish` leaves no file behind. "-" writes
+/// standard output.
 class LayerWriter {
   public:
     LayerWriter() = default;
@@ -184,41 +182,41 @@ class LayerWriter {
     LayerWriter& operator=(const LayerWriter&) = delete;
     virtual ~LayerWriter() = default;
 
-    /// Formats one plane: one layer for each part, in the order of LayerFileInfo::parts, all with the same
-    /// index, z, bottom and top, and empty if the plane misses the part. Formats that cannot distinguish
-    /// parts merge them. Returns a function that writes the result. `prepare` may be called for several
-    /// planes at once, from any threads, in any order; the returned functions must be called one at a time in
-    /// ascending z (see LayerSink).
+    /// Formats one plane. `parts` has one layer for each of LayerFileInfo::parts, in this order. All layers
+    /// must have the same index, z, bottom and top; a layer is empty if the plane misses the part. Formats
+    /// that cannot distinguish parts merge them. Returns a function that writes the result. `prepare` may be
+    /// called for several planes at once, from any threads, in any order; the returned functions must be
+    /// called one at a time in ascending z (see LayerSink).
     [[nodiscard]] virtual std::function<void()> prepare(std::span<const Layer> parts) = 0;
 
-    /// Formats one plane of scan vectors, or of contours and hatch lines: one exposure for each part of the
-    /// file.
+    /// Formats one plane of scan vectors, or of contours and hatch lines. `vectors` has one exposure for each
+    /// of LayerFileInfo::parts.
     [[nodiscard]] virtual std::function<void()> prepare(const ScanVectors& vectors) = 0;
 
     /// Formats one plane of a file with a single part.
     [[nodiscard]] std::function<void()> prepare(const Layer& layer) { return prepare(std::span(&layer, 1)); }
 
     /// Ends the file and gives it its name. Must be called once, after the last layer. Throws Error{output}
-    /// if anything could not be written; then no file is left behind.
+    /// if anything could not be written; in this case no file is left behind.
     virtual void finish() = 0;
 
     /// Returns the number of bytes of the file so far, including layers that are still waiting to be written.
     [[nodiscard]] virtual std::uint64_t bytes() const noexcept = 0;
 
-    /// Returns warnings, one line each: for each kind of content that the format cannot represent, for
-    /// contours and lines lost by its rounding, and for the largest displacement of points by rounding if it
-    /// exceeds 0.01 mm. Must be called after all layers are written.
+    /// Returns one line for each warning. There is a warning for each kind of content that the format cannot
+    /// represent, for contours and lines lost by rounding, and for the largest displacement of points by
+    /// rounding if it exceeds 0.01 mm. Must be called after all layers are written.
     [[nodiscard]] virtual std::vector<std::string> warnings() const { return {}; }
 
     /// Returns the counts behind `warnings`, for the writer of another range of the file.
     [[nodiscard]] virtual WriteLosses losses() const { return {}; }
 
-    /// Adds the losses of ranges above this one (LayerFileChunk) to those that `warnings` reports.
+    /// Adds the losses of a range above this one (LayerFileChunk) to the losses that `warnings` reports.
     virtual void add_losses(const WriteLosses& /*above*/) {}
 };
 
-/// Opens a writer. Throws Error{output} if the file cannot be created at the path, Error{usage} for
-/// impossible options.
+/// Opens a writer. Throws Error{output} if the file cannot be created at the path, and Error{usage} for
+/// invalid options.
 [[nodiscard]] std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path,
                                                              const LayerFormat& format,
                                                              const LayerFileInfo& info,
@@ -232,7 +230,7 @@ void write_planes(LayerWriter& writer, std::size_t planes,
                   const std::function<ScanVectors(std::size_t)>& plane_of, const Execution& execution = {});
 
 /// Writes the stack of a single part, in the format given by the extension of the path, and returns
-/// LayerWriter::warnings. The header is derived from the layers: the box is that of their contours, and the
+/// LayerWriter::warnings. The header is derived from the layers: its box is that of their contours, and its
 /// rule is section_above. Throws Error{usage} if there are no layers.
 std::vector<std::string> write_layers(const std::string& path, std::span<const Layer> layers,
                                       const LayerWriteOptions& options = {}, const Execution& execution = {});

@@ -18,11 +18,12 @@ class AtomicFile;
 
 /// Writes a binary STL file with computed normals, atomically: no reader ever sees an incomplete file. "-"
 /// writes standard output. Placed corners are rounded to single precision. Throws Error{output}, also for
-/// coordinates beyond the range of single precision, and Error{limit} beyond 2^32 - 1 triangles.
+/// coordinates beyond the range of single precision, and Error{limit} for more than 2^32 - 1 triangles.
 void write_stl(const std::string& path, const TriangleSoup& soup);
 
-/// Writes a mesh of either kind. Returns a warning with the number of triangles that lose their area when
-/// their corners are rounded; with `strict` throws Error{defect} instead, and writes no file. O(triangles).
+/// Writes a mesh, indexed or not, as a binary STL file. Returns a warning with the number of triangles that
+/// lose their area by rounding. With `strict`, throws Error{defect} instead of a warning, and writes no file.
+/// O(triangles).
 std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bool strict = false);
 
 /// Writes a binary STL file like write_stl, but in chunks, for meshes that are larger than memory.
@@ -45,16 +46,17 @@ class StlWriter {
     std::uint64_t written_ = 0;
 };
 
-/// Writes an ASCII STL file, with the shortest numbers that read back to the same corners. Atomicity, "-" and
-/// errors as for write_stl.
+/// Writes an ASCII STL file. Its numbers are the shortest ones that read back to the same corners. Atomicity,
+/// "-" and errors as for write_stl.
 void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const std::string& name);
 
-/// Writes a binary little-endian PLY file with the vertices and triangles as they are: in single precision if
-/// it represents all of them exactly, else in double precision. Atomicity, "-" and errors as for write_stl.
+/// Writes a binary little-endian PLY file with the unchanged vertices and triangles. Coordinates have single
+/// precision if it represents all of them exactly, and double precision otherwise. Atomicity, "-" and errors
+/// as for write_stl.
 void write_ply(const std::string& path, const IndexedMesh& mesh);
 
-/// Writes an OBJ file with the vertices and triangles as they are, with the shortest numbers that read back
-/// to the same coordinates. Atomicity, "-" and errors as for write_stl.
+/// Writes an OBJ file with the unchanged vertices and triangles. Its numbers are the shortest ones that read
+/// back to the same coordinates. Atomicity, "-" and errors as for write_stl.
 void write_obj(const std::string& path, const IndexedMesh& mesh, const std::string& name);
 
 } // namespace lamella
