@@ -1,7 +1,7 @@
 #pragma once
 
-// Bytes of a layer under construction. Their memory is reused for the next layer: fresh pages would cost as
-// much as the formatting.
+// Buffers for the bytes of a layer. Their memory is reused for the next layer, because fresh pages would take
+// as much time as the formatting.
 
 #include "core/pages.hpp"
 
@@ -75,7 +75,7 @@ class BufferPool : public std::enable_shared_from_this<BufferPool> {
   public:
     BufferPool() { idle_.reserve(most_idle); }
 
-    /// Returns an empty buffer, which goes back to the pool when the last pointer to it is destroyed.
+    /// Returns an empty buffer. It returns to the pool when the last pointer to it is destroyed.
     [[nodiscard]] std::shared_ptr<ByteBuffer> take() {
         ByteBuffer buffer;
         {
@@ -92,7 +92,7 @@ class BufferPool : public std::enable_shared_from_this<BufferPool> {
     }
 
   private:
-    // Enough for all working threads; more would only waste memory.
+    // This is enough for all threads; more would waste memory.
     static constexpr std::size_t most_idle = 64;
 
     void give_back(std::unique_ptr<ByteBuffer> buffer) noexcept {

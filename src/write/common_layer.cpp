@@ -28,7 +28,8 @@ using Direction = CommonLayerDirection;
 
 constexpr int first_part = 1;
 
-// Returns the label as a string of this format: readers differ on quotes, commas and letters beyond ASCII.
+// Returns the label in characters that all readers of this format accept. They differ on quotes, commas and
+// letters beyond ASCII.
 std::string label_text(std::string_view label) {
     std::string text;
     for (const char c : label) {
@@ -54,7 +55,7 @@ std::string header(std::string_view coding, const LayerFileInfo& info, double un
     for (const double v : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
         text += decimal_text(v, 6, 6) + ',';
     text.back() = '\n';
-    // The additional layer is the empty one that marks the bottom of the first.
+    // The additional layer is empty and marks the bottom of the first layer.
     text += fmt::format("$$LAYERS/{}\n$$HEADEREND", info.layers + 1);
     return text;
 }
@@ -77,11 +78,11 @@ Direction direction_of(double ring_area) {
 // Order in which the contours of a part are written.
 enum class Sequence {
     nesting, // outer rings, then holes, then open chains
-    kept,    // as given: they are exposed one after the other
+    kept,    // in the given order, since contours are exposed one after the other
 };
 
-// Calls write(contour, closed). Only the first corner of a ring decides its nesting, so its points are
-// fetched from memory once.
+// Calls write(contour, closed). Only the first corner of a ring decides whether it is an outer ring, so its
+// points are fetched from memory once.
 template <class Write>
 void for_each_contour(const Layer& layer, Sequence sequence, const Write& write) {
     std::vector<std::size_t> holes;
@@ -103,8 +104,8 @@ void for_each_part(const PlaneView& plane, const Format& format) {
         format(plane.layers[i], plane.hatches_of(i), first_part + static_cast<int>(i));
 }
 
-// The list of one command, on a grid: a polyline or, without a direction, hatch lines. It is passed by value
-// so that compilers know that writing text does not change it.
+// The content of one command, on a grid: a polyline or, without a direction, hatch lines. It is passed by
+// value, so that compilers know that writing text does not change it.
 struct Listed {
     int part;
     std::uint64_t layer;
@@ -118,18 +119,18 @@ struct Listed {
     [[nodiscard]] const GridPoint& operator[](std::size_t i) const {
         return points[i < points.size() ? i : 0];
     }
-    // Count that the command states: points, or else lines.
+    // Count that the command stores: points of a polyline, or hatch lines.
     [[nodiscard]] std::size_t count() const { return direction ? size() : size() / 2; }
 };
 
-// Heights are not on the grid of coordinates: a layer may be thinner than its unit.
+// Heights are not rounded to the grid of coordinates, because a layer may be thinner than its step.
 std::string position_text(double z, double units) {
     return decimal_text(z / units, 6, 1);
 }
 
 class CommonLayerWriter : public SequentialWriter {
   protected:
-    // `precision` and `height_mm` are the precision of heights and the millimetres of one unit of them.
+    // `precision` describes the precision of heights; `height_mm` is their unit in mm.
     CommonLayerWriter(const std::string& path, const LayerFileInfo& info, std::string_view header,
                       std::string precision, double height_mm)
         : SequentialWriter(path, info, header, holds),
@@ -138,8 +139,8 @@ class CommonLayerWriter : public SequentialWriter {
             sequences_.push_back(part.exposure ? Sequence::kept : Sequence::nesting);
     }
 
-    // Returns the height of a layer as it is written, `height_of(mm)`. The bottom of the first layer of a
-    // file or a range is checked first.
+    // Returns the height of a layer as it is written, `height_of(mm)`, after checks. For the first layer of a
+    // file or range, its bottom is checked, too.
     template <class HeightOf>
     auto checked_height(const PlanePosition& offset, const HeightOf& height_of) {
         const auto height = height_of(offset.top);
@@ -154,8 +155,8 @@ class CommonLayerWriter : public SequentialWriter {
         return sequences_[static_cast<std::size_t>(part - first_part)];
     }
 
-    // Calls put(listed) for each contour of each part that snapping to the grid preserves, and for its hatch
-    // lines.
+    // Calls put(listed) for each contour of each part that does not vanish on the grid, and for the hatch
+    // lines of each part.
     template <class Put>
     void for_each_on_grid(const WriterGrid& grid, const PlaneView& plane, const Put& put) const {
         std::vector<GridPoint> scratch;
@@ -203,7 +204,7 @@ class AsciiWriter final : public CommonLayerWriter {
     std::string tail() override { return "$$GEOMETRYEND\n"; }
 
     static void put_command(Listed listed, ByteBuffer& out) {
-        // A comma or the end, sign, digits and ".0".
+        // Length of a comma or a line end, a sign, digits and ".0".
         constexpr std::size_t per_number = most_integer_digits + 4;
         constexpr std::string_view command = "$$POLYLINE/";
         char* at = out.room(command.size() + (listed.size() + 2) * 2 * per_number);
@@ -274,7 +275,7 @@ class LongWriter final : public CommonLayerWriter {
 
     void format(const PlaneView& plane, ByteBuffer& out) const override {
         for_each_part(plane, [&](const Layer& layer, std::span<const Point2> hatches, int part) {
-            // Reserves all the space at once: most layers lose no point.
+            // Reserves the space for all points at once, since most layers lose none.
             static_cast<void>(out.room(layer.contours() * (long_header + float_point_size) +
                                        layer.points.size() * float_point_size));
             for_each_contour(layer, sequence_of(part), [&](std::span<const Point2> contour, bool closed) {
@@ -315,8 +316,8 @@ class LongWriter final : public CommonLayerWriter {
 // the same in both are written.
 constexpr std::int64_t most_short = 32767;
 
-// Commands with more points, more hatches or a larger part number than 16 bits can count are written in the
-// long form. A file may contain both.
+// A command whose number of points, hatches or part exceeds 16 bits is written in the long form. A file may
+// contain both forms.
 constexpr std::size_t most_counted = std::numeric_limits<std::uint16_t>::max();
 
 class ShortWriter final : public CommonLayerWriter {
@@ -329,7 +330,7 @@ class ShortWriter final : public CommonLayerWriter {
           units_(options.units_mm), grid_(options.units_mm, &rounding_loss()) {}
 
   private:
-    // Checks the coordinates before an hour of slicing rather than after it.
+    // Checks the coordinates, so that an error is reported before an hour of slicing.
     static std::string checked_header(const LayerFileInfo& info, double units) {
         const double farthest = std::max({info.box.max.x, info.box.max.y, info.box.max.z});
         const auto check = [&](const char* axis, double mm) {
@@ -344,7 +345,8 @@ class ShortWriter final : public CommonLayerWriter {
         return header("BINARY", info, units) + layer_start(whole_units(info.bottom, units));
     }
 
-    /// Throws unless `value` fits. `farthest` is the largest other coordinate that must fit, in mm.
+    /// Throws unless `value` fits. `farthest` is the largest coordinate that must fit, too, in mm; the error
+    /// suggests units for both.
     static void check_short(const std::string& what, const char* axis, std::int64_t value, double units,
                             double farthest = 0) {
         if (value >= 0 && value <= most_short)
@@ -356,7 +358,7 @@ class ShortWriter final : public CommonLayerWriter {
                 fmt::format("{} reaches {} = {:.6g} mm, but the short form has no negative numbers; move "
                             "the part to positive coordinates or use the long form",
                             what, axis, mm));
-        // The factor prevents 0.002 from being taken to lie above 2 * 0.001.
+        // Because of the factor, 0.002 does not count as larger than 2 * 0.001.
         const double needed = std::max(mm, farthest) / most_short * (1 - 1e-9);
         throw Error(
             ErrorKind::usage,

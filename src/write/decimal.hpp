@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers as text, fast and without exponents or locales.
+// Fast conversion of numbers to text, independent of locales.
 
 #include <array>
 #include <bit>
@@ -39,7 +39,7 @@ inline constexpr std::size_t most_integer_digits = 20;
 
 /// Returns the number of decimal digits of n; 1 for 0.
 [[nodiscard]] inline unsigned digit_count(std::uint64_t n) noexcept {
-    // 1233 / 4096 is a little more than log10(2), so this guess is right or one too high.
+    // 1233 / 4096 is slightly more than log10(2), so this guess is correct or one too high.
     const unsigned guess = static_cast<unsigned>(std::bit_width(n | 1U)) * 1233U >> 12U;
     return guess + 1 - (n < detail::powers_of_ten[guess] && guess > 0 ? 1 : 0);
 }
@@ -75,7 +75,7 @@ inline char* put_thousandths(char* out, std::int64_t n) noexcept {
     const auto magnitude = negative ? 0 - static_cast<std::uint64_t>(n) : static_cast<std::uint64_t>(n);
     out = put_integer(out + (negative ? 1 : 0), magnitude / 1000);
     const auto rest = static_cast<unsigned>(magnitude % 1000);
-    // All three decimals are written; trailing ones beyond the returned end are overwritten later.
+    // All three decimals are written. Those beyond the returned end are overwritten later.
     out[0] = '.';
     out[1] = static_cast<char>('0' + rest / 100);
     std::memcpy(out + 2, &detail::digit_pairs[std::size_t{2} * (rest % 100)], 2);
@@ -83,7 +83,8 @@ inline char* put_thousandths(char* out, std::int64_t n) noexcept {
     return out + kept;
 }
 
-/// Writes the same with at least one decimal, for formats that distinguish real numbers from integers: "7.0".
+/// Writes n thousandths with at least one decimal, such as "7.0", for formats that distinguish real numbers
+/// from integers.
 inline char* put_real_thousandths(char* out, std::int64_t n) noexcept {
     char* const end = put_thousandths(out, n);
     if (n % 1000 != 0)
@@ -100,10 +101,10 @@ inline char* put_real_thousandths(char* out, std::int64_t n) noexcept {
 /// Length of the longest text of a double that `put_shortest` writes.
 inline constexpr std::size_t most_double_digits = 24;
 
-/// Writes the shortest text that reads back as the same number, with an exponent where that is shorter, and
-/// returns the end.
+/// Writes the shortest text that reads back as the same number, and returns the end. The text has an exponent
+/// if that is shorter.
 char* put_shortest(char* out, double value) noexcept;
-/// Returns the same as a string; zero has no sign.
+/// Returns the text of `put_shortest` as a string; zero has no sign.
 [[nodiscard]] std::string shortest_text(double value);
 
 /// Returns the shortest text that reads back as the same number, without an exponent and with at least one

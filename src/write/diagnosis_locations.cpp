@@ -25,7 +25,7 @@ std::string loop_text(const BoundaryLoop& loop) {
                        words_of(&Inspection::boundary_edges).meaning);
 }
 
-/// Returns the edges of the box as one line: bottom, top, and back along the verticals.
+/// Returns a single line through all edges of the box.
 std::vector<Point3> outline(const Box3& box) {
     const auto [x0, y0, z0] = box.min;
     const auto [x1, y1, z1] = box.max;

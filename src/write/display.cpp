@@ -13,8 +13,8 @@ namespace lamella {
 namespace {
 
 constexpr double common_pixel_mm = 0.05;
-/// Tolerance in pixels, since published sizes are rounded: largest deviation of a display's size from a whole
-/// number of pixels, and largest distance by which a part may reach beyond the last one.
+/// Tolerance in pixels, because published sizes are rounded. The size of a display may deviate by this from
+/// an integer number of pixels, and a part may reach this far beyond the last pixel.
 constexpr double most_rounding = 0.05;
 
 void check_length(const std::optional<AlongXY<double>>& mm, std::string_view what) {
@@ -74,8 +74,8 @@ std::optional<T> y_of(const std::optional<AlongXY<T>>& pair) {
     return pair ? std::optional(pair->y) : std::nullopt;
 }
 
-/// Returns the options with the printer's values unless other options contradict them: its resolution stays
-/// if only a size is given, its size if only a resolution is.
+/// Returns the options, completed by values of the printer. Its resolution is used unless the options
+/// determine one; its size is used if they have neither a display size nor a pixel size.
 ImageOptions with_printer(ImageOptions options, const ImagePrinter& printer) {
     if (printer.name.empty())
         return options;
@@ -88,8 +88,8 @@ ImageOptions with_printer(ImageOptions options, const ImagePrinter& printer) {
 
 } // namespace
 
-// Follows PrusaSlicer: bed coordinates (x, y) begin in a corner of the display. (u, v) is (x, y) in landscape
-// and (y, x) in portrait; each is mirrored or not to become column and row.
+// Follows PrusaSlicer. Bed coordinates (x, y) begin in a corner of the display. (u, v) is (x, y) in landscape
+// and (y, x) in portrait. Mirrored or not, u becomes the column and v the row.
 PixelGrid Display::grid(const Box3& box) const noexcept {
     const double x0 = 0.5 * width_mm() - 0.5 * (box.min.x + box.max.x);
     const double y0 = 0.5 * height_mm() - 0.5 * (box.min.y + box.max.y);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Pixels of a display or image, and the position of the part among them.
+// Pixel grid of a display or image, and the position of the part on it.
 
 #include "lamella/raster/image.hpp"
 #include "lamella/write/image_options.hpp"
@@ -13,7 +13,7 @@ namespace lamella {
 
 /// Properties of a printer that displays images.
 struct ImagePrinter {
-    std::string_view name = {}; ///< as used by people and in its files; "" for none
+    std::string_view name = {}; ///< name in help and in files; "" for no printer
     AlongXY<std::uint32_t> pixels{};
     AlongXY<double> display_mm{};
     bool portrait = false;
@@ -21,8 +21,8 @@ struct ImagePrinter {
     bool mirror_y = false;
     double normal_s = 0;
     double first_s = 0;
-    /// A layer is large if it covers more than this fraction of the display. The pauses are the times between
-    /// exposures of small and large layers.
+    /// A layer is large if it covers more than this fraction of the display. The pauses are the times without
+    /// exposure for small and for large layers.
     double large_area = 0.5;
     double small_pause_s = 0;
     double large_pause_s = 0;
@@ -44,7 +44,7 @@ struct Display {
 };
 
 /// Returns the display that the options describe, on this printer. Throws Error{usage} if they contradict
-/// each other, and if the part, which has this box, does not fit; the error states by how much.
+/// each other, or if a part with this box does not fit; the error then states by how much.
 [[nodiscard]] Display display_for(const Box3& box, const ImageOptions& options, const ImagePrinter& printer);
 
 } // namespace lamella

@@ -24,8 +24,8 @@ class DxfWriter final : public SequentialWriter {
         : SequentialWriter(path, info, header(info), {.labels = false}), several_(info.parts.size() > 1) {}
 
   private:
-    // Release 12 needs neither tables nor handles. It has no units, but readers look for $INSUNITS all the
-    // same and assume metres without it.
+    // Release 12 needs neither tables nor handles. It has no units; but readers look for $INSUNITS
+    // nevertheless, and assume metres if it is absent.
     static std::string header(const LayerFileInfo& info) {
         const auto corner = [](std::string_view name, const Point3& p) {
             return fmt::format("  9\n{}\n 10\n{}\n 20\n{}\n 30\n{}\n", name, length_text(p.x),

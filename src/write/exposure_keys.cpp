@@ -39,14 +39,14 @@ std::size_t place_of(std::map<Key, std::size_t>& positions, const Key& key, std:
 
 ExposureKeys::ExposureKeys(std::span<const PartInfo> all) {
     std::map<decltype(key_of(Exposure{})), std::size_t> exposure_keys_of;
-    std::map<std::string_view, std::vector<std::size_t>> positions; // indices in `parts` of each label
+    std::map<std::string_view, std::vector<std::size_t>> positions; // indices in `parts`, by label
     std::map<std::pair<std::string_view, std::optional<std::size_t>>, std::size_t> times;
     for (const PartInfo& part : all) {
         const std::string& label = part.exposure ? part.exposure->part : part.label;
         Key& key = keys.emplace_back();
         if (part.exposure)
             key.exposure = place_of(exposure_keys_of, key_of(*part.exposure), exposures, *part.exposure);
-        // An exposure that a part already has belongs to the next part of the same label.
+        // If a part already has an equal exposure, this one belongs to the next part of the same label.
         const std::size_t number = times[{label, key.exposure}]++;
         std::vector<std::size_t>& same = positions[label];
         if (number == same.size()) {

@@ -20,7 +20,7 @@ struct ExposureKeys {
     };
 
     std::vector<std::string> parts;  ///< labels of the parts, in the order of the file
-    std::vector<Exposure> exposures; ///< differ in more than the part, in the order of execution
+    std::vector<Exposure> exposures; ///< distinct apart from their parts, in the order of execution
     std::vector<Key> keys;           ///< one for each of LayerFileInfo::parts
 
     explicit ExposureKeys(std::span<const PartInfo> all);

@@ -60,8 +60,8 @@ using FourFloats = Vector<4>::Floats;
     return any;
 }
 
-// Writes points, scaled and in single precision, and gathers in the same pass all properties that later steps
-// need: in a large file fetching points from memory takes most of the time.
+// Writes points, scaled and in single precision. The same pass gathers all properties that later steps need,
+// because fetching the points of a large file from memory takes most of the time.
 LAMELLA_VECTOR_CLONES Rounded round_points(std::span<const Point2> points, double scale, char* out) {
     // Contours follow one another in memory, so points one page ahead are needed soon. Hardware prefetchers
     // stop at the end of the page and detect a new stream only after some cache lines.
@@ -71,7 +71,7 @@ LAMELLA_VECTOR_CLONES Rounded round_points(std::span<const Point2> points, doubl
     FourFloats most = FourFloats{} - infinity;
     const auto put_pair = [&](std::size_t i) __attribute__((always_inline)) {
         const FourDoubles given =
-            at<4>(&points[i].x).v; // fetched here: a reference would promise an alignment
+            at<4>(&points[i].x).v; // copied, because a reference would promise an alignment
         const FourFloats pair = rounded_pair(given, scale);
         least = pair < least ? pair : least;
         most = pair > most ? pair : most;
@@ -107,7 +107,7 @@ LAMELLA_VECTOR_CLONES Rounded round_points(std::span<const Point2> points, doubl
             any_repeats(out, points.size())};
 }
 
-// Returns the signed area of a ring of such points.
+// Returns the signed area of a ring of points in single precision.
 double area_of_floats(const char* points, std::size_t count) {
     std::vector<Point2> ring(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -121,9 +121,9 @@ double area_of_floats(const char* points, std::size_t count) {
 // A point as it is stored in a file, without alignment.
 using StoredPoint = std::array<char, float_point_size>;
 
-// Removes points that rounding made equal to the one before, if there are any; returns the number that stay.
+// Removes points that rounding made equal to the previous point. Returns the number of remaining points.
 std::size_t without_repeats(std::span<StoredPoint> points, bool repeats, bool closed) {
-    const auto equal = [](const StoredPoint& a, const StoredPoint& b) { // == is a call for each
+    const auto equal = [](const StoredPoint& a, const StoredPoint& b) { // operator== would be a function call
         return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
     };
     const auto end = repeats ? std::unique(points.begin(), points.end(), equal) : points.end();
@@ -160,8 +160,8 @@ double largest_move(std::span<const Point2> points, double per_mm) {
 }
 
 // Returns a bound on the change of a ring's area by rounding, in square written units. Each point moves by at
-// most half a unit in the last place, and changes the area by at most that times the lengths of its two
-// edges. The factor 2 covers the rounding of this and of the area itself.
+// most half a unit in the last place, and changes the area by at most this times the lengths of its two
+// edges. The factor 2 covers the rounding errors of this bound and of the area itself.
 double moved_area(const Rounded& rounded, std::size_t points) {
     const auto& [least, most, area, repeats] = rounded;
     const double extent = (double{most.x} - double{least.x}) + (double{most.y} - double{least.y});
@@ -190,7 +190,7 @@ FloatContour FloatContours::put(std::span<const Point2> contour, bool closed, st
         return {};
     if (!closed)
         return {count, 0};
-    // Rounding can have reversed the orientation of a thin ring only.
+    // Rounding cannot have reversed the orientation of a ring that is not thin.
     const bool thin = !(std::abs(rounded.area_mm2) * per_mm_ * per_mm_ > moved_area(rounded, contour.size()));
     if (thin && rounded.area_mm2 * area_of_floats(out, count) < 0)
         std::reverse(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count));

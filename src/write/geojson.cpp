@@ -47,8 +47,8 @@ class GeoJsonWriter final : public SequentialWriter {
     }
 
   private:
-    // The standard defines coordinates as degrees on the Earth and no longer allows other systems; consumers
-    // have to know that these are millimetres. "units" is an addition of ours.
+    // The standard defines coordinates as degrees on the Earth and no longer allows other systems. Readers
+    // have to know that these are millimetres. "units" is our own addition.
     static std::string header(const LayerFileInfo& info) {
         const Box3& box = info.box;
         return fmt::format("{{\"type\":\"FeatureCollection\",\"units\":\"mm\",\"bbox\":[{},{},{},{}],"
@@ -76,8 +76,8 @@ class GeoJsonWriter final : public SequentialWriter {
         put_lines(layer, part, nested, scratch, out);
     }
 
-    // Writes the rings that bound material: each outer ring, then its holes. Rings that vanish on the grid
-    // are skipped, an outer ring together with its holes.
+    // Writes the rings that bound material: each outer ring, then its holes. Skips rings that vanish on the
+    // grid, and the holes of such outer rings.
     void put_polygons(const Layer& layer, std::size_t part, const Nesting& nested,
                       std::vector<GridPoint>& scratch, ByteBuffer& out) const {
         const auto put_ring = [&](std::size_t i, std::string_view before) {

@@ -62,7 +62,7 @@ WriterGrid::WriterGrid(double step_mm, RoundingLoss* loss)
 void WriterGrid::round(std::span<const Point2> points, std::uint64_t layer, GridPoint* out) const {
     std::size_t beyond = 0;
     const auto whole = [](double v) {
-        // Unsigned, because values that are refused below may wrap around.
+        // The subtraction is unsigned, because values that are rejected below may wrap around.
         return static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(v + round_to_whole) -
                                          std::bit_cast<std::uint64_t>(round_to_whole));
     };

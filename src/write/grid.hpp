@@ -22,7 +22,7 @@ struct GridPoint {
 
 inline constexpr double text_step_mm = text_rounding.step_mm;
 
-/// Throws Error{usage} for units of LayerWriteOptions that no file can have.
+/// Throws Error{usage} for invalid values of LayerWriteOptions::units_mm.
 void check_units(double units);
 
 /// Returns the smallest of 1, 2 or 5 times a power of ten that is at least this positive number.
@@ -37,22 +37,22 @@ class WriterGrid {
     /// which must outlive the grid.
     explicit WriterGrid(double step_mm, RoundingLoss* loss = nullptr);
 
-    /// Returns the nearest grid point of each point of a contour, ties to even. Points equal to the one
-    /// before are dropped. A ring of fewer than three or a chain of fewer than two remaining points becomes
-    /// empty. `area` is that of the ring before rounding: a ring so thin that rounding reversed its
-    /// orientation is returned in reverse order, so that outer rings stay outer rings. The result is stored
-    /// in `scratch`.
+    /// Returns the nearest grid point of each point of a contour, ties to even. Drops points equal to the
+    /// previous point. Returns nothing for a ring of fewer than three remaining points, or for a chain of
+    /// fewer than two. `area` is the area of the ring before rounding. A ring so thin that rounding reversed
+    /// its orientation is returned in reverse order, so that outer rings stay outer rings. The result is
+    /// stored in `scratch`.
     ///
     /// Throws Error{usage}, naming the layer, for coordinates beyond 2^51 steps.
     std::span<const GridPoint> snap(std::span<const Point2> contour, bool closed, double area,
                                     std::uint64_t layer, std::vector<GridPoint>& scratch) const;
 
-    /// Returns the nearest points for lines, two each; lines that shrink to a point are left out. Throws the
-    /// same error.
+    /// Returns the nearest grid points of the ends of lines. Leaves out lines that shrink to a point. Throws
+    /// Error{usage} as `snap` does.
     [[nodiscard]] std::vector<GridPoint> snap_lines(std::span<const Point2> points,
                                                     std::uint64_t layer) const;
 
-    /// Returns the nearest grid point of each point. Throws the same error.
+    /// Returns the nearest grid point of each point. Throws Error{usage} as `snap` does.
     [[nodiscard]] std::vector<GridPoint> snap_points(std::span<const Point2> points,
                                                      std::uint64_t layer) const;
 

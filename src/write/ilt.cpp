@@ -1,5 +1,5 @@
-// An archive contains one file after the other, and layers arrive for all files at once. The first file is
-// written to the archive directly; the others wait in a store.
+// An archive contains one file after the other, but each layer belongs to all files. So the first file is
+// written directly to the archive, and the others wait in a store.
 
 #include "lamella/core/error.hpp"
 
@@ -25,9 +25,9 @@ namespace lamella {
 namespace {
 
 /// Returns the code of the vectors in the name of their file. It consists of German initials: st (Stuetze) is
-/// support, s1 a shell, which is the whole part if there is only one beam; v volume, u (unten) below, s
-/// (Schraffur) hatch, k (Kontur) contour, kv (Versatz) contours further inwards. There is only one name for
-/// upskin.
+/// a support; s1 is a shell, which is the whole part if there is only one beam; v is the volume; u (unten) is
+/// below; s (Schraffur) is a hatch; k (Kontur) is a contour; kv (Versatz) are contours further inwards. The
+/// upskin has a single code.
 std::string code_of(const Exposure& exposure) {
     const bool contour = exposure.kind == VectorKind::contour;
     switch (exposure.region) {
@@ -42,7 +42,7 @@ std::string code_of(const Exposure& exposure) {
     }
 }
 
-/// Returns the exposure of parts without one; a machine ignores it.
+/// Returns the exposure that is written for parts without one. Machines ignore it.
 Exposure no_exposure(const std::string& part) {
     return {.part = part, .parameters = unknown_parameters()};
 }
@@ -60,8 +60,8 @@ struct Section {
     std::vector<std::size_t> parts; ///< indices in LayerFileInfo::parts
 };
 
-/// Returns the files of the archive. Vectors of a part with equal names and parameters share a file. Files of
-/// a part have its number, or another one if their name is already taken.
+/// Returns the files of the archive. Vectors of a part share a file if their codes and parameters are equal.
+/// The name of a file contains the number of its part, or another number if the name is already taken.
 std::vector<Section> sections_of(const std::vector<PartInfo>& parts) {
     const auto name_of = [](std::size_t number, const std::string& code) {
         return fmt::format("modelsection_{:03}_{}.cli", number, code);
@@ -99,8 +99,8 @@ std::vector<Section> sections_of(const std::vector<PartInfo>& parts) {
     return sections;
 }
 
-/// Returns five lines for each file, which is the number that readers expect. Distance and time of points
-/// apply to pulsed beams only, which these are not. The prefix for a millionth is one byte of Latin-1.
+/// Returns five lines for each file, since readers expect five. Distance and time of points apply only to
+/// pulsed beams, and this beam is not pulsed. The prefix for a millionth is one byte of Latin-1.
 std::string parameters_text(const std::vector<Section>& sections) {
     constexpr std::string_view micro = "\xb5";
     std::string text;
@@ -189,7 +189,8 @@ class IltWriter final : public OrderedWriter {
         zip_.finish();
     }
 
-    /// Throws if readers would take two heights for one because they differ by less than files round them.
+    /// Throws if the tops of two planes, as written, differ by at most `ilt_one_plane_mm`. Readers would take
+    /// them for one plane.
     void check_apart(const PlanePosition& offset) {
         const double units = offset.top / units_;
         const double top =
@@ -215,10 +216,10 @@ class IltWriter final : public OrderedWriter {
                                 .parts = {},
                                 .rule = info.rule,
                                 .chunk = &entry.chunk,
-                                .known_finite = true}; // else this writer has checked it
+                                .known_finite = true}; // true, because this writer has checked the layers
         for (const std::size_t part : sections_[section].parts) {
             PartInfo known = info.parts[part];
-            known.support = false; // the warning is of the whole archive
+            known.support = false; // the warning is that of the whole archive
             if (known.exposure) {
                 known.label = known.exposure->label();
                 known.exposure->parameters = unknown_parameters(); // they are in the list
@@ -247,7 +248,7 @@ class IltWriter final : public OrderedWriter {
 
     ZipWriter zip_;
     std::vector<Section> sections_;
-    std::vector<Entry> entries_; ///< of sections_; their addresses must not change
+    std::vector<Entry> entries_; ///< one for each of sections_; addresses must not change
     ByteStore store_;
     std::uint64_t waiting_ = 0; ///< bytes in store_ that are not yet in the archive
     double units_;

@@ -86,7 +86,7 @@ class ImageStackWriter final : public OrderedWriter {
   private:
     Write formatted(const PlaneView& plane) override {
         LayerImage image = images_.image(plane.layers);
-        // In a folder each layer has a file of its own, so it is written here and not in order.
+        // In a folder each layer has a file of its own, which can be written in any order.
         if (folder_)
             folder_->write(image_name(plane.layers.front().index), image.file->view());
         return [this, image = std::move(image)](const PlanePosition& offset) {

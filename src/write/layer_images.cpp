@@ -47,8 +47,8 @@ LayerImage LayerImages::image(std::span<const Layer> all) const {
     std::vector<Layer> parts(all.size());
     std::transform(all.begin(), all.end(), parts.begin(), without_lone_holes);
     RasterOptions options = options_;
-    // This check takes less time than drawing, and contours finer than pixels are then drawn in a fraction of
-    // the time.
+    // This check takes less time than drawing. If it succeeds, contours finer than pixels are drawn in a
+    // fraction of the time.
     options.winds_once = options.antialias > 1 && winds_once(parts);
     PngEncoder encoder(grid_.width, grid_.height);
     const double covered =

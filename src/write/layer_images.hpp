@@ -22,7 +22,7 @@ struct LayerImage {
     [[nodiscard]] ZipChunk in_zip() const { return {file->view(), file->view().size(), crc}; }
 };
 
-/// Makes images with the same grid and options, for any number of threads.
+/// Makes images with the same grid and options. May be used by any number of threads at once.
 class LayerImages {
   public:
     LayerImages(const PixelGrid& grid, const RasterOptions& options);

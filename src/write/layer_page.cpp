@@ -30,7 +30,7 @@ namespace lamella {
 
 namespace {
 
-/// Figures of a plane, whether or not all of it is shown.
+/// Figures of a complete plane, even if the page shows only a part of it.
 struct PlaneFacts {
     PlanePosition position;
     LayerMeasure measure = {};
@@ -51,7 +51,7 @@ struct Image {
     double tolerance_mm = 0;
 };
 
-/// Number of crossings of a plane whose locations are listed.
+/// Largest number of crossings of a plane whose locations are listed.
 constexpr std::size_t most_marks = 1000;
 
 /// Fills in the figures and defects of a plane, and appends the locations of the first crossings.
@@ -64,15 +64,14 @@ void look_at(const PlaneView& plane, std::span<const PartInfo> parts, PlaneFacts
             positions.push_back(crossing.at);
     };
     std::optional<Point2> beam;
-    std::vector<Layer> bounding; // layers that bound material: the parts are checked together
+    std::vector<Layer> bounding; // layers that bound material, which are checked together
     for (std::size_t i = 0; i < plane.layers.size(); ++i) {
         const Layer& layer = plane.layers[i];
         const std::span<const Point2> hatches = plane.hatches_of(i);
         facts.hatches += hatches.size() / 2;
         if (parts[i].exposure) {
             look_for_crossings(layer);
-            // Vectors do not bound material: their rings have no area and need not be nested, and their
-            // chains are open by intent.
+            // Vectors do not bound material, so their area, nesting and open chains are not examined.
             facts.scan += measure_vectors(layer, hatches, parts[i].exposure->parameters, beam);
             facts.measure.contours += layer.contours();
             facts.measure.points += layer.points.size();
@@ -89,20 +88,21 @@ void look_at(const PlaneView& plane, std::span<const PartInfo> parts, PlaneFacts
     const Nesting nested = nesting(all);
     facts.misoriented +=
         static_cast<std::uint64_t>(std::count(nested.kind.begin(), nested.kind.end(), RingKind::misoriented));
-    facts.measure.holes -= std::min(facts.measure.holes, facts.misoriented); // they run clockwise, too
+    facts.measure.holes -= std::min(facts.measure.holes, facts.misoriented); // these are clockwise, too
     facts.overlapping +=
         static_cast<std::uint64_t>(std::count(nested.kind.begin(), nested.kind.end(), RingKind::overlapping));
 }
 
-/// Layers that lose detail step by step. No contour moves by more than `tolerance_mm` in total. Remaining
-/// contours keep their order, since the page shows the order of scan vectors.
+/// The layers of a plane, which lose detail step by step. No contour moves by more than `tolerance_mm` in
+/// total. Remaining contours keep their order, since the page shows the order of scan vectors.
 class Thinning {
   public:
     Thinning(const PlaneView& plane, double step_mm)
         : layers_(plane.layers.begin(), plane.layers.end()), hatches_(plane.hatches), step_mm_(step_mm) {}
 
-    /// Drops hatches first. Later calls simplify to a tolerance of one step, then to four times the previous
-    /// one, at which curves keep half of their points. Drops specks as soon as the tolerance is visible.
+    /// The first call drops hatches, if there are any. Later calls simplify to a tolerance of one step, then
+    /// to four times the previous tolerance, which halves the number of points of curves. Specks are dropped
+    /// once the tolerance is visible.
     void coarsen() {
         if (drop_hatches())
             return;
@@ -153,7 +153,7 @@ constexpr std::uint64_t most_shares = 4; // largest multiple of a thinned layer'
 /// Distributes the bytes of a page: an equal share for each layer, plus bytes that the layers below did not
 /// use, up to four shares in total.
 ///
-/// A layer of scan vectors may use all unused bytes, but only if it is kept whole; else it gets a quarter of
+/// A layer of scan vectors may use all unused bytes if it is kept complete. Otherwise it gets a quarter of
 /// its share, and layers above may use the rest. All vectors of every tenth layer are more useful than all
 /// layers without their hatches.
 class Budget {
@@ -167,7 +167,8 @@ class Budget {
     /// Returns the budget of a layer that is thinned out.
     [[nodiscard]] const Cost& thinned() const noexcept { return thinned_; }
 
-    /// Returns the first version of the next layer that is within the budget, finest first; else the last.
+    /// Returns the first of these versions of the next layer that is within the budget, or the last one. The
+    /// versions must begin with the finest.
     const Image& choose(const std::vector<Image>& images) {
         const std::uint64_t left = saved_bytes_ + bytes_;
         const Cost most{vectors_ ? left : std::min(left, most_shares * bytes_), thinned_.points};
@@ -187,8 +188,9 @@ class Budget {
     std::uint64_t saved_bytes_ = 0;
 };
 
-/// Returns versions of a plane: the whole plane, then versions with less detail each, until one costs at most
-/// `thinned`, or little is gained and it costs at most four times as much.
+/// Returns versions of a plane: the complete plane, then versions with less and less detail. The last version
+/// costs at most `thinned`, or at most four times as many bytes if further thinning saves little; or it
+/// cannot be thinned any further.
 std::vector<Image> images_of(const PlaneView& whole, std::span<const PartInfo> infos,
                              std::span<const Point2> positions, const PageGrid& grid, const Cost& thinned) {
     const auto image = [&](const PlaneView& plane, double tolerance) {
@@ -210,7 +212,7 @@ std::vector<Image> images_of(const PlaneView& whole, std::span<const PartInfo> i
     for (Cost cost = cost_of(images.back());
          !cost.within(thinned) && !thinning.at_end() && !shows_nothing(images.back());) {
         if (!saves && cost.within(most))
-            break; // many small rings remain: a larger page is better than a crude one
+            break; // many small rings remain; a larger page is better than a crude one
         thinning.coarsen();
         images.push_back(image(thinning.plane(), thinning.tolerance_mm()));
         const Cost next = cost_of(images.back());
@@ -257,8 +259,8 @@ class PlaneTable {
         planes_.push_back({facts.position.index, facts.measure.area_mm2});
     }
 
-    /// Returns the table as JSON. `changes` are those that layer steps made to the planes; if there are none,
-    /// the columns about them are left out.
+    /// Returns the table as JSON. `changes` are the changes that layer steps made to the planes. If there are
+    /// none, the table has no columns about changes.
     [[nodiscard]] std::string json(const std::vector<PageChange>& changes) const {
         std::string text;
         for (std::size_t i = 0; i < shown_; ++i)

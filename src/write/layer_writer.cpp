@@ -166,7 +166,8 @@ constexpr std::array formats{
                 .exposure = true},
 };
 
-/// Returns "json, npz and svg": the formats that keep the heights of cuts and can be read.
+/// Returns the names of the formats that keep the heights of cuts and can be read, such as "json, npz and
+/// svg".
 std::string names_of_exact() {
     std::vector<std::string_view> texts;
     for (const LayerFormat& format : formats)
@@ -209,9 +210,9 @@ std::vector<std::string> warnings_of_cuts(const WriteLosses& losses) {
                         losses.cuts.z, names_of_exact())};
 }
 
-/// Enforces LayerWriteOptions::most_bytes and `strict` on another writer: throws after the layer that exceeds
-/// the limit, and instead of ending a file with warnings. Adds the warning that follows from the table of
-/// formats.
+/// Enforces LayerWriteOptions::most_bytes and `strict` on another writer. Throws after the layer that exceeds
+/// the limit; throws in `finish`, before the file has its name, if there are warnings. Adds the warning that
+/// follows from the table of formats.
 class LimitedWriter final : public LayerWriter {
   public:
     LimitedWriter(std::unique_ptr<LayerWriter> writer, std::string path, const LayerFormat& format,
@@ -342,7 +343,7 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
 
 namespace {
 
-/// Calls `prepare(plane)` on all threads, and the functions that it returns in ascending order.
+/// Calls `prepare(plane)` on all threads, and calls the returned functions in ascending order of planes.
 template <class Prepare>
 void write_in_order(std::size_t planes, const Prepare& prepare, const Execution& execution) {
     Executor executor(execution);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The formats of slice files, each in a source of its name. docs/formats.md describes their content.
+// The formats of slice files. Each has a source of the same name. docs/formats.md describes their content.
 
 #include "lamella/write/layer_writer.hpp"
 
@@ -21,8 +21,8 @@ OpenLayerWriter open_common_layer_binary;
 OpenLayerWriter open_dxf;
 /// GeoJSON (RFC 7946), in millimetres.
 OpenLayerWriter open_geojson;
-/// ILT: Common Layer Interface files in a zip archive, with the parameters of each. No description is
-/// published; files of several programs agree in the content that docs/formats.md describes.
+/// ILT: Common Layer Interface files in a zip archive, with the parameters of each. There is no published
+/// description; docs/formats.md describes what files of several programs have in common.
 OpenLayerWriter open_ilt;
 /// SVG: one file with all layers, as Slic3r writes it.
 OpenLayerWriter open_layered_svg;
@@ -38,7 +38,7 @@ OpenLayerWriter open_ovf;
 /// A folder with a PNG image for each layer, `00000.png` and so on, numbered by Layer::index, and
 /// `manifest.json`.
 OpenLayerWriter open_image_folder;
-/// The same in a zip archive.
+/// The content of such a folder in a zip archive.
 OpenLayerWriter open_image_archive;
 /// The print jobs of Original Prusa SL1 and SL1S.
 OpenLayerWriter open_sl1;

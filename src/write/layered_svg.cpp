@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t per_number = most_integer_digits + 6;
 
-// Returns the grid point at or below a coordinate; relative coordinates are then on the same grid as absolute
-// ones.
+// Returns the grid point at or below a coordinate. Coordinates relative to it are on the same grid as
+// absolute ones.
 std::int64_t steps_below(double mm) {
     constexpr double most = 1e15;
     return static_cast<std::int64_t>(std::clamp(std::floor(mm / text_step_mm + 1e-6), -most, most));
@@ -45,12 +45,12 @@ void put_points(std::span<const GridPoint> points, const GridPoint& origin, Byte
     out.end_at(at - 1);
 }
 
-// Heights need more than the four decimals that Slic3r gives them when layers are thin.
+// Heights of thin layers need more than the four decimals that Slic3r writes.
 std::string height_text(double mm) {
     return decimal_text(mm, 9, 4);
 }
 
-/// Ring of a layer with its signed area: computed once, used for order, direction and rounding.
+/// A ring of a layer with its signed area, which determines order, direction and rounding.
 struct MeasuredRing {
     std::size_t contour;
     double area;
@@ -82,7 +82,7 @@ class LayeredSvgWriter final : public SequentialWriter {
 
   private:
     // Importers that know Slic3r's files take coordinates as millimetres and ignore title and style. Browsers
-    // apply the style: they show one layer, which the address can name, with y upwards.
+    // apply the style: they show a single layer, selected by the address, with y upwards.
     static std::string header(const LayerFileInfo& info) {
         const Box3& box = info.box;
         const auto mm = [](std::int64_t steps) {
@@ -165,7 +165,7 @@ class LayeredSvgWriter final : public SequentialWriter {
 
     GridPoint origin_;
     std::vector<bool> exposed_; ///< true for parts of scan vectors
-    /// Empty for a single part without a label of its own: then it needs no group.
+    /// Empty for a single part without a label, which needs no group.
     std::vector<std::string> part_heads_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
 };
@@ -188,7 +188,7 @@ class SvgLayersWriter final : public OrderedWriter {
     std::uint64_t bytes() const noexcept override { return directory_.bytes(); }
 
   private:
-    // Each layer has a file of its own, so it is written here and not in order.
+    // Each layer has a file of its own, which can be written in any order.
     Write formatted(const PlaneView& plane) override {
         const std::shared_ptr<ByteBuffer> text = buffer();
         format(plane.layers, *text);
@@ -199,7 +199,8 @@ class SvgLayersWriter final : public OrderedWriter {
 
     void end_file() override { directory_.commit(); }
 
-    // Millimetres, with y upwards and a margin around the part, so that all images have the same frame.
+    // Returns the header of an image in millimetres, with y upwards. All images have the same frame: the box
+    // of the part and a margin.
     static std::string header(const LayerFileInfo& info) {
         const Box3& box = info.box;
         const double margin = 0.03 * std::max(box.max.x - box.min.x, box.max.y - box.min.y) + 0.1;

@@ -13,10 +13,10 @@ namespace lamella {
 
 namespace {
 
-constexpr std::size_t longest_label = 60; ///< of labels in warnings
+constexpr std::size_t longest_label = 60; ///< largest length of labels in warnings
 
-/// Returns whether a number that the user chose is lost. For default values a machine has settings of its
-/// own.
+/// Returns whether a number that differs from its default is lost. Lost defaults do not count, because a
+/// machine has settings of its own for them.
 bool loses_a_choice(const ParameterSet& set, const ParameterSet& kept) noexcept {
     const ParameterSet preset;
     const auto is_lost = [&](double ParameterSet::*member) {

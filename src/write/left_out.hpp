@@ -1,6 +1,6 @@
 #pragma once
 
-// Warnings of content that a format cannot hold.
+// Warnings about content that a format cannot hold.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/write/layer_writer.hpp"
@@ -20,21 +20,21 @@ namespace lamella {
 struct Holds {
     bool open_chains = true;
     bool hatches = false;
-    bool gaps = true;        ///< between layers: false if a layer is read as beginning on the one before
-    bool parameters = false; ///< of scan vectors: power, speed; such a format expects them for each part
+    bool gaps = true;        ///< between layers; false if readers assume that there are none
+    bool parameters = false; ///< of scan vectors, such as power; the format then requires them for each part
     bool labels = true;      ///< of parts
     /// Returns the text of a label in the file; if null, the label is unchanged.
     std::string (*written_label)(std::string_view) = nullptr;
-    /// True if the format marks supports. Also true for images, which do not distinguish parts. For scan
-    /// vectors the region identifies supports.
+    /// True if the format marks supports, and for images, which do not distinguish parts. Supports among scan
+    /// vectors are identified by their region.
     bool supports = false;
-    /// Returns those parameters of a set that the format keeps, if that is not all of them; `not_kept` lists
-    /// the others in words.
+    /// Returns the parameters of a set that the format keeps; null if it keeps all of them. `not_kept` names
+    /// the others in warnings.
     ParameterSet (*kept)(ParameterSet) = nullptr;
     std::string_view not_kept = {};
 };
 
-/// Counts the content of a plane that some formats cannot hold, except for gaps and rounding.
+/// Returns counts of the content of a plane that some formats cannot hold, except gaps and rounding.
 [[nodiscard]] WriteLosses losses_of_plane(const PlaneView& plane);
 
 /// Counts content that a file leaves out. Planes must be added in ascending z.

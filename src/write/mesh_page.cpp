@@ -94,8 +94,8 @@ CoarseMesh coarse(const IndexedMesh& mesh, const std::vector<Cell>& cells, const
     return result;
 }
 
-/// Returns the vertices and then, for each triangle, its shell and its corners, all as differences from the
-/// one before.
+/// Returns the vertices and then, for each triangle, its shell and its corners. Each number is stored as the
+/// difference to the previous one.
 NumberBytes mesh_numbers(const CoarseMesh& mesh) {
     NumberBytes out;
     const auto way = [&](std::uint32_t from, std::uint32_t to) {

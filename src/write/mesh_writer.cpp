@@ -64,8 +64,8 @@ Point3f unit_normal(const Triangle3f& t) {
             static_cast<float>(n.z / length) + 0.0F};
 }
 
-/// Returns facet i. Errors count from the first triangle of the file; `before` is the number of triangles
-/// before this soup.
+/// Returns facet i. Error messages number the triangles of the file; `before` is the number of triangles of
+/// the file before this soup.
 Facet facet(const TriangleSoup& soup, std::size_t i, std::uint64_t before, const std::string& path) {
     Facet f;
     f.corners = soup.has_placement() ? rounded(soup.placed(i), before + i, path) : soup.stored(i);
@@ -87,7 +87,7 @@ bool fits_single_precision(const IndexedMesh& mesh) {
                        [&](const Point3& p) { return fits(p.x) && fits(p.y) && fits(p.z); });
 }
 
-/// Appends items in chunks. `put_item(at, i)` writes one of at most `longest` bytes and returns its end.
+/// Appends items in chunks. `put_item(at, i)` writes an item of at most `longest` bytes and returns its end.
 template <class Put>
 void append_blocks(AtomicFile& file, std::size_t count, std::size_t longest, Put put_item) {
     ByteBuffer block;
@@ -102,7 +102,7 @@ void append_blocks(AtomicFile& file, std::size_t count, std::size_t longest, Put
     }
 }
 
-/// Writes the rest of a line: each number after a space, as the shortest text that reads back to it.
+/// Writes the rest of a line: a space before each number, which is the shortest text that reads back to it.
 template <class Number>
 char* put_rest_of_line(char* out, const std::array<Number, 3>& numbers) {
     constexpr std::size_t longest_number = 24;
@@ -135,7 +135,7 @@ StlWriter::StlWriter(const std::string& path, std::uint64_t triangles) : announc
             fmt::format("{} triangles are more than a binary STL file can count (2^32 - 1)", triangles));
     file_ = std::make_unique<AtomicFile>(path);
     std::array<char, 84> header{};
-    // The text must not begin with "solid": readers take such a file for ASCII STL.
+    // The text must not begin with "solid", because readers would take the file for ASCII STL.
     put_text(header.data(), "Binary STL written by Lamella, millimetres");
     const auto count = static_cast<std::uint32_t>(triangles);
     std::memcpy(header.data() + 80, &count, sizeof count);

@@ -1,6 +1,6 @@
-// The points of all layers are one array and are written to the file as they arrive. Hatch lines are another
-// array and wait in a store. The tables of contours are small and kept until the end. An array begins with
-// its shape, so the first bytes of the points are written last.
+// The points of all layers are one array, which is written to the file as layers arrive. Hatch lines are
+// another array, which waits in a store. The tables of contours are small and are kept in memory until the
+// end. An array begins with its shape, so the first bytes of the array of points are written last.
 
 #include "container/byte_store.hpp"
 #include "container/inflate.hpp"
@@ -23,8 +23,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are written as memory has them");
 
-// Returns the header of an array: magic, version 1.0, the length of the rest, and a Python dictionary. Its
-// length is that of NumPy's headers, so that the numbers begin at a multiple of 64.
+// Returns the header of an array: magic, version 1.0, the length of the rest, and a Python dictionary. It is
+// as long as NumPy's headers, so that the numbers begin at a multiple of 64 bytes.
 std::string npy_header(std::string_view type, const std::string& shape, std::size_t size) {
     std::string text = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, shape);
     constexpr std::size_t before = 10;
@@ -58,10 +58,10 @@ std::u32string characters(std::string_view text) {
     return result;
 }
 
-/// Size in the tables: end, layer, part, and whether it is closed.
+/// Size of a contour in the tables: end, layer, part, and a flag for closed ones.
 constexpr std::uint64_t bytes_of_contour = 3 * sizeof(std::int64_t) + 1;
 constexpr std::uint64_t bytes_of_line = 4 * sizeof(double);
-/// A line with its layer and part.
+/// Size of a hatch line with its layer and part.
 constexpr std::uint64_t bytes_of_hatch = bytes_of_line + 2 * sizeof(std::int64_t);
 
 class NpzWriter final : public OrderedWriter {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Checks and counts that the writers of all formats share.
+// Checks and counters that the writers of all formats share.
 
 #include "lamella/write/layer_writer.hpp"
 
@@ -19,7 +19,8 @@
 
 namespace lamella {
 
-/// Heights and index of a plane, and its position in the file, which is known when it is written.
+/// Heights and index of a plane, and its position in the file. The position is known when the plane is
+/// written.
 struct PlanePosition {
     std::uint64_t position = 0; ///< 0 for the first of the file
     std::uint64_t index = 0;
@@ -31,32 +32,33 @@ struct PlanePosition {
 /// Returns the values that the layers of a plane have in common.
 [[nodiscard]] PlanePosition plane_position(std::span<const Layer> parts);
 
-/// Throws Error{usage} for the first layer of a part whose heights differ from those of the first part, by
-/// which a plane is written.
+/// Throws Error{usage} for the first layer whose heights differ from those of the first part. The heights of
+/// the first part are written.
 void check_same_planes(std::span<const LayerStack> parts, const LayerFileInfo& info);
 
-/// Values that must ascend from plane to plane.
+/// The values that must ascend from plane to plane.
 enum class Ascending {
     z,
     z_and_index, ///< files are named after the indices of layers
 };
 
-/// Checks the order of planes as they are written: they must ascend, and the numbers of planes and parts must
-/// be those announced.
+/// Checks the planes as they are written: they must ascend, and the numbers of planes and parts must be the
+/// announced ones.
 class PlaneOrder {
   public:
     explicit PlaneOrder(const LayerFileInfo& info, Ascending ascending = Ascending::z);
 
-    /// Throws Error{usage} if there is not one layer for each part, or if a length is not finite.
+    /// Throws Error{usage} if the number of layers is not that of parts, or, unless
+    /// LayerFileInfo::known_finite is set, if a coordinate or height is not finite.
     void check_parts(std::span<const Layer> parts) const;
-    /// Does the same for scan vectors; see `check(const ScanVectors&)`.
+    /// Performs these checks for scan vectors, and those of `check(const ScanVectors&)`.
     void check_parts(const ScanVectors& vectors) const;
-    /// Sets the position of the plane. Throws Error{usage} if it does not follow the one before.
+    /// Sets the position of the plane. Throws Error{usage} if it does not follow the previous plane.
     void next(PlanePosition& plane);
     /// Throws Error{usage} if there were more or fewer planes than announced.
     void end() const;
-    /// Returns whether a plane's layer begins at the top of the last one. For a range of a file the writer of
-    /// the whole file checks this.
+    /// Returns whether a plane begins at the top of the previous plane. Always returns true in a range of a
+    /// file, where gaps are not counted.
     [[nodiscard]] bool adjoins(const PlanePosition& plane) const noexcept {
         return is_chunk_ || count_ == 0 || std::abs(plane.bottom - last_.top) <= same_height_mm;
     }
@@ -105,7 +107,7 @@ class OrderedWriter : public LayerWriter {
   private:
     [[nodiscard]] std::function<void()> prepare_view(const PlaneView& plane);
 
-    /// Returns whether this writer warns about parts: among several ranges of a file only the first one does.
+    /// Returns whether this writer warns about parts: among the ranges of a file, only the first one does.
     static bool names_parts(const LayerFileInfo& info) noexcept {
         return info.chunk == nullptr || info.chunk->before == 0;
     }

@@ -1,6 +1,6 @@
 // The file consists of the work planes, each with a table of the offsets of its vectors, then the job, which
-// holds the shared data, and a table of the offsets of the work planes. The first bytes of the file are the
-// offset of the job; they are written last.
+// holds the shared data, and a table of the offsets of the work planes. The file begins with the offset of
+// the job, which is written last.
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
@@ -72,8 +72,8 @@ ProtobufMessage lpbf_meta_data(const Exposure& exposure) {
     return message;
 }
 
-/// Returns the bytes after the vectors in each block of a part of the file. Keys of the job count from 1; 0
-/// is none.
+/// Returns for each part of the file the bytes that follow the vectors in its blocks. Keys of the job count
+/// from 1; 0 means no key.
 std::vector<std::string> ends_of_blocks(const ExposureKeys& keys) {
     std::vector<std::string> ends;
     for (const auto& [part, exposure] : keys.keys) {
@@ -105,7 +105,7 @@ void put_keys(const ExposureKeys& keys, double layer_thickness, ProtobufMessage&
     }
 }
 
-/// The vectors of a plane, and the offset of each block of them.
+/// The blocks of vectors of a plane, and the offset of each block.
 struct Blocks {
     std::shared_ptr<ByteBuffer> bytes;
     std::vector<std::uint64_t> begins;
@@ -144,8 +144,8 @@ class BlockWriter {
     }
 
   private:
-    /// Readers take more than three points whose last equals the first for a ring: the ends of such a chain
-    /// are separated by one unit in the last place.
+    /// Separates the ends of a chain by one unit in the last place if they are equal. Readers take a chain of
+    /// more than three points with equal ends for a ring.
     static void keep_open(char* points, std::size_t count) {
         char* const last = points + (count - 1) * float_point_size;
         if (count <= 3 || std::memcmp(points, last, float_point_size) != 0)
@@ -177,7 +177,8 @@ class BlockWriter {
         return put_varint(put_varint(out, protobuf_tag(ovf::block::points, bytes)), list);
     }
 
-    /// Rewrites the header for fewer points than announced, and moves the points to its new end.
+    /// Rewrites the header for fewer points than announced, and moves the points to the new end of the
+    /// header.
     static void put_header_again(char* begin, std::uint32_t kind, const char* points, std::size_t count,
                                  std::string_view of_block) {
         char* const moved = begin + header_size(kind, count, of_block);

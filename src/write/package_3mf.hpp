@@ -30,23 +30,23 @@ class PackageWriter : public OrderedWriter {
     [[nodiscard]] std::uint64_t bytes() const noexcept override { return zip_.bytes(); }
 
   protected:
-    /// Begins the package with the description of its parts: relationships, the model, and `more_types`, the
-    /// elements for other types.
+    /// Begins the package with the types of its parts: relationships, the model, and the elements in
+    /// `more_types`.
     PackageWriter(const std::string& path, const LayerFileInfo& info, Holds holds,
                   std::string_view more_types = {});
 
     [[nodiscard]] ZipWriter& zip() noexcept { return zip_; }
-    /// Compresses one of several chunks that make up a part. For any number of threads.
+    /// Compresses one of several chunks of a part. May be called by any number of threads at once.
     [[nodiscard]] Chunk compressed(std::string_view text);
 
   private:
     ZipWriter zip_;
     std::mutex mutex_;
-    /// Reusable compressors; each has some hundred kilobytes.
+    /// Reusable compressors of some hundred kilobytes each.
     std::vector<std::unique_ptr<Deflater>> idle_;
 };
 
-/// Returns a mesh that only gives the position of the part; every object must have a mesh.
+/// Returns a mesh that only marks the box of the part. The format requires a mesh for every object.
 [[nodiscard]] std::string box_mesh(const Box3& box);
 
 } // namespace lamella::package_3mf

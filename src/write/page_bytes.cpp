@@ -11,7 +11,7 @@ namespace lamella {
 
 namespace {
 
-/// Adds points as differences from one to the next, beginning with `at`.
+/// Adds points as differences from the previous point; the first one is relative to `at`.
 void add_way(GridPoint at, std::span<const GridPoint> points, NumberBytes& out) {
     for (const GridPoint& p : points) {
         out.add_signed(p.x - at.x);

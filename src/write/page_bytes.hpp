@@ -1,6 +1,6 @@
 #pragma once
 
-// Data that the scripts of a page decode: integers of variable length, compressed, as text. docs/viewer.md
+// Data that the scripts of a page decode: compressed integers of variable length, as text. docs/viewer.md
 // describes the format; viewer/src/data/ has its reader.
 
 #include "lamella/core/point.hpp"
@@ -16,7 +16,8 @@
 
 namespace lamella {
 
-/// Integers in groups of seven bits a byte, the lowest first; signed ones as 0, -1, 1, -2, ...
+/// Integers of variable length, with seven bits in each byte, the lowest first. Signed integers are stored as
+/// their index in 0, -1, 1, -2, ...
 class NumberBytes {
   public:
     void add(std::uint64_t value) {
@@ -36,7 +37,7 @@ class NumberBytes {
 };
 
 /// Returns the step of a page's coordinates: the smallest of 1, 2 or 5 times a power of ten mm that is at
-/// least 1/50000 of the longer edge of the box, seen from above. 0.001 mm for a box without width.
+/// least 1/50000 of the longer edge of the box, seen from above. Returns 0.001 mm for a box without width.
 [[nodiscard]] double page_step_mm(const Box3& box);
 
 /// Origin and step of the numbers of a page.
@@ -49,10 +50,11 @@ struct PageGrid {
 /// 2^51 steps.
 [[nodiscard]] PageGrid page_grid(const Box3& box);
 
-/// Returns the numbers of one plane: for each part the counts of rings, chains and hatch lines and then
-/// these; at the end the locations. A contour is the count of its points and the differences from point to
-/// point; its first one is relative to that of the contour before. `shown` counts the points of the contours.
-/// Scan vectors are all kept, even if points coincide: each line is executed.
+/// Returns the numbers of one plane: for each part the counts of rings, chains and hatch lines, then the
+/// contours and lines; at the end the locations. A contour is the number of its points and the differences
+/// from point to point. Its first point is relative to that of the previous contour. `shown` receives the
+/// number of points of the contours. Scan vectors are kept even if points coincide, because a machine
+/// executes each line.
 [[nodiscard]] NumberBytes layer_numbers(const PlaneView& plane, std::span<const PartInfo> parts,
                                         std::span<const Point2> places, const PageGrid& grid,
                                         std::uint64_t& shown);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The frame of a page: the viewer's text around the data, and text that may be in both.
+// The frame of a page, which is the text of the viewer around the data, and conversions to text.
 
 #include "lamella/contour/exposure.hpp"
 #include "lamella/core/point.hpp"
@@ -21,7 +21,7 @@ struct PageFrame {
 };
 [[nodiscard]] PageFrame page_frame(const PageOptions& options);
 
-/// Returns [a,b,c] of the texts that `describe` makes of each item.
+/// Returns "[a,b,c]" with the texts that `describe` returns for the items.
 template <class Range, class Describe>
 std::string json_list(const Range& range, const Describe& describe) {
     std::string text = "[";
@@ -43,7 +43,7 @@ std::string json_list(const Range& range, const Describe& describe) {
 [[nodiscard]] std::string notes_json(const PageNotes& notes);
 
 [[nodiscard]] std::string json_element(std::string_view id, std::string_view json);
-/// Returns an element that holds bytes, in Base64.
+/// Returns an element that contains bytes in Base64.
 [[nodiscard]] std::string data_element(std::string_view bytes);
 
 } // namespace lamella

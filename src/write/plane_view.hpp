@@ -1,6 +1,6 @@
 #pragma once
 
-// The content of a plane as writers see it.
+// A view of the content of a plane, for writers.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/point.hpp"

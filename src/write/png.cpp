@@ -14,7 +14,8 @@ namespace lamella {
 
 namespace {
 
-// Filter byte before each row: its bytes are the pixels themselves, or their differences from those above.
+// Filter byte before each row. The bytes of the row are the pixels themselves, or their differences from the
+// pixels above.
 constexpr std::uint8_t as_it_is = 0;
 constexpr std::uint8_t more_than_above = 2;
 

@@ -15,9 +15,9 @@
 
 namespace lamella {
 
-/// Makes PNG files of one size from rows of runs: 8 bits of grey, not interlaced, with header, pixels and end
-/// only. The time grows with the number of runs, plus one step for each 258 pixels within them: no pixel is
-/// ever touched. Makes one image after the other.
+/// Makes PNG files of one size, one after the other, from rows of runs. They have 8 bits of grey, are not
+/// interlaced, and contain only header, pixels and end. The time grows with the number of runs, plus one step
+/// for each 258 pixels of a run: pixels are not processed one by one.
 class PngEncoder {
   public:
     PngEncoder(std::uint32_t width, std::uint32_t height) : width_(width), height_(height) {}
@@ -28,9 +28,10 @@ class PngEncoder {
     void finish(ByteBuffer& out);
 
   private:
-    /// Adds one row, as it is or as its differences from the one above, whichever has fewer runs.
+    /// Adds one row unchanged, or as its differences from the row above if these have fewer runs.
     void add_row(std::span<const PixelRun> row);
-    /// Returns whether the differences have fewer runs than the row; if not, they are not all found.
+    /// Finds the differences from the row above. Stops and returns false if they do not have fewer runs than
+    /// the row.
     bool find_differences(std::span<const PixelRun> row);
 
     std::uint32_t width_;
@@ -41,7 +42,7 @@ class PngEncoder {
     RunDeflater deflater_;
 };
 
-/// Appends an image in colours as a PNG file.
+/// Appends a colour image as a PNG file.
 void append_png(const ColourImage& image, ByteBuffer& out);
 
 } // namespace lamella

@@ -16,13 +16,13 @@ namespace lamella {
 /// Changes of a contour by rounding.
 struct RoundedContour {
     double moved_mm = 0;          ///< the largest change of a coordinate
-    std::uint64_t merged = 0;     ///< points equal to the one before
-    bool lost = false;            ///< no point is left
+    std::uint64_t merged = 0;     ///< points equal to the previous point
+    bool lost = false;            ///< true if no point remains
     std::uint64_t lost_lines = 0; ///< hatch lines that shrank to a point
 };
 
-/// Removes lines that rounding shrank to a point; each line is two consecutive ends. Returns the number of
-/// remaining ends, which are moved to the front.
+/// Removes lines that rounding shrank to a point. A line is two consecutive points. Returns the number of
+/// remaining points, which are moved to the front.
 template <class Point>
 [[nodiscard]] std::size_t without_lost_lines(std::span<Point> ends) noexcept {
     std::size_t kept = 0;
@@ -35,11 +35,12 @@ template <class Point>
     return kept;
 }
 
-/// Counts what a file loses to rounding.
+/// Counts the losses of a file by rounding.
 class RoundingLoss {
   public:
-    /// Callers need not count moves and merged points if rounding cannot move by more than this: half a unit
-    /// of the coarsest files that machines commonly take. Lost contours and lines are always counted.
+    /// Callers need not count moves and merged points if rounding moves no point by more than this. It is
+    /// half a unit of the coarsest files that machines commonly accept. Lost contours and lines are always
+    /// counted.
     static constexpr double unnoticed_mm = 0.01;
 
     /// May be called from any threads, for layers in any order.

@@ -28,8 +28,8 @@ struct CopyCode {
     std::uint8_t bits = 0;
 };
 
-/// Codes by length of a copy. Eight lengths have a symbol of their own; beyond these, each four symbols
-/// represent twice as many lengths as the four before.
+/// Codes by length of a copy. Eight lengths have a symbol of their own. For longer copies, four symbols each
+/// represent twice as many lengths as the four symbols before.
 constexpr std::array<CopyCode, longest_copy + 1> copy_codes = [] {
     std::array<CopyCode, longest_copy + 1> codes{};
     for (unsigned length = shortest_copy; length < longest_copy; ++length) {
@@ -43,8 +43,8 @@ constexpr std::array<CopyCode, longest_copy + 1> copy_codes = [] {
     return codes;
 }();
 
-/// A run as symbols: literals, then copies of full length, then one of length `rest` if that is not 0, all of
-/// distance 1.
+/// A run as symbols: literals, then copies of full length, then a copy of length `rest` if that is not 0. All
+/// copies have distance 1.
 struct Parts {
     std::uint64_t literals;
     std::uint64_t full;
@@ -59,7 +59,7 @@ Parts parts_of(std::uint64_t count) noexcept {
     return rest < shortest_copy ? Parts{1 + rest, full, 0} : Parts{1, full, rest};
 }
 
-/// Runs up to this length are a few literals, or one literal and one copy. Most runs are this short.
+/// Runs of at most this length are a few literals, or one literal and one copy. Most runs are this short.
 constexpr std::uint64_t longest_short_run = longest_copy + 1;
 
 struct Code {
@@ -67,7 +67,8 @@ struct Code {
     std::uint8_t length = 0;
 };
 
-/// Returns Huffman codes of at most `longest` bits for these frequencies; symbols with frequency 0 get none.
+/// Returns Huffman codes of at most `longest` bits for these frequencies. Symbols with frequency 0 get no
+/// code.
 template <std::size_t n>
 std::array<Code, n> huffman_codes(const std::array<std::uint64_t, n>& frequencies, unsigned longest) {
     std::array<std::uint16_t, n> order; // symbols that occur, rarest first
@@ -79,8 +80,8 @@ std::array<Code, n> huffman_codes(const std::array<std::uint64_t, n>& frequencie
     std::stable_sort(leaves.begin(), leaves.end(),
                      [&](auto a, auto b) { return frequencies[a] < frequencies[b]; });
 
-    // Joins the two rarest nodes until one is left. Inner nodes are created in ascending order of weight, so
-    // two queues suffice.
+    // Joins the two rarest nodes until a single node remains. Inner nodes are created in ascending order of
+    // weight, so two queues suffice.
     std::array<std::uint64_t, 2 * n> weight{};
     std::array<std::uint16_t, 2 * n> parent{};
     for (std::size_t i = 0; i < used; ++i)
@@ -98,8 +99,8 @@ std::array<Code, n> huffman_codes(const std::array<std::uint64_t, n>& frequencie
         parent[a] = parent[b] = static_cast<std::uint16_t>(nodes);
     }
 
-    // Counts the codes of each length, then enforces the limit: a code that is too long moves up beside a
-    // shorter one, which becomes longer by a bit.
+    // Counts the codes of each length, then enforces the limit. A code that is too long moves up beside a
+    // shorter code, which becomes longer by one bit.
     std::array<std::uint16_t, 2 * n> depth{};
     std::array<std::uint32_t, longest_code + 2> of_length{};
     for (std::size_t i = nodes - 1; i-- > 0;) {
@@ -143,8 +144,8 @@ class BitWriter {
   public:
     BitWriter(char* out, std::uint64_t bits, unsigned count) : out_(out), bits_(bits), count_(count) {}
 
-    /// Writes up to 56 bits. All whole bytes are written at once, with more after them that the next ones
-    /// overwrite: this avoids a branch that a processor could mispredict.
+    /// Writes up to 56 bits. Eight bytes are always written, and the next call overwrites those that are not
+    /// complete. This avoids a branch that a processor could mispredict.
     void put(std::uint64_t bits, unsigned count) {
         bits_ |= bits << count_;
         count_ += count;
@@ -154,7 +155,7 @@ class BitWriter {
         count_ %= 8;
     }
     void put(const Code& code) { put(code.bits, code.length); }
-    /// Writes the same bits (at most 16) many times.
+    /// Writes the same bits (at most 16) this many times.
     void put_repeated(std::uint64_t bits, unsigned count, std::uint64_t times) {
         std::uint64_t pattern = bits;
         std::uint64_t repeated = 1;
@@ -176,8 +177,8 @@ class BitWriter {
     unsigned count_;
 };
 
-/// The code lengths of a block as its header lists them: 0 to 15, or 18 for a number of zeros given by
-/// `bits`.
+/// A symbol of the list of code lengths in the header of a block. It is a length from 0 to 15, or 18 for a
+/// number of zeros that `bits` specifies.
 struct LengthSymbol {
     std::uint8_t symbol;
     std::uint8_t bits;
@@ -211,7 +212,7 @@ void put_lengths(const std::array<Code, symbols>& codes, BitWriter& out) {
     std::array<std::uint8_t, symbols + 1> lengths{};
     for (std::size_t i = 0; i < used; ++i)
         lengths[i] = codes[i].length;
-    lengths[used] = 1; // the one distance
+    lengths[used] = 1; // the only distance
     const std::vector<LengthSymbol> coded = length_symbols_of(std::span(lengths).first(used + 1));
     std::array<std::uint64_t, length_symbols> frequencies{};
     for (const LengthSymbol& length : coded)
@@ -233,7 +234,8 @@ void put_lengths(const std::array<Code, symbols>& codes, BitWriter& out) {
     }
 }
 
-// 3 + 14 bits, 19 lengths, 287 lengths of at most 7 + 7 bits, and the spare bytes of a BitWriter.
+// Upper bound: 3 + 14 bits, 19 lengths, 287 lengths of at most 7 + 7 bits, and the spare bytes of a
+// BitWriter.
 constexpr std::size_t most_header_bytes = 600;
 
 /// Bits after the first literal of a short run: a copy, if the run is long enough for one.
@@ -286,9 +288,9 @@ void RunDeflater::put(std::span<const PixelRun> row) {
         }
         return;
     }
-    // All runs but the first and the last are complete, and no count here comes near the longest. State that
-    // changes with each run is kept in local variables: stores of bytes may alias the object and would force
-    // reloads.
+    // All runs except the first and the last one are complete, and no count here is near the largest one.
+    // State that changes with each run is kept in local variables, because stores of bytes may alias the
+    // object and would force reloads.
     put(row.front().value, row.front().end);
     end_run();
     make_room_in_checksum(row.back().end - row.front().end);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Compression of bytes that come as runs of equal ones.
+// Compression of bytes that are given as runs of equal bytes.
 
 #include "lamella/raster/image.hpp"
 
@@ -15,12 +15,12 @@
 
 namespace lamella {
 
-/// Makes a zlib stream (RFC 1950) of runs: each becomes its byte once and copies of the byte before it, in
-/// Deflate's own codes. Time and memory do not depend on the length of runs, except for the stream itself,
-/// which takes at least two bits for 258 bytes.
+/// Makes a zlib stream (RFC 1950) from runs. A run becomes a literal byte and copies at distance 1. Time and
+/// memory do not depend on the length of runs, except those of the stream itself, which takes at least two
+/// bits for 258 bytes.
 ///
-/// One object makes one stream after the other. Equal bytes give equal streams, however they are divided into
-/// calls.
+/// An object makes one stream after the other. Equal bytes give equal streams, independent of their division
+/// into calls.
 class RunDeflater {
   public:
     /// Appends `count` bytes of one value.
@@ -39,17 +39,17 @@ class RunDeflater {
     /// Appends the pixels of a row, a byte each (see RowSink).
     void put(std::span<const PixelRun> row);
 
-    /// Ends the stream. It lives until the next call.
+    /// Ends the stream and returns it. The view is valid until the next call.
     [[nodiscard]] std::string_view finish();
 
   private:
-    /// Kept small: an image has thousands in a block.
+    /// A run should be small, because a block of an image has thousands of runs.
     struct Run {
         std::uint32_t count;
         std::uint8_t value;
     };
 
-    /// The two halves of Adler-32. They are reduced only now and then, long before they overflow.
+    /// The two sums of Adler-32. They are reduced at long intervals, before they can overflow.
     struct Checksum {
         std::uint64_t sum = 1;
         std::uint64_t sum_of_sums = 0;
@@ -86,7 +86,7 @@ class RunDeflater {
     void write_block(bool last);
 
     static constexpr std::uint64_t most_unreduced = 1 << 24;
-    static constexpr std::size_t most_runs = 1 << 14; ///< of a block: these stay in the cache
+    static constexpr std::size_t most_runs = 1 << 14; ///< of a block, so that its runs stay in the cache
     static constexpr std::uint64_t longest_run = std::uint64_t{1} << 31;
 
     std::vector<Run> runs_ = std::vector<Run>(most_runs);

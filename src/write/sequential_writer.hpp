@@ -22,7 +22,7 @@ class SequentialWriter : public OrderedWriter {
     SequentialWriter(const std::string& path, const LayerFileInfo& info, std::string_view header,
                      Holds holds);
 
-    /// Returns the text before the contours of a layer. Called in order.
+    /// Returns the text before the contours of a layer. Called in the order of layers.
     [[nodiscard]] virtual std::string layer_header(const PlanePosition& place) = 0;
     /// Appends the contours of a layer, part by part, and the text after them. Called from any threads.
     virtual void format(const PlaneView& plane, ByteBuffer& out) const = 0;

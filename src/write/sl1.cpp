@@ -50,7 +50,7 @@ constexpr ImagePrinter speed_sl1s{.name = "SL1S",
 
 constexpr std::uint64_t first_layers = 3;
 
-/// Sizes of the images that printers and programs show of a job.
+/// Sizes of the preview images of a job in printers and programs.
 constexpr std::array<std::pair<std::uint32_t, std::uint32_t>, 2> thumbnail_sizes{{{400, 400}, {800, 480}}};
 constexpr std::uint32_t relief_side = 640;
 
@@ -68,14 +68,15 @@ std::string number(double value) {
     return fmt::format("{:.9g}", value);
 }
 
-/// Returns the name of images and job: that of the file, in characters that every reader accepts.
+/// Returns the name of the job and its images. It is the name of the file in characters that every reader
+/// accepts.
 std::string job_name(const std::string& path) {
     std::string name = path == "-" ? "" : std::filesystem::path(path).stem().string();
     for (char& c : name) {
         const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
         c = plain || c == '-' || c == '.' ? c : '_';
     }
-    // Programs that read jobs ignore images with this word in their names.
+    // Readers ignore images whose names contain this word.
     constexpr std::string_view passed_over = "thumbnail";
     for (std::size_t at = name.find(passed_over); at != std::string::npos; at = name.find(passed_over, at))
         name.replace(at, passed_over.size(), "thumb_nail");
@@ -141,15 +142,15 @@ class Sl1Writer final : public OrderedWriter {
         }
     }
 
-    /// Counts a layer. The printer has a single layer height except for the first layer, and puts each layer
-    /// on the one before it.
+    /// Adds the figures of a layer. Throws unless the layer lies on the previous one and has its thickness:
+    /// the printer has a single layer height, except for the first layer.
     void count(const PlanePosition& offset, double area_mm2) {
         const double thickness = offset.top - offset.bottom;
         if (offset.position == 0)
             first_thickness_ = thickness;
         if (offset.position <= 1)
             thickness_ = thickness;
-        const double slack = thickness_ / 100 + same_height_mm; // heights may have been rounded before
+        const double slack = thickness_ / 100 + same_height_mm; // heights of the input may be rounded
         if (std::abs(thickness - thickness_) > slack)
             throw Error(
                 ErrorKind::usage,
@@ -235,7 +236,7 @@ class Sl1Writer final : public OrderedWriter {
     std::string job_;
     double first_thickness_ = 0;
     double thickness_ = 0; ///< of the second layer, once there is one
-    double top_ = 0;       ///< of the layer before
+    double top_ = 0;       ///< of the previous layer
     double volume_mm3_ = 0;
     double time_s_ = 0;
     std::uint64_t small_layers_ = 0;

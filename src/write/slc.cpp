@@ -29,8 +29,8 @@ class SlcWriter final : public SequentialWriter {
           bottom_(info.bottom) {}
 
   private:
-    // Returns one line with a space at its end: readers that split at spaces would otherwise attach the line
-    // end to the last number.
+    // Returns a single line that ends with a space. Otherwise readers that split the line at spaces would
+    // append the line end to the last number.
     static std::string header(const LayerFileInfo& info) {
         const Box3& box = info.box;
         const auto range = [](double low, double high) {
@@ -42,7 +42,7 @@ class SlcWriter final : public SequentialWriter {
                std::string(reserved, '\0');
     }
 
-    // Returns a table of one entry: every layer is in the file, so heights are unambiguous even if
+    // Returns a table with one entry. Since every layer is in the file, heights are unambiguous even if
     // thicknesses differ.
     static std::string sampling_table(double bottom, double thickness) {
         constexpr float line_width_compensation = 0;

@@ -1,6 +1,6 @@
-// One model part with, for each part of the file, a slice stack and an object that uses it. The stacks come
-// before the objects, since readers go through the file once. A layer is formatted and compressed in
-// `prepare` and only appended in order.
+// The package has one model. For each part of the file, it contains a slice stack and an object that uses the
+// stack. The stacks come before the objects, because readers read the model once from begin to end. A layer
+// is formatted and compressed in `prepare` and only appended in order.
 
 #include "lamella/contour/measure.hpp"
 
@@ -40,7 +40,7 @@ void put_slice(const Layer& layer, const WriterGrid& grid, ByteBuffer& out) {
     constexpr std::string_view vertex_end = "\"/>\n";
     constexpr std::size_t per_vertex =
         x_before.size() + y_before.size() + vertex_end.size() + 2 * (most_integer_digits + 6);
-    std::vector<std::size_t> ends; // of rings, counted in vertices
+    std::vector<std::size_t> ends; // index of the vertex after each ring
     std::vector<GridPoint> scratch;
     std::size_t vertices = 0;
     for (std::size_t i = 0; i < layer.rings; ++i) {
@@ -168,7 +168,7 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
     LayerFileInfo info_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
     ByteStore store_;
-    /// The stacks of all parts but the first, which wait until the first one is complete.
+    /// The stacks of all parts except the first one. They wait until the first one is complete.
     std::vector<std::vector<Later>> later_;
     std::uint64_t waiting_ = 0; ///< bytes of later_
     WrittenHeights heights_{"billionths of a millimetre", 1e-9, rounding_loss()};

@@ -1,5 +1,6 @@
-// One part of the package for each layer, then the model, which has the profiles and lists the layers. Layers
-// refer to the parts on the plate and to the profiles by identifiers derived from the header of the file.
+// The package has one part for each layer, then the model, which contains the profiles and the list of
+// layers. Layers refer to the parts on the plate and to the profiles by identifiers derived from the header
+// of the file.
 
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
@@ -38,7 +39,7 @@ std::uint64_t hash_of(std::string_view text, std::uint64_t start) {
     return hash;
 }
 
-/// Returns an identifier of version 8 (custom). Equal texts have equal identifiers.
+/// Returns a UUID of version 8 (custom). Equal texts have equal identifiers.
 std::string uuid_of(std::string_view text) {
     std::uint64_t high = hash_of(text, 0xCBF29CE484222325);
     std::uint64_t low = hash_of(text, high);
@@ -52,13 +53,14 @@ std::string attribute(std::string_view name, double value) {
     return fmt::format(" {}=\"{}\"", name, exact_decimal_text(value));
 }
 
-/// Omits speeds and lengths of 0, which are not allowed and carry no information.
+/// Returns an attribute, or "" for a speed or length of 0, which means unknown and is not allowed in the
+/// file.
 std::string positive_attribute(std::string_view name, double value) {
     return value > 0 ? attribute(name, value) : std::string();
 }
 
-/// Properties without an attribute in the extension are in attributes of our own namespace, which others
-/// ignore.
+/// Properties without an attribute in the extension have attributes in our own namespace, which other
+/// programs ignore.
 std::string profile_text(const std::string& uuid, const std::string& name, const Exposure& exposure) {
     const ParameterSet& set = exposure.parameters;
     return fmt::format(
@@ -153,7 +155,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
         return keys_.keys[part].exposure.value_or(keys_.exposures.size());
     }
 
-    /// Writes the parts and profiles of vectors on a layer, which counts them from 1.
+    /// Writes the parts and profiles that a layer uses. Their numbers, from 1, are the same on all layers.
     void put_header(const PlaneView& plane, ByteBuffer& out) const {
         std::set<std::size_t> of_parts;
         std::set<std::size_t> profiles;
@@ -194,7 +196,7 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
         out.append("</segments>\n</layer>\n");
     }
 
-    /// Writes a segment. `before` holds the texts before the numbers of each element; two numbers are a
+    /// Writes a segment. `before` has the texts that precede the numbers of each element; two numbers are a
     /// point.
     static void put_segment(std::string_view type, std::string_view refers, std::span<const GridPoint> points,
                             std::initializer_list<std::string_view> before, const Layer& layer,

@@ -1,6 +1,6 @@
 #pragma once
 
-// Heights of layers, as they are written to a file.
+// Checks of the heights of layers as they are written to a file.
 
 #include "write/rounding_loss.hpp"
 
@@ -12,17 +12,17 @@
 
 namespace lamella {
 
-/// Checks that written heights ascend: readers take layers of equal height for one layer.
+/// Checks that written heights ascend, because readers take layers of equal height for one layer.
 class WrittenHeights {
   public:
-    /// `precision` describes the numbers in the file, such as "single precision"; `unit_mm` is the size of 1;
-    /// `loss` counts heights moved by rounding and must outlive this.
+    /// `precision` describes the numbers in the file, such as "single precision"; `unit_mm` is the length
+    /// that the number 1 stands for. `loss` counts heights moved by rounding and must outlive this object.
     WrittenHeights(std::string precision, double unit_mm, RoundingLoss& loss)
         : precision_(std::move(precision)), unit_mm_(unit_mm), loss_(loss) {}
 
     [[nodiscard]] bool empty() const noexcept { return last_ == -std::numeric_limits<double>::infinity(); }
     /// Adds the next height, written for `mm`. Throws Error{usage}, naming the layer and its `end`, "top" or
-    /// "bottom", if it is not above the one before, or not finite.
+    /// "bottom", if it is not above the previous one, or not finite.
     void add(double height, double mm, std::string_view end, std::uint64_t layer);
 
   private:
