@@ -10,8 +10,8 @@
 namespace lamella {
 
 /// Runs a step without communication, and waits for all processes. If it throws on some processes, all
-/// processes throw the error of the first of these as Error, and prefer one that is not a cancellation. An
-/// exception on a single process passes unchanged.
+/// processes throw the same Error: that of the first such process, but a cancellation only if there is no
+/// other error. An exception on a single process passes unchanged.
 void in_agreement(Communicator& processes, const std::function<void()>& step);
 
 } // namespace lamella

@@ -212,7 +212,7 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
     plate_ = build_plate(job.inputs, std::move(meshes), execution, job.max_memory);
 }
 
-/// The first pass: finds the bounding boxes and the unusable triangles.
+/// The first pass. Finds the bounding boxes and the unusable triangles.
 void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution) {
     for (MeshInput& input : inputs) {
         File& file = files_.emplace_back(File{std::move(input), std::nullopt, std::nullopt, {}, 0, {}, {}});
@@ -326,7 +326,7 @@ PlaneCounts Feed::counts_of_parts(std::size_t planes) const {
     return all;
 }
 
-/// The second pass: counts the triangles and points on each plane.
+/// The second pass. Counts the triangles and points on each plane.
 void Feed::count_streams(const Plan& plan, const Execution& execution) {
     const std::size_t shapes = plate_.shapes.size();
     begin_near_faces(plan);

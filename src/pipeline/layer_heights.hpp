@@ -17,8 +17,8 @@
 namespace lamella {
 
 /// Returns the number of layers that begin within the height of another layer. An overlap by which the format
-/// may have moved heights does not count, nor do layers of equal bottom and top. The layers may be in any
-/// order. Describes the overlaps in `findings`.
+/// may have moved heights does not count, nor does a pair of layers with the same bottom and top. The layers
+/// may be in any order. Describes the overlaps in `findings`.
 [[nodiscard]] std::uint64_t overlapping_heights(std::span<const Layer> layers, const Rounding& rounding,
                                                 std::vector<std::string>& findings);
 

@@ -35,14 +35,14 @@ class LayerProcessor {
     /// Works as PlateSink.
     [[nodiscard]] std::function<void()> operator()(std::span<const Layer> parts);
 
-    /// Seconds of layer steps and of scan vectors, summed over all threads.
+    /// Seconds of layer steps and of scan vectors, each summed over all threads.
     [[nodiscard]] double step_seconds() const noexcept {
         return 1e-9 * static_cast<double>(step_nanoseconds_);
     }
     [[nodiscard]] double scan_seconds() const noexcept {
         return 1e-9 * static_cast<double>(scan_nanoseconds_);
     }
-    /// Seconds of the part of writing that is done in order.
+    /// Returns the seconds of the ordered part of writing.
     [[nodiscard]] double write_seconds() const noexcept { return write_seconds_; }
 
   private:

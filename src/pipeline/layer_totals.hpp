@@ -33,8 +33,8 @@ class LayerTotals {
 
     /// Adds the layers of all parts on one plane, as they are written, with the closed gaps and the changes
     /// by layer steps. `inverted` has the inverted rings of each body, if they are already known. `bodies`
-    /// are the parts and the negative volumes before the subtraction; doubts about the mesh are looked for in
-    /// `bodies` instead of the parts. May be called from any thread, once for each plane.
+    /// are the parts and the negative volumes before the subtraction; they, not `parts`, are examined for
+    /// doubts about the mesh. May be called from any thread, once for each plane.
     void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes,
              std::span<const InvertedRings> inverted = {}, std::span<const Layer> bodies = {});
     /// Adds the figures of the scan vectors of a plane, and the material without vectors. May be called from

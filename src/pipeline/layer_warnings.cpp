@@ -158,7 +158,7 @@ std::vector<std::string> MeshDoubts::texts() const {
     if (open_gaps.count > 0)
         texts.push_back(fmt::format("{} {}: {}", counted(open_gaps.count, "open chain"),
                                     where(open, layers, open_parts), open_gaps_text(open_gaps.longest_mm)));
-    // If a mesh has holes, a closed contour may be that of a cavity whose surrounding contour is open.
+    // If a mesh has holes, a closed contour may belong to a cavity whose surrounding contour is open.
     if (inverted.rings > 0)
         texts.push_back(inverted_text(inverted, layers, inverted_parts) +
                         (open_gaps.count > 0

@@ -6,9 +6,9 @@
 
 namespace lamella {
 
-/// Returns an upper bound of the length of the edges of the area that lines fill. The lines have two points
-/// each, a few directions, and a distance of `distance_mm`; they may be in any order. Boundaries between
-/// directions count as edges, too, such as those of the squares of a chessboard. O(n log n).
+/// Returns an upper bound of the length of the edges of the area that lines fill. A line has two points;
+/// lines have few directions, are `distance_mm` apart, and may be in any order. Boundaries between directions
+/// count as edges, too, such as those of the squares of a chessboard. O(n log n).
 [[nodiscard]] double length_around(std::span<const Point2> lines, double distance_mm);
 
 } // namespace lamella

@@ -153,7 +153,7 @@ std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const Lay
 
 /// Throws if the existing file `output` appears to be an input. The first argument names the output. If a
 /// user forgets it, the first input is taken for the output; the layers of that file adjoin those of the
-/// inputs. Layers of an earlier result do not.
+/// inputs. The layers of an earlier result do not adjoin them.
 void check_output(const std::string& output, std::span<const ShardFile> shards,
                   const LayerReadOptions& reading, const Execution& execution) {
     std::error_code error;

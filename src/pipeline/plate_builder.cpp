@@ -60,7 +60,8 @@ void check_range(const Box3& box, const std::string& path) {
         farthest = std::max({farthest, std::abs(from), std::abs(to)});
         extent = std::max(extent, to - from);
     }
-    // At this distance the spacing of doubles exceeds the detail of the shape, which would collapse.
+    // At this distance from the origin, the spacing of doubles exceeds the detail of the shape, and triangles
+    // would collapse.
     constexpr double coarsest = 1e-6;
     if (const double step = farthest * std::numeric_limits<double>::epsilon();
         extent > 0 && step > coarsest * extent)

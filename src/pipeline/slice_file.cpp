@@ -177,7 +177,7 @@ void gather(Communicator& processes, FileResult::Seconds& seconds, SliceReport& 
     }
 }
 
-/// Throws Error{usage} for a job that cannot be done, before a large file is read.
+/// Throws Error{usage} for an impossible job, before any large file is read.
 void check_job(const FileJob& job, Communicator& processes) {
     check_inputs(job.inputs);
     if (processes.size() > 1 && job.shard)
@@ -270,7 +270,7 @@ void refuse_defects(const FileJob& job, const FileResult& result) {
             refuse(result.files[file].path, result.unreached_by_file[file].text());
 }
 
-/// Slices a job. `feed_of` opens the triangles; it is called once the job has been checked.
+/// Slices a job. `feed_of` opens the files; it is called after the job has been checked.
 FileResult slice_job(const FileJob& job, Communicator& processes, const Execution& execution,
                      const std::function<Feed(const Engine& engine)>& feed_of) {
     const Stopwatch total;

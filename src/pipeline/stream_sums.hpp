@@ -1,6 +1,6 @@
 #pragma once
 
-// Sums over the triangles of a file that is streamed.
+// Sums over the triangles of a streamed file.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/transform.hpp"

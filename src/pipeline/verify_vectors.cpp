@@ -221,8 +221,8 @@ struct HatchLine {
     [[nodiscard]] double length() const noexcept { return ends == nullptr ? 0 : distance(ends[0], ends[1]); }
 };
 
-/// Returns the longest line for each plane and rule with lines. Looks at the lowest planes until there are
-/// enough lines.
+/// Returns the longest line for each plane and rule with lines. Begins with the lowest plane and stops when
+/// there are enough lines.
 std::vector<HatchLine> longest_lines(const std::vector<Group>& groups, const ScanStrategy& strategy,
                                      std::size_t planes) {
     constexpr std::size_t enough = 32;
@@ -344,7 +344,7 @@ class VectorCheck {
     }
 
   private:
-    /// As in `scan`, overlapping bodies are united even if the depth is 0.
+    /// Overlapping bodies are united even if the depth is 0, as in `scan`.
     static Layer moved_inwards(const Layer& section, double depth, const OffsetCorners& corners = {}) {
         return depth == 0 ? fill(section, FillRule::positive).layer : offset(section, -depth, corners);
     }
