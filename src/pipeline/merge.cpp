@@ -135,8 +135,8 @@ void check_neighbours(const ShardFile& below, const ShardFile& above) {
                            below.top, above.bottom));
 }
 
-/// Returns the files in ascending order. Throws if neighbours differ in format, units, rule or parts, or if
-/// their heights do not adjoin.
+/// Returns the files in ascending order. Throws if neighbours differ in format, units, rule or parts (see
+/// `may_lack_parts`), or if their heights do not adjoin.
 std::vector<ShardFile> look_at_all(std::span<const std::string> paths, const LayerReadOptions& reading,
                                    const Execution& execution) {
     if (paths.empty())
