@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cassert>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -89,6 +90,7 @@ void join_partition(std::span<const Record<Key>> records, std::vector<std::uint3
             }
             const Record<Key>& first = records[entry - 1];
             if (first.key == records[i].key) {
+                assert(first.id < records[i].id);
                 found(first.id, records[i].id, worker);
                 break;
             }
@@ -126,6 +128,7 @@ class KeyPartitions {
 
     /// Must be called before the first `put`, for at most `blocks` chunks of at most `size` keys.
     void reserve(std::uint64_t blocks, std::uint32_t size) {
+        assert(size <= block_size());
         size_ = size;
         records_ = PageArray<Record>(blocks * size);
         counts_ = PageArray<std::uint32_t>(blocks, Fill::zero);
@@ -146,6 +149,8 @@ class KeyPartitions {
             begins[q] = sum;
             sum = static_cast<std::uint16_t>(sum + std::exchange(next[q], sum));
         }
+        assert(block < counts_.size() && count <= size_ && sum == count);
+        assert(counts_[block] == 0); // each chunk is stored once
         Record* const records = records_.data() + block * size_;
         for (std::uint32_t i = 0; i < count; ++i)
             records[next[partition(hash(i))]++] = record(i);

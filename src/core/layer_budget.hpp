@@ -5,6 +5,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/core/layer_limits.hpp"
 
+#include <cassert>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -28,6 +29,7 @@ class LayerBudget {
 
     /// Returns the number of items of `bytes_each` bytes that fit into the budget.
     [[nodiscard]] std::uint64_t room(std::uint64_t bytes_each) const noexcept {
+        assert(bytes_each > 0);
         return limits_.memory == 0 ? std::numeric_limits<std::uint64_t>::max() : limits_.memory / bytes_each;
     }
     /// Throws Error{limit} if the items do not fit. Must be called before memory is allocated. `items` is

@@ -3,6 +3,7 @@
 // Large uninitialised arrays. Fresh memory in 4 KB pages costs more than all the arithmetic of slicing, so
 // large arrays request pages of 2 MB, and only the pages that are touched are allocated.
 
+#include <cassert>
 #include <cstddef>
 #include <span>
 #include <type_traits>
@@ -52,7 +53,10 @@ class PageArray {
 
     [[nodiscard]] T* data() const noexcept { return static_cast<T*>(pages_.data()); }
     [[nodiscard]] std::size_t size() const noexcept { return size_; }
-    T& operator[](std::size_t i) const noexcept { return data()[i]; }
+    T& operator[](std::size_t i) const noexcept {
+        assert(i < size_);
+        return data()[i];
+    }
     [[nodiscard]] std::span<T> span() const noexcept { return {data(), size_}; }
 
   private:

@@ -6,6 +6,7 @@
 #include "mesh/used_vertices.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -38,6 +39,8 @@ DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& exec
         else if (result.locations.size() < repair_locations)
             result.locations.push_back(middle(corners(mesh, i)));
     }
+    assert(result.mesh.triangles.size() + result.repeated_triangles + result.opposite_triangles ==
+           mesh.triangles.size());
     if (result.mesh.triangles.size() < mesh.triangles.size())
         drop_unused_vertices(result.mesh, executor);
     return result;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <iterator>
 #include <span>
 #include <utility>
@@ -99,6 +100,11 @@ EdgeSurvey survey_edges(Executor& executor, const IndexedMesh& mesh, bool with_l
     gather(&EdgeLocations::nonmanifold);
     gather(&EdgeLocations::conflicts);
     gather(&EdgeLocations::duplicates);
+    assert(!with_locations || (survey.locations.boundary.size() == survey.counts.boundary_edges &&
+                               survey.locations.nonmanifold.size() == survey.counts.nonmanifold_edges &&
+                               survey.locations.conflicts.size() == survey.counts.orientation_conflicts &&
+                               survey.locations.duplicates.size() == survey.counts.duplicate_triangles));
+    assert(2 * survey.opposite_pairs <= n);
     return survey;
 }
 

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -98,11 +99,13 @@ void for_each_edge(Executor& executor, const IndexedMesh& mesh, const Visit& vis
         }
     }
     begin[partitions] = sum;
+    assert(sum <= 3 * mesh.triangles.size());
     const PageArray<EdgeUse> scattered(sum);
     executor.for_chunks(ranges, 1, [&](std::size_t r, std::size_t, unsigned) {
         for_each_side(
             r, [&](std::size_t partition, const EdgeUse& use) { scattered[next[r][partition]++] = use; });
     });
+    assert(std::equal(next.back().begin(), next.back().end(), begin.begin() + 1)); // each partition is full
 
     struct Workspace {
         std::vector<std::size_t> begin;
@@ -117,6 +120,7 @@ void for_each_edge(Executor& executor, const IndexedMesh& mesh, const Visit& vis
             ++work.begin[use.low_in_partition() + 1];
         for (std::size_t v = 1; v < work.begin.size(); ++v)
             work.begin[v] += work.begin[v - 1];
+        assert(work.begin.back() == uses.size());
         work.sorted.resize(uses.size());
         for (const EdgeUse& use : uses)
             // Afterwards begin[v] is the end of the sides of v.

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <cstdint>
 #include <utility>
 
@@ -62,11 +63,14 @@ void drop_unused_vertices(IndexedMesh& mesh, Executor& executor) {
             number[v] = kept;
             mesh.vertices[kept++] = mesh.vertices[v];
         }
+    assert(kept < mesh.vertices.size());
     mesh.vertices.resize(kept);
     executor.for_chunks(mesh.triangles.size(), chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i)
-            for (std::uint32_t& v : mesh.triangles[i])
+            for (std::uint32_t& v : mesh.triangles[i]) {
                 v = number[v];
+                assert(v < kept);
+            }
     });
 }
 

@@ -3,6 +3,7 @@
 #include "core/orientation.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -99,6 +100,7 @@ PolygonTriangulator::triangulate(std::span<const Point3> corners) {
         make_fan(0, corners_.size());
     else
         cut_ears();
+    assert(triangles_.size() == corners.size() - 2);
     return triangles_;
 }
 

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <span>
 #include <utility>
 
@@ -32,11 +33,14 @@ Shells find_shells(Executor& executor, const IndexedMesh& mesh, const EdgeSurvey
             shells.first.push_back(static_cast<std::uint32_t>(i));
             shells.closed.push_back(true);
         } else {
+            assert(shell < i);
             shell = shells.of_triangle[shell];
         }
         if (survey.open[i] != 0)
             shells.closed[shell] = false;
     }
+    assert(shells.closed.size() == shells.first.size());
+    assert(std::is_sorted(shells.first.begin(), shells.first.end()));
     return shells;
 }
 
@@ -48,6 +52,7 @@ void ShellContent::add(const ShellContent& other) noexcept {
 
 std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
                                          std::span<const Point3> origins) {
+    assert(origins.size() == shells.size() && shells.of_triangle.size() == mesh.triangles.size());
     const auto six_volumes_by_normal = [&](const Triangle3& t, const Point3& origin) {
         const Point3 n = normal(t);
         return (t[0].x - origin.x) * n.x + (t[0].y - origin.y) * n.y + (t[0].z - origin.z) * n.z;
@@ -107,6 +112,7 @@ std::vector<ShellContent> shell_contents(Executor& executor, const IndexedMesh& 
 }
 
 std::vector<Box3> shell_boxes(const IndexedMesh& mesh, const Shells& shells) {
+    assert(shells.of_triangle.size() == mesh.triangles.size());
     std::vector<Box3> boxes(shells.size());
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
         if (const std::uint32_t shell = shells.of_triangle[i]; shell != no_shell)
@@ -118,6 +124,7 @@ std::vector<Box3> shell_boxes(const IndexedMesh& mesh, const Shells& shells) {
 void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shells& shells,
                         const std::vector<Box3>& boxes, const std::vector<bool>& asked,
                         const std::function<void(const Enclosure&)>& visit) {
+    assert(boxes.size() == shells.size() && asked.size() == shells.size());
     std::vector<double> largest(shells.size(), -1);
     // The largest triangle of each shell; of equal ones, the lexicographically smallest.
     std::vector<Triangle3> first(shells.size());
@@ -136,6 +143,7 @@ void for_each_enclosure(Executor& executor, const IndexedMesh& mesh, const Shell
     std::vector<std::uint32_t> shell_of_point;
     for (std::uint32_t s = 0; s < shells.size(); ++s)
         if (asked[s]) {
+            assert(largest[s] >= 0); // each shell has a triangle
             points.push_back(middle(first[s]));
             shell_of_point.push_back(s);
         }

@@ -6,6 +6,7 @@
 #include "core/pages.hpp"
 
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -48,6 +49,7 @@ class UnionFind {
 
   private:
     [[nodiscard]] std::uint32_t above(std::uint32_t i) const noexcept {
+        assert(i < up_.size());
         return i - up_[i].load(std::memory_order_relaxed);
     }
 

@@ -23,6 +23,7 @@
 #include <array>
 #include <atomic>
 #include <bit>
+#include <cassert>
 #include <compare>
 #include <optional>
 #include <type_traits>
@@ -111,6 +112,7 @@ void gather(const TriangleSoup& soup, Range<Key>& range, std::vector<std::array<
         }
         progress.add(to - from);
     }
+    assert(locals <= range.keys.size());
     range.locals = locals;
 }
 
@@ -179,6 +181,7 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
 
     const PageArray<std::uint32_t> number(locals);
     const std::uint32_t kinds = number_firsts(executor, first.span(), number.span());
+    assert(kinds <= locals);
     mesh.vertices.reserve(kinds);
     make_pages_ready(executor, mesh.vertices.data(), kinds * sizeof(Point3));
     // Resizing a vector keeps one thread busy. It is the first chunk, in parallel with the chunks of
@@ -193,6 +196,7 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
             while (i >= ranges[r].end)
                 ++r;
             for (std::uint32_t& corner : mesh.triangles[i]) {
+                assert(corner < ranges[r].locals);
                 const std::size_t local = ranges[r].first_local + corner;
                 corner = number[first[local] != 0 ? first[local] - 1 : local];
             }

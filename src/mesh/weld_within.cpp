@@ -20,6 +20,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -170,6 +171,7 @@ ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm, const Ex
         point_of_vertex[v] = static_cast<std::uint32_t>(points.size() - 1);
     }
 
+    assert(points.size() <= mesh.vertices.size());
     const UnionFind groups(points.size());
     std::vector<Box3> boxes(points.size()); // of each group, stored at its lowest member
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -195,6 +197,7 @@ ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm, const Ex
         if (to == i)
             continue;
         result.longest_move_mm = std::max(result.longest_move_mm, distance(points[i], points[to]));
+        assert(to < i && square_of_gap(points[i], points[to]) <= tolerance_mm * tolerance_mm);
         positions.push_back(to);
     }
     std::sort(positions.begin(), positions.end());
@@ -223,6 +226,7 @@ ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm, const Ex
         else
             result.mesh.triangles.push_back(welded);
     }
+    assert(result.mesh.triangles.size() + result.collapsed_triangles == mesh.triangles.size());
     return result;
 }
 

@@ -5,6 +5,7 @@
 #include "mesh/measures.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -66,6 +67,8 @@ class PointGrid {
         members_.resize(points.size());
         for (std::size_t i = 0; i < points.size(); ++i)
             members_[next[cells[i]]++] = i;
+        assert(begin_.back() == points.size());
+        assert(std::equal(next.begin(), next.end() - 1, begin_.begin() + 1)); // each cell is full
     }
 
     /// Calls visit(point) for all points in cells that the triangle's box covers.

@@ -1,6 +1,7 @@
 #include "raster/bands.hpp"
 
 #include <bit>
+#include <cassert>
 
 namespace lamella {
 
@@ -30,6 +31,8 @@ Bands::Bands(std::span<const Layer> parts, const PixelGrid& grid)
     std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
     for (const PixelSpan& span : found)
         spans_[next[span.band]++] = span;
+    assert(starts_.back() == spans_.size());
+    assert(std::equal(next.begin(), next.end(), starts_.begin() + 1)); // each band is full
 }
 
 void Bands::cut(std::span<const Point2> ring, std::vector<std::int32_t>& band_of,

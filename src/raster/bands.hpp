@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -30,6 +31,7 @@ class Bands {
     /// the next.
     template <class Line>
     void for_each_line(std::uint32_t band, const Line& line) const {
+        assert(band + 1 < starts_.size());
         std::array<Point2, 256> positions;
         for (std::size_t i = starts_[band]; i < starts_[band + 1]; ++i) {
             const PixelSpan& span = spans_[i];

@@ -1,10 +1,13 @@
 #include "raster/centres.hpp"
 
+#include <cassert>
 #include <utility>
 
 namespace lamella {
 
 void CentreRows::cover(std::uint32_t from, std::uint32_t to) {
+    assert(from <= to && to <= width_);
+    assert(runs_.empty() || runs_.back().end <= from);
     if (from == to)
         return;
     covered_ += to - from;
@@ -44,6 +47,7 @@ DrawnRow CentreRows::draw(std::uint32_t row) {
     }
     if (runs_.empty() || runs_.back().end < width_)
         runs_.push_back({width_, 0});
+    assert(runs_.back().end == width_ && covered_ <= width_ && times >= 1);
     return {runs_, static_cast<double>(covered_), times};
 }
 

@@ -1,6 +1,7 @@
 #include "raster/coverage_band.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace lamella {
@@ -130,6 +131,8 @@ std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
     own_.clear(row);
     covered_ = covered + clamped * (width - since);
     *next++ = {width, value};
+    assert(next <= runs_.data() + runs_.size());
+    assert(covered_ >= 0 && covered_ <= width * (1 + 1e-9));
     return {runs_.data(), next};
 }
 

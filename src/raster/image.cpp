@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -43,6 +44,8 @@ double draw(Rows rows, std::uint32_t height, const RowSink& sink) {
     std::uint32_t times = 0;
     for (std::uint32_t row = 0; row < height;) {
         const DrawnRow drawn = rows.draw(row);
+        assert(drawn.times >= 1 && drawn.times <= height - row);
+        assert(!drawn.runs.empty());
         covered += drawn.covered * drawn.times;
         if (times > 0 && !std::equal(same.begin(), same.end(), drawn.runs.begin(), drawn.runs.end())) {
             sink(same, times);
@@ -80,10 +83,12 @@ GreyImage paint(std::span<const Layer> parts, const PixelGrid& grid, const Raste
             std::memset(out + from, run.value, run.end - from);
             from = run.end;
         }
+        assert(from == grid.width);
         for (std::uint32_t i = 1; i < times; ++i)
             std::memcpy(out + std::size_t{i} * grid.width, out, grid.width);
         out += std::size_t{times} * grid.width;
     });
+    assert(out == image.values.data() + image.values.size());
     return image;
 }
 

@@ -8,6 +8,7 @@
 #include "raster/edges.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -109,6 +110,7 @@ class RowSweep {
 
         for (std::size_t i = 1; i < next.size(); ++i)
             next[i] += next[i - 1];
+        assert(next.back() == used && used <= points);
         edges_ = PageArray<ImageEdge>(used);
         rows_ = PageArray<RowRange>(used);
         for (const RingEdge& edge : met.span().first(used)) {
@@ -116,6 +118,8 @@ class RowSweep {
             edges_[position] = ImageEdge(edge.from, edge.to);
             rows_[position] = edge.rows;
         }
+        assert(std::is_sorted(rows_.span().begin(), rows_.span().end(),
+                              [](const RowRange& a, const RowRange& b) { return a.first < b.first; }));
     }
 
     /// Calls found(edge) for the edges of a ring that intersect a row. Omits edges to the right of the image,

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -57,6 +58,7 @@ class Placer {
             filled_.push_back(filled(node.uses));
         for (const AssemblyUse* root : filled(roots))
             put(*root, {}, "", MeshRole::part, bodies_++);
+        assert(instances_.size() == all.instances);
         return std::move(instances_);
     }
 
@@ -86,10 +88,14 @@ class Placer {
             fail(node.location, fmt::format("is nested deeper than {}", deepest));
         known.state = State::open;
         Total result;
-        for (const AssemblyMesh& mesh : node.meshes)
+        for (const AssemblyMesh& mesh : node.meshes) {
+            assert(mesh.object < objects_.size());
             result.add({State::known, 1, objects_[mesh.object].mesh.size()});
-        for (const AssemblyUse& use : node.uses)
+        }
+        for (const AssemblyUse& use : node.uses) {
+            assert(use.node < nodes_.size());
             result.add(total(use.node, depth + 1));
+        }
         result.state = State::known;
         known = result;
         return known;

@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <utility>
 
@@ -76,6 +77,7 @@ IndexedMesh part_of(const IndexedMesh& mesh, std::span<const VolumeRange> ranges
                 }
                 part.triangles.push_back(corners);
             }
+    assert(part.triangles.size() == triangles && vertices <= mesh.vertices.size());
     limits.add_bytes(vertices * sizeof(Point3));
     part.vertices.resize(vertices);
     for (std::size_t v = 0; v < numbers.size(); ++v)
@@ -118,6 +120,7 @@ std::vector<RoleMesh> divided_by_role(IndexedMesh mesh, std::span<const VolumeRa
         add(std::clamp(volume.end, done, all), volume.role, volume.name);
     }
     add(all, MeshRole::part, {});
+    assert(done == all);
 
     std::vector<RoleMesh> meshes;
     for (const MeshRole role : {MeshRole::part, MeshRole::support, MeshRole::negative}) {

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cassert>
 #include <utility>
 
 namespace lamella {
@@ -75,6 +76,8 @@ void cut_polygons(FaceMesh& faces, Executor& executor) {
             std::vector<std::uint32_t>& corners = indices[worker];
             std::vector<Point3>& locations = points[worker];
             for (std::uint64_t i = begin; i < end; ++i) {
+                assert(faces.polygons[i].first_triangle + faces.polygons[i].triangles <=
+                       faces.mesh.triangles.size());
                 Corners* const fan = faces.mesh.triangles.data() + faces.polygons[i].first_triangle;
                 const std::uint32_t count = faces.polygons[i].triangles;
                 corners.assign({fan[0][0], fan[0][1]});
@@ -86,6 +89,7 @@ void cut_polygons(FaceMesh& faces, Executor& executor) {
                 if (!std::all_of(locations.begin(), locations.end(), finite))
                     continue;
                 const auto triangles = triangulators[worker].triangulate(locations);
+                assert(triangles.size() == count);
                 for (std::uint32_t k = 0; k < count; ++k)
                     for (std::size_t c = 0; c < 3; ++c)
                         fan[k][c] = corners[triangles[k][c]];
@@ -127,6 +131,7 @@ FaceMesh join(std::vector<FaceChunk>& chunks, const std::string& source_name, Ex
         FaceChunk& chunk = chunks[i];
         const Begin& begin = begins[i];
         for (const std::uint64_t corner : chunk.relative) {
+            assert(corner / 3 < chunk.triangles.size());
             // An index of a vertex before this chunk has wrapped around. The addition wraps it back.
             chunk.triangles[corner / 3][corner % 3] += static_cast<std::uint32_t>(begin.vertex);
         }
@@ -222,6 +227,7 @@ MeshFile make_mesh_file(FaceMesh faces, const std::string& source_name, unsigned
             report_nonfinite(remarks, where, file.nonfinite_triangles, file.stored_triangles);
         }
     }
+    assert(mesh.triangles.size() + file.nonfinite_triangles == file.stored_triangles);
     // Unused vertices can be far away and must not enlarge the bounding box of the part.
     drop_unused_vertices(mesh, executor);
     file.objects.push_back({{}, Mesh(std::move(mesh))});
@@ -251,6 +257,7 @@ MeshFile make_mesh_file(const ByteSource& source, const ChunkParser<FaceChunk>& 
     const auto location = [&](std::uint64_t triangle) {
         const auto i =
             static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), triangle) - ends.begin());
+        assert(i < chunks.size());
         const std::uint64_t before = i == 0 ? 0 : ends[i - 1];
         return fmt::format("line {}", parser.line_of_triangle(chunks[i], triangle - before));
     };

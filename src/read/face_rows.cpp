@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <optional>
@@ -298,6 +299,8 @@ class RowsReader {
             chunk.fault = std::move(fault);
         }
         chunk.end = static_cast<std::size_t>(at - begin);
+        assert(chunk.begin <= chunk.end && chunk.end <= text_.size());
+        assert(chunk.before <= chunk.after && (chunk.after <= rows || chunk.after == chunk.before));
     }
 
     /// Reports lines after the last row: the counts in the file are wrong, and these lines are lost. `begin`

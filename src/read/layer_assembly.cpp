@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <tuple>
 
 namespace lamella {
@@ -151,8 +152,11 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
     const std::uint64_t copies =
         (2 * raw.points.size() + raw.hatches.size()) * sizeof(Point2) + raw.ends.size() * of_contour;
     limits.add_bytes_at(copies, location);
+    assert(raw.ends.empty() || raw.ends.back().end <= raw.points.size());
+    assert(raw.hatch_ends.empty() || raw.hatch_ends.back().end <= raw.hatches.size());
     std::vector<PartOfLayer> parts(file.parts.size());
     for_pieces(raw.ends, [&](std::size_t begin, const RawLayer::Contour& contour) {
+        assert(contour.part < parts.size() && begin <= contour.end);
         PartOfLayer& part = parts[contour.part];
         part.points += contour.end - begin;
         part.contours += 1;
@@ -185,6 +189,7 @@ void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, do
     let_go(raw.hatch_ends);
     for (std::size_t i = 0; i < parts.size(); ++i) {
         Layer& layer = parts[i].layer;
+        assert(layer.offsets.back() == points[i].size() && layer.rings <= layer.contours());
         layer.index = index;
         layer.z = z;
         layer.bottom = bottom;

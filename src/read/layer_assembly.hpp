@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -170,8 +171,10 @@ class PartNumbers {
             file.parts.push_back(part_of(key));
         }
         for (RawLayer& layer : layers) {
-            for (RawLayer::Contour& contour : layer.ends)
+            for (RawLayer::Contour& contour : layer.ends) {
+                assert(contour.part < locations.size());
                 contour.part = locations[contour.part];
+            }
             for (RawLayer::Hatches& hatches : layer.hatch_ends)
                 hatches.part = locations[hatches.part];
         }
@@ -235,6 +238,7 @@ void sort_by_height(std::vector<T>& layers, std::vector<std::string>& warnings, 
             layers[kept] = std::move(layers[i]);
         }
     }
+    assert(layers.empty() || kept + joined + 1 == layers.size());
     if (joined != 0) {
         layers.resize(kept + 1);
         warnings.push_back(counted(joined, "layer has the height of the one before; it was joined with that",

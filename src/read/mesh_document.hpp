@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -69,6 +70,7 @@ class MeshDocumentReader {
             where_.push_back(start(name, attributes));
         };
         handlers.end = [this](XmlName) {
+            assert(where_.size() > 1);
             const Where ended = in();
             where_.pop_back();
             end(ended);
@@ -84,6 +86,7 @@ class MeshDocumentReader {
 
     /// Returns the document, which remains counted in the limits.
     [[nodiscard]] Document take() {
+        assert(where_.size() == 1); // no element is open
         count_open();
         triangles_ = bytes_ = 0;
         return std::move(document_);

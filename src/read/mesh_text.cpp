@@ -6,6 +6,7 @@
 #include "read/text_chunks.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 
 namespace lamella {
@@ -65,6 +66,7 @@ class Elements {
             ElementRun& chunk = chunks_[i];
             if (!wanted[chunk.mesh])
                 return;
+            assert(chunk.first + chunk.count <= items_of(chunk.mesh).size());
             const std::span<Item> items = items_of(chunk.mesh).subspan(chunk.first, chunk.count);
             chunk.plain = kind_.read(chunk.text, texts_[chunk.mesh], items) && done(chunk.mesh, items);
         });
@@ -107,6 +109,7 @@ void give_back(const IndexedMesh& mesh, ReadLimits& limits) {
 
 std::size_t take_run(std::string_view document, std::size_t location, std::string_view end_tag,
                      std::vector<std::string_view>& runs) {
+    assert(location <= document.size());
     const std::size_t end = document.find(end_tag, location);
     if (end == std::string_view::npos)
         return 0;
@@ -165,6 +168,7 @@ std::vector<std::optional<IndexedMesh>> read_mesh_texts(std::span<const MeshText
             give_back(*meshes[i], limits);
             meshes[i].reset();
         }
+        assert(plain[i] == meshes[i].has_value());
     }
     return meshes;
 }

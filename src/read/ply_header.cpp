@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <charconv>
 #include <string_view>
 
@@ -79,6 +80,7 @@ class HeaderReader {
             words_.clear();
             fail("a line 'format' before this one");
         }
+        assert(at_ <= text_.size());
         header_.end = at_;
         return std::move(header_);
     }

@@ -8,6 +8,7 @@
 #include "system/byte_source.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -206,6 +207,7 @@ class ChunkParser {
             }
             at_ = chunks.back().end;
             before_ = chunks.back().after;
+            assert(chunks.back().begin <= at_ && at_ <= text_.size());
             done_ = at_ >= text_.size() || chunks.back().fault;
         } while (at_ < limit && !done_);
         // Released in one call, because parsing a chunk may read pages of the one before.

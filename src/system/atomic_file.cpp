@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cassert>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -279,6 +280,7 @@ void AtomicFile::append(std::string_view bytes) {
     }
     std::memcpy(buffer_.get() + buffered_, bytes.data(), bytes.size());
     buffered_ += bytes.size();
+    assert(buffered_ < buffer_size + 1);
 }
 
 void AtomicFile::flush() {

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cassert>
 #include <cerrno>
 #include <cstddef>
 #include <utility>
@@ -23,6 +24,7 @@ FileChunk::~FileChunk() {
 }
 
 void FileChunk::append(std::string_view bytes) {
+    assert(descriptor_ >= 0);
     while (!bytes.empty()) {
         const ssize_t written =
             ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset_));
@@ -31,12 +33,14 @@ void FileChunk::append(std::string_view bytes) {
                 throw output_error(name_, errno);
             continue;
         }
+        assert(static_cast<std::size_t>(written) <= bytes.size());
         bytes.remove_prefix(static_cast<std::size_t>(written));
         offset_ += static_cast<std::uint64_t>(written);
     }
 }
 
 void FileChunk::finish() {
+    assert(descriptor_ >= 0);
     // On network file systems, errors for the last bytes are reported only now.
     if (::fsync(descriptor_) != 0 && errno != EINVAL)
         throw output_error(name_, errno);

@@ -2,6 +2,7 @@
 
 #include <sys/mman.h>
 
+#include <cassert>
 #include <new>
 
 namespace lamella {
@@ -20,10 +21,12 @@ GrowingMemory::~GrowingMemory() {
 std::span<std::byte> GrowingMemory::room() {
     if (size_ == capacity_)
         resize(2 * capacity_);
+    assert(size_ < capacity_);
     return {data_ + size_, capacity_ - size_};
 }
 
 void GrowingMemory::trim() {
+    assert(size_ > 0 && size_ <= capacity_);
     resize(size_);
 }
 

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cassert>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
@@ -85,6 +86,7 @@ UnfinishedName::Creation::~Creation() {
 }
 
 bool UnfinishedName::announce(const std::string& path) {
+    assert(slot_ == nullptr);
     auto copy = std::make_unique<char[]>(path.size() + 1);
     std::memcpy(copy.get(), path.c_str(), path.size() + 1);
     Slot* slot = slots;

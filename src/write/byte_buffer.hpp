@@ -6,6 +6,7 @@
 #include "core/pages.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstring>
 #include <memory>
@@ -43,9 +44,13 @@ class ByteBuffer {
     [[nodiscard]] char* room(std::size_t size) {
         if (bytes_.size() - size_ < size)
             grow(size);
+        assert(bytes_.size() - size_ >= size);
         return bytes_.data() + size_;
     }
-    void end_at(const char* end) noexcept { size_ = static_cast<std::size_t>(end - bytes_.data()); }
+    void end_at(const char* end) noexcept {
+        size_ = static_cast<std::size_t>(end - bytes_.data());
+        assert(size_ <= bytes_.size());
+    }
 
     void append(std::string_view text) {
         if (text.empty())

@@ -56,6 +56,7 @@ ExposureKeys::ExposureKeys(std::span<const PartInfo> all) {
         key.part = same[number];
     }
     assert(keys.size() == all.size());
+    assert(parts.size() <= all.size() && exposures.size() <= all.size());
 }
 
 } // namespace lamella

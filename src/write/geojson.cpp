@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <string_view>
 #include <vector>
 
@@ -19,6 +20,7 @@ namespace {
 
 // Writes "[[1,2],[3.5,4],[1,2]]"; a ring repeats its first point at the end.
 void put_positions(std::span<const GridPoint> points, bool closed, ByteBuffer& out) {
+    assert(!points.empty());
     constexpr std::size_t per_point = 2 * (most_integer_digits + 6) + 4;
     char* at = out.room((points.size() + 1) * per_point + 2);
     const auto put = [&](const GridPoint& p) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 
@@ -106,6 +107,7 @@ std::span<const GridPoint> WriterGrid::snap(std::span<const Point2> contour, boo
     if (lost)
         return {};
     const std::span<GridPoint> kept(points, end);
+    assert(kept.size() <= contour.size() && (!closed || kept.front() != kept.back()));
     if (closed && area * grid_area(kept) < 0)
         std::reverse(kept.begin(), kept.end());
     return kept;

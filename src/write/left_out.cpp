@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -49,6 +50,7 @@ LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts) : holds_(holds) {
             first_written_ = std::move(written);
         }
     }
+    assert(known_ + unknown_ == parts.size());
 }
 
 void WriteLosses::Kind::add(const Kind& above) noexcept {

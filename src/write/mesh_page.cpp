@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -151,6 +152,8 @@ void write_mesh_page(const std::string& path, const IndexedMesh& mesh, const Dia
     const CoarseMesh small =
         coarse(mesh, cells, find_shells(executor, mesh, survey_edges(executor, mesh, false)));
     executor.check_cancelled();
+    assert(small.triangles.size() <= page_triangles && small.shell.size() == small.triangles.size());
+    assert(small.vertices.size() <= mesh.vertices.size());
 
     AtomicFile file(path);
     file.append(frame.header);

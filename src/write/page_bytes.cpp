@@ -3,6 +3,7 @@
 #include "lamella/contour/measure.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -71,6 +72,7 @@ PageGrid page_grid(const Box3& box) {
 
 NumberBytes layer_numbers(const PlaneView& plane, std::span<const PartInfo> parts,
                           std::span<const Point2> places, const PageGrid& grid, std::uint64_t& shown) {
+    assert(parts.size() == plane.layers.size());
     const WriterGrid snapping(grid.step_mm);
     NumberBytes out;
     shown = 0;

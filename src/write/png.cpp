@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -75,6 +76,7 @@ bool PngEncoder::find_differences(std::span<const PixelRun> row) {
         up += up->end == both ? 1 : 0;
     }
     difference_count_ = static_cast<std::size_t>(last + 1 - differences_.data());
+    assert(difference_count_ < row.size() + 1 && last->end == width_);
     return true;
 }
 
@@ -85,6 +87,7 @@ void PngEncoder::add_row(std::span<const PixelRun> row) {
 }
 
 void PngEncoder::add(std::span<const PixelRun> row, std::uint32_t times) {
+    assert(!row.empty() && row.back().end == width_ && times >= 1);
     add_row(row);
     above_.assign(row.begin(), row.end());
     if (row.size() == 1 && row.front().value == 0) {

@@ -1,5 +1,7 @@
 #include "write/sequential_writer.hpp"
 
+#include <cassert>
+
 namespace lamella {
 
 SequentialWriter::SequentialWriter(const std::string& path, const LayerFileInfo& info,
@@ -12,6 +14,7 @@ SequentialWriter::SequentialWriter(const std::string& path, const LayerFileInfo&
 }
 
 void SequentialWriter::append_bytes(std::string_view bytes) {
+    assert(file_.has_value() == (chunk_ == nullptr));
     if (chunk_ == nullptr) {
         file_->append(bytes);
         return;

@@ -141,14 +141,14 @@ TEST(KeyPartitions, JoinsWhatIsPutInAnyOrderOfBlocksSomeOfThemPartlyFullOrMissin
 }
 
 TEST(KeyPartitions, AFullBlockInTheLastOfAllPartitionsIsFound) {
-    KeyPartitions<std::uint32_t> partitions(std::uint64_t{1} << 30);
-    const std::uint32_t size = partitions.block_size();
-    EXPECT_GE(size, key_groups::least_block);
-    partitions.reserve(1, size);
     const auto record = [&](std::uint32_t i) {
         return key_groups::Record<std::uint32_t>{i / 2, i};
     };
     for (const std::uint64_t hash : {std::uint64_t{0}, ~std::uint64_t{0}}) {
+        KeyPartitions<std::uint32_t> partitions(std::uint64_t{1} << 30);
+        const std::uint32_t size = partitions.block_size();
+        EXPECT_GE(size, key_groups::least_block);
+        partitions.reserve(1, size);
         partitions.put(
             0, size, [&](std::uint32_t) { return hash; }, record);
         Executor executor({.threads = 1});
