@@ -62,11 +62,21 @@ void WriteLosses::Kind::add(const Kind& above) noexcept {
 void WriteLosses::add(const WriteLosses& above) noexcept {
     open_chains.add(above.open_chains);
     hatches.add(above.hatches);
+    if (layers > 0 && above.layers > 0 && std::abs(above.bottom - top) > same_height_mm)
+        gaps.add({1, above.first_z});
     gaps.add(above.gaps);
     cuts.add(above.cuts);
     bottom_cuts += above.bottom_cuts;
     top_cuts += above.top_cuts;
     rounded.add(above.rounded);
+    if (above.layers == 0)
+        return;
+    if (layers == 0) {
+        first_z = above.first_z;
+        bottom = above.bottom;
+    }
+    layers += above.layers;
+    top = above.top;
 }
 
 WriteLosses losses_of_plane(const PlaneView& view) {
@@ -74,6 +84,10 @@ WriteLosses losses_of_plane(const PlaneView& view) {
     WriteLosses losses;
     for (WriteLosses::Kind* kind : {&losses.open_chains, &losses.hatches, &losses.gaps, &losses.cuts})
         kind->z = plane.z;
+    losses.layers = 1;
+    losses.first_z = plane.z;
+    losses.bottom = plane.bottom;
+    losses.top = plane.top;
     for (const Layer& layer : view.layers)
         losses.open_chains.count += layer.open_chains();
     for (const PointArray& hatches : view.hatches)

@@ -3,6 +3,8 @@
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
 
+#include "contour/same_height.hpp"
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -44,8 +46,7 @@ void check_same_planes(std::span<const LayerStack> parts, const LayerFileInfo& i
 }
 
 PlaneOrder::PlaneOrder(const LayerFileInfo& info, Ascending ascending)
-    : is_chunk_(info.chunk != nullptr), known_finite_(info.known_finite),
-      before_(info.chunk != nullptr ? info.chunk->before : 0),
+    : known_finite_(info.known_finite), before_(info.chunk != nullptr ? info.chunk->before : 0),
       announced_(info.chunk != nullptr ? info.chunk->layers : info.layers), parts_(info.parts.size()),
       ascending_(ascending) {}
 
@@ -99,7 +100,6 @@ std::function<void()> OrderedWriter::prepare(const ScanVectors& vectors) {
 std::function<void()> OrderedWriter::prepare_view(const PlaneView& plane) {
     return [this, write = formatted(plane), losses = losses_of_plane(plane),
             offset = plane_position(plane.layers)]() mutable {
-        losses.gaps.count = order_.adjoins(offset) ? 0 : 1;
         order_.next(offset);
         left_out_.add(losses);
         write(offset);

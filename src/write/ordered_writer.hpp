@@ -4,12 +4,10 @@
 
 #include "lamella/write/layer_writer.hpp"
 
-#include "contour/same_height.hpp"
 #include "write/byte_buffer.hpp"
 #include "write/left_out.hpp"
 #include "write/plane_view.hpp"
 
-#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -57,17 +55,11 @@ class PlaneOrder {
     void next(PlanePosition& plane);
     /// Throws Error{usage} if there were more or fewer planes than announced.
     void end() const;
-    /// Returns whether a plane begins at the top of the previous plane. Always returns true in a range of a
-    /// file, where gaps are not counted.
-    [[nodiscard]] bool adjoins(const PlanePosition& plane) const noexcept {
-        return is_chunk_ || count_ == 0 || std::abs(plane.bottom - last_.top) <= same_height_mm;
-    }
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
 
   private:
     void check_number(std::size_t parts) const;
 
-    bool is_chunk_;
     bool known_finite_;
     std::uint64_t before_; ///< number of planes of the file below this range
     std::uint64_t announced_;

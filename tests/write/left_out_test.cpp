@@ -4,10 +4,14 @@
 #include "plain_formats.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
+#include "write/left_out.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -163,6 +167,36 @@ TEST(LayerWriter, SaysNothingOfPointsThatSinglePrecisionKeepsFarFromTheOrigin) {
         EXPECT_TRUE(
             write_layers(folder.file("out"), layer_format(format, ""), layers, info_of(layers)).empty())
             << format;
+}
+
+TEST(WriteLosses, AreTheSameHoweverTheLayersAreDividedIntoRanges) {
+    LayerStack layers;
+    for (int i = 0; i < 12; ++i) {
+        const double bottom = i + (i >= 4 ? 0.5 : 0) + (i >= 9 ? 2 : 0); // two gaps
+        layers.push_back(
+            {.index = static_cast<std::uint64_t>(i), .z = bottom, .bottom = bottom, .top = bottom + 1});
+    }
+    const auto losses_of = [&](std::size_t begin, std::size_t end) {
+        WriteLosses losses;
+        for (std::size_t i = begin; i < end; ++i)
+            losses.add(losses_of_plane({std::span(&layers[i], 1)}));
+        return losses;
+    };
+    const WriteLosses all = losses_of(0, 12);
+    EXPECT_EQ(all.gaps.count, 2U);
+    EXPECT_EQ(all.gaps.z, 4.5);
+    EXPECT_EQ(all.bottom_cuts, 12U);
+    for (std::size_t first = 0; first <= 12; ++first)
+        for (std::size_t second = first; second <= 12; ++second) {
+            WriteLosses sum = losses_of(0, first);
+            sum.add(losses_of(first, second)); // may be empty
+            sum.add(losses_of(second, 12));
+            EXPECT_EQ(sum.gaps.count, all.gaps.count) << first << ", " << second;
+            EXPECT_EQ(sum.gaps.z, all.gaps.z) << first << ", " << second;
+            EXPECT_EQ(sum.cuts.count, all.cuts.count);
+            EXPECT_EQ(sum.layers, 12U);
+            EXPECT_EQ(sum.top, all.top);
+        }
 }
 
 } // namespace

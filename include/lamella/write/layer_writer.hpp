@@ -70,7 +70,13 @@ struct WriteLosses {
     std::uint64_t top_cuts = 0;    ///< layers that were cut at their top
     Rounded rounded;
 
-    /// Adds the losses of layers above these.
+    // The range itself, by which gaps between two ranges are found.
+    std::uint64_t layers = 0;
+    double first_z = 0; ///< z of the first layer
+    double bottom = 0;  ///< bottom of the first layer
+    double top = 0;     ///< top of the last layer
+
+    /// Adds the losses of layers above these, and a gap if they do not begin at the top of these.
     void add(const WriteLosses& above) noexcept;
 };
 
