@@ -38,17 +38,15 @@ void count(const Stopwatch& watch, std::atomic<std::uint64_t>& nanoseconds) {
 LayerProcessor::LayerProcessor(const FileJob& job, const Plate& plate, const Plan& plan, PlaneRange sliced,
                                PlaneRange mine, LayerTotals& totals, JobOutput& output,
                                const LayerLimits& limits)
-    : job_(job), plate_(plate), limits_(limits), supports_(supports_of(plate)), caches_(plate.parts.size()),
-      first_index_(plan.layers.front().index), mine_(mine), totals_(totals), output_(output),
+    : job_(job), plate_(plate), limits_(limits), supports_(supports_of(plate)), names_(names_of_parts(plate)),
+      caches_(plate.parts.size()), first_index_(plan.layers.front().index), mine_(mine), totals_(totals),
+      output_(output),
       window_(
           sliced, mine, job.scan ? job.scan->downskin.layers : 0, job.scan ? job.scan->upskin.layers : 0,
           [this](std::size_t part, const Layer& layer) {
               return naming(names_[part], [&] { return ScanLayer(layer, {}, limits_); });
           },
-          [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {
-    for (std::size_t part = 0; part < plate.parts.size(); ++part)
-        names_.push_back(name_of_part(plate, part));
-}
+          [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {}
 
 std::function<void()> LayerProcessor::operator()(std::span<const Layer> parts) {
     std::vector<Layer> closed;

@@ -37,6 +37,20 @@ std::string name_of_part(const Plate& plate, std::size_t part) {
     return parts > 1 ? with_label(path, plate.parts[part].label) : path;
 }
 
+std::vector<std::string> names_of_parts(const Plate& plate) {
+    std::vector<std::size_t> parts(plate.files.size()); // of each file
+    for (const PlatePart& part : plate.parts)
+        ++parts[plate.shapes[part.shape].input];
+    std::vector<std::string> names;
+    names.reserve(plate.parts.size());
+    for (const PlatePart& part : plate.parts) {
+        const std::size_t file = plate.shapes[part.shape].input;
+        const std::string& path = plate.files[file].path;
+        names.push_back(parts[file] > 1 ? with_label(path, part.label) : path);
+    }
+    return names;
+}
+
 std::string name_of_shape(const Plate& plate, std::size_t shape) {
     const std::size_t file = plate.shapes[shape].input;
     const auto shapes = std::count_if(plate.shapes.begin(), plate.shapes.end(),

@@ -124,7 +124,7 @@ class Texts(ProgramTest):
     def test_copies_that_exhaust_memory_are_named_as_what_to_reduce(self):
         self.write("box.stl", binary_stl(box_triangles(1, 1, 1)))
         limit = 200 << 20
-        self.fail_with(5, "error: box.stl: memory ran out; free some, or work on less at once: fewer parts, copies, layers or files", "slice", "box.stl", "--copies", "200000",
+        self.fail_with(5, "error: box.stl: memory ran out; free some, or work on less at once: fewer parts, copies, layers or files", "slice", "box.stl", "--copies", "400000",
                        "--layer-height", "0.5", "--threads", "1", "-o", "a.3mf",
                        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)))
 

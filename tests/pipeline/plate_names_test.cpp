@@ -33,6 +33,8 @@ TEST(PlateNames, NameFilesAndOnlyWhereNeededTheirParts) {
     EXPECT_EQ(name_of_part(plate, 0), "one.stl");
     EXPECT_EQ(name_of_part(plate, 1), "two.3mf, part \"" + plate.parts[1].label + "\"");
     EXPECT_EQ(name_of_part(plate, 2), "two.3mf, part \"" + plate.parts[2].label + "\"");
+    EXPECT_EQ(names_of_parts(plate),
+              (std::vector{name_of_part(plate, 0), name_of_part(plate, 1), name_of_part(plate, 2)}));
     for (std::size_t part = 0; part < plate.parts.size(); ++part)
         EXPECT_EQ(name_of_shape(plate, plate.parts[part].shape), name_of_part(plate, part));
 }
