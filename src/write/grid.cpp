@@ -82,11 +82,11 @@ void WriterGrid::round(std::span<const Point2> points, std::uint64_t layer, Grid
 }
 
 double WriterGrid::largest_move(std::span<const Point2> points, const GridPoint* rounded) const {
-    double largest = 0;
+    double move = 0;
     for (std::size_t i = 0; i < points.size(); ++i)
-        largest = std::max({largest, std::abs(static_cast<double>(rounded[i].x) * step_ - points[i].x),
-                            std::abs(static_cast<double>(rounded[i].y) * step_ - points[i].y)});
-    return largest;
+        move = std::max({move, std::abs(static_cast<double>(rounded[i].x) * step_ - points[i].x),
+                         std::abs(static_cast<double>(rounded[i].y) * step_ - points[i].y)});
+    return move;
 }
 
 std::span<const GridPoint> WriterGrid::snap(std::span<const Point2> contour, bool closed, double area,

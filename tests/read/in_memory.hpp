@@ -12,7 +12,7 @@
 namespace lamella::test {
 
 inline ByteSource source_of(std::string_view text, std::string name = "x") {
-    return copy_bytes(std::as_bytes(std::span(text)), std::move(name));
+    return copy_bytes(std::as_bytes(std::span<const char>(text.data(), text.size())), std::move(name));
 }
 
 /// Returns the number of bytes that are counted in the limits, which must allow `most` and no triangles more.
