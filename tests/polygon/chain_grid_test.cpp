@@ -93,8 +93,8 @@ TEST(ChainGrid, SuspectsEachPointThatLiesInAnotherRing) {
             free += suspected ? 0 : 1;
         }
     }
-    EXPECT_GT(within, 0U);
-    EXPECT_GT(free, 0U);
+    EXPECT_GT(within, test::slowed ? 0U : 100U);
+    EXPECT_GT(free, test::slowed ? 0U : 100U);
 }
 
 TEST(ChainGrid, IsNoneForLayersThatItCannotDivide) {

@@ -50,7 +50,7 @@ TEST(EdgeBelow, IsTheHighestOfAllEdgesBelow) {
             }
         }
     }
-    EXPECT_GT(found, 0U);
+    EXPECT_GT(found, test::slowed ? 0U : 100U);
 }
 
 TEST(EdgeBelow, IsNotSureAboveRingsInContact) {

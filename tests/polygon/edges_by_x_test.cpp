@@ -99,7 +99,7 @@ TEST(EdgesByX, AgreesWithALoopOverAllEdges) {
             }
         }
     }
-    EXPECT_GT(loose, 0U) << "some edges cross";
+    EXPECT_GT(loose, test::slowed ? 0U : 100U) << "some edges cross";
 }
 
 TEST(EdgesByX, NumbersLeavesByTheValuesBelow) {

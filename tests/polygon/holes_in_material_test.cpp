@@ -45,8 +45,8 @@ TEST(HolesInMaterial, PassOnlyWhereTheWindingNumberIsThatOfMaterial) {
         EXPECT_EQ(found, in_material) << round << ": nothing of this is undecided";
         ++(found ? right : wrong);
     }
-    EXPECT_GT(right, 0U);
-    EXPECT_GT(wrong, 0U);
+    EXPECT_GT(right, test::slowed ? 0U : 50U);
+    EXPECT_GT(wrong, test::slowed ? 0U : 50U);
 }
 
 TEST(HolesInMaterial, NeverPassBelowZero) {
@@ -68,7 +68,7 @@ TEST(HolesInMaterial, NeverPassBelowZero) {
             EXPECT_GE(test::plain_winding(layer, p), 0) << round;
         }
     }
-    EXPECT_GT(found, 0U);
+    EXPECT_GT(found, test::slowed ? 0U : 100U);
 }
 
 TEST(HolesInMaterial, PassWithoutHolesAndWithoutRings) {

@@ -107,7 +107,7 @@ TEST(Overlay, HasAFateForEachRing) {
                 << round;
         }
     }
-    EXPECT_GT(kept, 0U);
+    EXPECT_GT(kept, test::slowed ? 0U : 100U);
 }
 
 TEST(Overlay, IsCleanWithoutContactsWhereEachRingBoundsMaterial) {

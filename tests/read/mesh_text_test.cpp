@@ -157,8 +157,8 @@ TEST(MeshText, LeavesTextsThatAreNotPlainToTheParser) {
         give_back(*found[1], limits);
         EXPECT_EQ(test::bytes_counted(limits, most_bytes), before) << round;
     }
-    EXPECT_GT(left, 0U);
-    EXPECT_GT(read, 0U);
+    EXPECT_GT(left, test::slowed ? 0U : 100U);
+    EXPECT_GT(read, test::slowed ? 0U : 10U);
 }
 
 TEST(MeshText, TakesARunUpToTheEndOfItsList) {
