@@ -73,16 +73,25 @@ void remove(const char* path) noexcept {
 } // namespace
 
 UnfinishedName::Creation::Creation() {
+    sigset_t time_is_up;
+    sigemptyset(&time_is_up);
+    sigaddset(&time_is_up, SIGXCPU);
+    pthread_sigmask(SIG_BLOCK, &time_is_up, &signals_before_);
     ++creations;
     // Either remove_unfinished sees this creation, or this thread sees that it has begun.
     if (ending) {
-        --creations;
+        end();
         throw Error(ErrorKind::cancelled, "cancelled");
     }
 }
 
 UnfinishedName::Creation::~Creation() {
+    end();
+}
+
+void UnfinishedName::Creation::end() noexcept {
     --creations;
+    pthread_sigmask(SIG_SETMASK, &signals_before_, nullptr);
 }
 
 bool UnfinishedName::announce(const std::string& path) {

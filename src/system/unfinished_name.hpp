@@ -4,6 +4,7 @@
 
 #include "lamella/system/whole_file.hpp"
 
+#include <csignal>
 #include <string>
 
 namespace lamella {
@@ -25,13 +26,20 @@ class UnfinishedName {
     bool withdraw() noexcept;
 
     /// Must be held from before a name is created until it is announced or, if that fails, removed again.
-    /// remove_unfinished waits for all holders; after that the constructor throws Error{cancelled}.
+    /// remove_unfinished waits for all holders; after that the constructor throws Error{cancelled}. The signal
+    /// of used-up processor time is held back from this thread, because its handler could not wait for the
+    /// thread that it interrupts.
     class Creation {
       public:
         Creation();
         ~Creation();
         Creation(const Creation&) = delete;
         Creation& operator=(const Creation&) = delete;
+
+      private:
+        void end() noexcept;
+
+        sigset_t signals_before_{};
     };
 
     struct Slot;
