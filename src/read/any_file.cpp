@@ -1,32 +1,66 @@
 #include "lamella/read/any_file.hpp"
 
+#include "lamella/core/error.hpp"
+
 #include "container/gzip.hpp"
 #include "container/zip_reader.hpp"
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
+#include "read/mesh_readers.hpp"
 #include "read/read_limits.hpp"
 #include "system/byte_source.hpp"
 #include "system/memory_size.hpp"
+
+#include <optional>
+#include <utility>
 
 namespace lamella {
 
 namespace {
 
+/// Returns the meshes of a 3MF package without slices, and nullopt for all other files. Also returns nullopt
+/// if the package has an error, because the reader of layers must see it first.
+std::optional<MeshFile> package_of_meshes(const ByteSource& source, const MeshReadOptions& options,
+                                          const Execution& execution) {
+    if (archive_reader(ZipReader(source, most_unpacked(options))) != read_slices_3mf)
+        return std::nullopt;
+    try {
+        return read_three_mf_without_slices(source, options, execution);
+    } catch (const Error& error) {
+        if (error.kind() != ErrorKind::input && error.kind() != ErrorKind::defect)
+            throw;
+        return std::nullopt;
+    }
+}
+
+std::variant<MeshFile, LayerFile> read_unpacked(const ByteSource& source, const MeshReadOptions& options,
+                                                const Execution& execution) {
+    const MeshFormatRow* const format = recognised_format(source, options);
+    const bool archive = is_zip(source.text());
+    if (!archive && (format == nullptr || format->read_layers == nullptr))
+        return read_unpacked_mesh(source, options, execution);
+    const ByteSource readable = whole(source, execution, memory_of_file(options.max_memory));
+    if (archive && format->read == read_three_mf)
+        if (std::optional<MeshFile> meshes = package_of_meshes(readable, options, execution)) {
+            meshes->format = "3mf";
+            return *std::move(meshes);
+        }
+    try {
+        return read_unpacked_layers(readable, {.max_memory = options.max_memory, .held = options.held},
+                                    execution);
+    } catch (const NoLayers&) {
+        // The package contains meshes only. If its layers are damaged its meshes are not read, because they
+        // may only represent the layers.
+        return read_unpacked_mesh(readable, options, execution);
+    }
+}
+
 std::variant<MeshFile, LayerFile> read_opened(const ByteSource& opened, const std::string& path,
                                               const MeshReadOptions& options, const Execution& execution) {
-    const ByteSource source = unpacked(opened, most_unpacked(options), execution);
-    const MeshFormatRow* const format = recognised_format(source, options);
-    if ((format != nullptr && format->read_layers != nullptr) || is_zip(source.text())) {
-        try {
-            return read_unpacked_layers(whole(source, execution, memory_of_file(options.max_memory)),
-                                        {.max_memory = options.max_memory, .held = options.held}, execution);
-        } catch (const NoLayers&) {
-            // The package contains meshes only. If its layers are damaged its meshes are not read, because
-            // they may only represent the layers.
-        }
-    }
-    MeshFile file = read_unpacked_mesh(source, options, execution);
-    file.path = path;
+    std::variant<MeshFile, LayerFile> file =
+        read_unpacked(unpacked(opened, most_unpacked(options), execution), options, execution);
+    if (auto* const meshes = std::get_if<MeshFile>(&file))
+        meshes->path = path;
     return file;
 }
 

@@ -25,14 +25,8 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
     const std::string_view bytes = source.text();
     if (is_zip(bytes)) {
         const ZipReader package(source, most_unpacked(options));
-        if (is_npz(package))
-            return read_npz(package, limits, execution);
-        if (is_ilt(package))
-            return read_ilt(package, limits, execution);
-        if (is_toolpath_3mf(package))
-            return read_toolpath_3mf(package, limits, execution);
-        if (is_3mf(package))
-            return read_slices_3mf(package, limits, execution);
+        if (ReadLayersOfArchive* const read = archive_reader(package))
+            return read(package, limits, execution);
         if (const MeshFormatRow* const other =
                 recognised_format(source, {.max_memory = most_unpacked(options)});
             !other->advice.empty())
@@ -61,6 +55,16 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
 }
 
 } // namespace
+
+ReadLayersOfArchive* archive_reader(const ZipReader& archive) {
+    if (is_npz(archive))
+        return read_npz;
+    if (is_ilt(archive))
+        return read_ilt;
+    if (is_toolpath_3mf(archive))
+        return read_toolpath_3mf;
+    return is_3mf(archive) ? read_slices_3mf : nullptr;
+}
 
 LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions& options,
                                const Execution& execution) {

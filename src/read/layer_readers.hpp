@@ -27,6 +27,13 @@ struct NoLayers : Error {
 [[nodiscard]] LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions& options,
                                              const Execution& execution);
 
+/// Reads the layers of an archive.
+using ReadLayersOfArchive = LayerFile(const ZipReader& archive, ReadLimits& limits,
+                                      const Execution& execution);
+/// Returns the reader for an archive that holds layers, or may hold them, by the names of its entries; null
+/// for other archives.
+[[nodiscard]] ReadLayersOfArchive* archive_reader(const ZipReader& archive);
+
 /// Common Layer Interface 2.0, ASCII and binary. Comments may precede the header.
 [[nodiscard]] bool is_common_layer(std::string_view bytes);
 [[nodiscard]] LayerFile read_common_layer(std::string_view bytes, const std::string& name, ReadLimits& limits,
@@ -35,7 +42,7 @@ struct NoLayers : Error {
 /// ILT: Common Layer Interface files in a zip archive with a list of their parameters, by which it is
 /// recognised.
 [[nodiscard]] bool is_ilt(const ZipReader& zip);
-[[nodiscard]] LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution);
+ReadLayersOfArchive read_ilt;
 
 /// Layered SVG as written by Slic3r. Reading decides whether an SVG document has layers.
 [[nodiscard]] bool is_svg(std::string_view bytes);
@@ -49,7 +56,7 @@ struct NoLayers : Error {
 
 /// Lamella's NumPy arrays in a zip archive, recognised by an array that all such archives have.
 [[nodiscard]] bool is_npz(const ZipReader& zip);
-[[nodiscard]] LayerFile read_npz(const ZipReader& zip, ReadLimits& limits, const Execution& execution);
+ReadLayersOfArchive read_npz;
 
 /// Open Vector Format.
 [[nodiscard]] bool is_ovf(std::string_view bytes);
@@ -66,12 +73,10 @@ struct NoLayers : Error {
 
 /// 3MF with slice stacks (3MF Slice Extension). Reading decides whether a package has slices.
 [[nodiscard]] bool is_3mf(const ZipReader& zip);
-[[nodiscard]] LayerFile read_slices_3mf(const ZipReader& package, ReadLimits& limits,
-                                        const Execution& execution);
+ReadLayersOfArchive read_slices_3mf;
 
 /// 3MF with toolpaths (3MF Toolpath Extension 1.0), recognised by a model that refers to toolpath layers.
 [[nodiscard]] bool is_toolpath_3mf(const ZipReader& package);
-[[nodiscard]] LayerFile read_toolpath_3mf(const ZipReader& package, ReadLimits& limits,
-                                          const Execution& execution);
+ReadLayersOfArchive read_toolpath_3mf;
 
 } // namespace lamella

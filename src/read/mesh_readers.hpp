@@ -54,6 +54,11 @@ ReadMesh read_amf;
 /// objects of type surface, which are not solids; objects of type support, unless the options include them;
 /// and items that are not to be printed.
 ReadMesh read_three_mf;
+/// Does the same for a package none of whose model parts mentions slices; otherwise returns nullopt as soon
+/// as such a part is unpacked. So a package of meshes is unpacked only once.
+[[nodiscard]] std::optional<MeshFile> read_three_mf_without_slices(const ByteSource& source,
+                                                                   const MeshReadOptions& options,
+                                                                   const Execution& execution);
 
 /// PLY, also called the Stanford format: the line "ply", a header that describes rows, and the rows, as text
 /// or binary.

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -30,6 +31,9 @@ constexpr std::size_t longest_file_name = 200;
     throw Error(ErrorKind::input, fmt::format("{}: {}", package.name(), what));
 }
 
+/// Thrown by a reader that must not read meshes of a package with slices.
+struct MayHaveSlices {};
+
 /// Loads the model parts of a package with their meshes: the root and all parts that it refers to.
 class PartLoader {
   public:
@@ -38,9 +42,10 @@ class PartLoader {
         ThreeMfModel model;
     };
 
-    PartLoader(const ZipReader& package, Remarks& remarks, ReadLimits& limits, Executor& executor,
-               const Execution& execution)
-        : package_(package), remarks_(remarks), limits_(limits), executor_(executor),
+    /// With `no_slices`, load() throws MayHaveSlices if a part mentions the namespace of slices.
+    PartLoader(const ZipReader& package, bool no_slices, Remarks& remarks, ReadLimits& limits,
+               Executor& executor, const Execution& execution)
+        : package_(package), no_slices_(no_slices), remarks_(remarks), limits_(limits), executor_(executor),
           progress_(execution, Stage::read, bytes_of(package)) {}
 
     void load() {
@@ -165,6 +170,8 @@ class PartLoader {
         executor_.for_chunks(parts_.size() - first, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
             Part& part = parts_[first + i];
             part.bytes = unpacked_entry(package_, *package_.find(part.model.part), limits_);
+            if (no_slices_ && part.bytes.text().find(three_mf::slices) != std::string_view::npos)
+                throw MayHaveSlices();
             part.model = skimmed_or_parsed([&](bool skim) { return parsed(part, skim); });
         });
         read_meshes(first);
@@ -193,6 +200,7 @@ class PartLoader {
     }
 
     const ZipReader& package_;
+    bool no_slices_;
     Remarks& remarks_;
     ReadLimits& limits_;
     Executor& executor_;
@@ -203,10 +211,11 @@ class PartLoader {
 
 class ThreeMfReader {
   public:
-    ThreeMfReader(const ByteSource& source, const MeshReadOptions& options, const Execution& execution)
+    ThreeMfReader(const ByteSource& source, bool no_slices, const MeshReadOptions& options,
+                  const Execution& execution)
         : package_(source, most_unpacked(options)), remarks_(source.name, options.strict),
           selection_(options.include), limits_(source, options), executor_(execution),
-          loader_(package_, remarks_, limits_, executor_, execution) {}
+          loader_(package_, no_slices, remarks_, limits_, executor_, execution) {}
 
     MeshFile read() {
         for (const std::string& warning : package_.counted_warnings())
@@ -465,7 +474,16 @@ class ThreeMfReader {
 } // namespace
 
 MeshFile read_three_mf(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
-    return ThreeMfReader(source, options, execution).read();
+    return ThreeMfReader(source, false, options, execution).read();
+}
+
+std::optional<MeshFile> read_three_mf_without_slices(const ByteSource& source, const MeshReadOptions& options,
+                                                     const Execution& execution) {
+    try {
+        return ThreeMfReader(source, true, options, execution).read();
+    } catch (const MayHaveSlices&) {
+        return std::nullopt;
+    }
 }
 
 } // namespace lamella

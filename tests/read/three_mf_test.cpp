@@ -1,3 +1,4 @@
+#include "read/in_memory.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/package_checks.hpp"
 #include "read/three_mf_files.hpp"
@@ -30,6 +31,20 @@ TEST(ThreeMf, ReadsAMeshAsTheFileHasIt) {
     EXPECT_EQ(mesh.triangles[1], (std::array<std::uint32_t, 3>{1, 2, 3}));
     EXPECT_DOUBLE_EQ(volume(file.mesh()), 6);
     EXPECT_TRUE(file.warnings.empty());
+}
+
+TEST(ThreeMf, LeavesPackagesWhosePartsMentionSlicesToTheirReader) {
+    const auto is_read = [](const std::string& attributes_of_root, const std::string& attributes_of_leaf) {
+        const std::string bytes =
+            package(model(object(1, box_mesh()), one_item + "<item objectid=\"7\" p:path=\"/3D/a.model\"/>",
+                          attributes_of_root),
+                    {{"3D/a.model", model(object(7, box_mesh()), "", attributes_of_leaf)}});
+        return read_three_mf_without_slices(test::source_of(bytes), {}, {}).has_value();
+    };
+    const std::string slices = "xmlns:t=\"http://schemas.microsoft.com/3dmanufacturing/slice/2015/07\"";
+    EXPECT_TRUE(is_read("", ""));
+    EXPECT_FALSE(is_read(slices, ""));
+    EXPECT_FALSE(is_read("", slices));
 }
 
 TEST(ThreeMf, MirroredInstancesStaySolid) {
