@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -40,6 +41,26 @@ TEST(UnfinishedName, IsRemovedUnlessItWasWithdrawn) {
               }),
               0);
     EXPECT_EQ(folder.entries(), (std::vector<std::string>{"finished", "foreign"}));
+}
+
+TEST(UnfinishedName, IsRemovedWhereTheTimeIsUpWhileItIsCreated) {
+    const TemporaryFolder folder;
+    EXPECT_EQ(exit_code_of_child([&] {
+                  std::signal(SIGXCPU, [](int) {
+                      remove_unfinished();
+                      ::_exit(0);
+                  });
+                  UnfinishedName name;
+                  {
+                      const UnfinishedName::Creation creation;
+                      std::filesystem::create_directory(folder.file("folder"));
+                      ::raise(SIGXCPU);
+                      static_cast<void>(name.announce(folder.file("folder")));
+                  }
+                  ::_exit(1);
+              }),
+              0);
+    EXPECT_EQ(folder.entries(), std::vector<std::string>());
 }
 
 TEST(UnfinishedName, IsNotAnnouncedOnceTheProcessEnds) {
