@@ -77,7 +77,7 @@ OptionGroup image_options(ImageArguments& target) {
     Option fade = count_within(
         "fade-layers", "sl1: layers in which the first exposure fades to the normal one; 10 unless given", 0,
         std::numeric_limits<std::uint32_t>::max(), target.fade_layers);
-    return {"Pictures (png, png-zip, sl1, sl1s)",
+    return {"Images (png, png-zip, sl1, sl1s)",
             {lengths("pixel-size", "MM|X,Y", "of a pixel; for png and png-zip 0.05 unless given",
                      target.pixel_mm),
              row("resolution", ValueKind::text, "WxH",
@@ -85,7 +85,8 @@ OptionGroup image_options(ImageArguments& target) {
                  [&target](const std::string& text) { target.pixels = parse_pixels(text); }),
              lengths("display-size", "X,Y", "of the display, in place of pixel size or resolution",
                      target.display_mm),
-             choice("orientation", "HOW", "whether x runs along the columns of an image or along its rows",
+             choice("orientation", "HOW",
+                    "landscape: x runs from left to right in an image; portrait: x runs upwards",
                     {"landscape", "portrait"}, target.orientation),
              choice("mirror", "AXES", "mirror the display, as PrusaSlicer does", {"none", "x", "y", "xy"},
                     target.mirror),

@@ -149,7 +149,7 @@ def read(
 
     Returns a Mesh or a Stack. The file is copied before it is parsed and may change afterwards; an InputError is raised
     if it becomes shorter while it is copied. A copy larger than a quarter of `max_memory` is kept in an anonymous
-    temporary file, in $TMPDIR or /var/tmp.
+    temporary file, in $TMPDIR, /var/tmp or /tmp.
 
     Raises InputError that reports the file, the location in it, the content found and the content expected, and
     UsageError if `unit_mm` is given for a slice file.
@@ -216,7 +216,7 @@ def write(
     pixel_mm, pixels, display_mm: size of a pixel, number of pixels, and size of the display, each along x and y; any
         two of these three determine the third. Values not given are those of the printer; without a printer, pixels are
         0.05 mm wide.
-    orientation: "landscape" if x runs along the columns of an image, "portrait" if x runs along its rows.
+    orientation: "landscape" if x runs from left to right in an image, "portrait" if x runs upwards.
     mirror: "none", "x", "y" or "xy".
     antialias: 1 for black and white, by the centres of pixels; 2 to 64 for grey values, which are the covered fractions
         of pixels, exact for up to that many corners close together; 8 by default.

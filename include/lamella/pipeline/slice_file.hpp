@@ -61,10 +61,10 @@ struct FileJob {
     std::uint64_t max_triangles = 0;
     /// Upper bound on the memory of each process with all its threads, in bytes; 0: three quarters of the
     /// available memory. If an STL file is too large to be sliced as a whole, it is sliced in ranges of
-    /// planes, with the same result; an anonymous temporary file in $TMPDIR, else /var/tmp, may hold its
-    /// triangles. Some jobs need whole meshes: inspection, strict, repairs that change a mesh, adaptive
-    /// layers, engines that weld, and files that are not plain STL. They throw Error{limit} if they exceed an
-    /// explicit bound; the default bound does not apply to them.
+    /// planes, with the same result; an anonymous temporary file in $TMPDIR, else /var/tmp, else /tmp, may
+    /// hold its triangles. Some jobs need whole meshes: inspection, strict, repairs that change a mesh,
+    /// adaptive layers, engines that weld, and files that are not plain STL. They throw Error{limit} if they
+    /// exceed an explicit bound; the default bound does not apply to them.
     std::uint64_t max_memory = 0;
 
     /// Definition of the layers. Uniform layers are stacked from the bottom of the lowest part.

@@ -99,8 +99,8 @@ struct MeshFile {
 ///
 /// The bytes are copied: the file may change during the call and is not needed afterwards. Throws
 /// Error{input} if the file becomes shorter while it is copied. A copy of more than a quarter of `max_memory`
-/// is kept in an anonymous temporary file (in $TMPDIR, else /var/tmp), of which the mesh of a binary STL file
-/// is a view; throws Error{output} if the disk is full.
+/// is kept in an anonymous temporary file (in $TMPDIR, else /var/tmp, else /tmp), of which the mesh of a
+/// binary STL file is a view; throws Error{output} if the disk is full.
 ///
 /// Corners of STL files have single precision, in ASCII files too: each number there is rounded once, to the
 /// nearest. So an ASCII file with at least nine significant digits gives the same slices as the binary file,

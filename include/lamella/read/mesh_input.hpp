@@ -36,8 +36,8 @@ class MeshInput {
     /// Opens a file; "-" is standard input. A binary STL file stays open and is read in chunks. Any other
     /// input is copied: to memory if it has at most `most_in_memory` bytes (by default a quarter of the
     /// default of MeshReadOptions::max_memory), else to an anonymous temporary file (in $TMPDIR, else
-    /// /var/tmp). Throws Error{input} if the file does not exist or cannot be read, Error{output} if the
-    /// temporary file does not fit on the disk, Error{cancelled}.
+    /// /var/tmp, else /tmp). Throws Error{input} if the file does not exist or cannot be read, Error{output}
+    /// if the temporary file does not fit on the disk, Error{cancelled}.
     explicit MeshInput(const std::string& path, std::optional<std::uint64_t> most_in_memory = {},
                        const Execution& execution = {});
 
