@@ -73,7 +73,7 @@ STANDARD = set(
 
 # Headers of the operating system, which only the sources of one module may include.
 SYSTEM = re.compile(r"^((sys|linux|net|netinet|arpa)/.*|(unistd|fcntl|sched|pthread|poll|signal|spawn|dirent|dlfcn|"
-                    r"malloc|errno|limits|stdlib|stdint)(\.h)?)$")
+                    r"malloc|errno|limits|stdlib|stdint|windows|io|shellapi|psapi)(\.h)?)$")
 SYSTEM_MODULE = "src/system/"
 
 # Types at namespace level, as headers lay them out.

@@ -2,6 +2,7 @@
 
 // A folder of files that appears complete or not at all.
 
+#include "system/native_file.hpp"
 #include "system/unfinished_name.hpp"
 
 #include <atomic>
@@ -38,16 +39,12 @@ class AtomicDirectory {
 
   private:
     void check_replaceable() const;
-    /// Creates the hidden folder and locks it as long as this object lives. Returns false and sets errno on
-    /// failure, to EEXIST if another process has the name.
-    bool make_working(const char* name);
 
     std::string path_;
     std::filesystem::path target_;
     std::function<bool(const std::filesystem::path&)> may_remove_;
     std::filesystem::path working_;       ///< empty after commit
-    int lock_ = -1;                       ///< descriptor that locks the hidden folder; -1 if it cannot be
-                                          ///< locked
+    NativeFile lock_;                     ///< locks the hidden folder, if it can be locked
     std::optional<unsigned> permissions_; ///< of the folder to be replaced
     UnfinishedName unfinished_;
     std::atomic<std::uint64_t> bytes_{0};

@@ -3,18 +3,16 @@
 #include "lamella/system/whole_file.hpp"
 
 #include "system/nameless_file.hpp"
+#include "system/output_target.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <poll.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <cassert>
 #include <cerrno>
-#include <cstdio>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
+#include <span>
 #include <system_error>
 #include <utility>
 
@@ -48,35 +46,6 @@ std::string folder_of(const std::string& path) {
     return folder.empty() ? "." : folder;
 }
 
-// Returns whether a path, such as /dev/stdout, names a file that is already open. Such a file must not be
-// replaced, because its owner would no longer have it.
-bool names_open_file(const fs::path& path) {
-    std::error_code error;
-    const std::string text = fs::absolute(path, error).lexically_normal().string();
-    return text.starts_with("/proc/") || text.starts_with("/dev/fd/") || text == "/dev/stdout" ||
-           text == "/dev/stderr";
-}
-
-// Returns the end of a chain of symbolic links, even if no file exists there; empty if the chain leads to a
-// file that is already open. Throws errno as an int.
-std::string follow_links(const std::string& path) {
-    fs::path current = path;
-    constexpr int most_links = 40; // the limit of Linux
-    for (int i = 0; i < most_links; ++i) {
-        if (names_open_file(current))
-            return {};
-        struct stat status {};
-        if (lstat(current.c_str(), &status) != 0 || !S_ISLNK(status.st_mode))
-            return current.string();
-        std::error_code error;
-        const fs::path next = fs::read_symlink(current, error);
-        if (error)
-            throw error.value();
-        current = current.parent_path() / next; // an absolute link replaces the folder
-    }
-    throw ELOOP;
-}
-
 } // namespace
 
 std::string name_of_output(const std::string& path) {
@@ -91,6 +60,8 @@ Error output_error(const std::string& path, int system_error) {
     // The error for this differs between systems.
     if (path != "-" && fs::path(path).is_relative() && working_folder_is_gone())
         return text("the working folder has been removed; choose another place");
+    if (system_error == quota_error)
+        return text("the disk quota is used up; free some space or choose another place");
     switch (system_error) {
     case ENOENT:
         return text(fmt::format("the folder '{}' does not exist; create it first", first_bad_folder(path)));
@@ -108,8 +79,6 @@ Error output_error(const std::string& path, int system_error) {
         return text("the file system is read-only; choose another place");
     case ENOSPC:
         return text("the disk is full; free some space or choose another place");
-    case EDQUOT:
-        return text("the disk quota is used up; free some space or choose another place");
     case EFBIG:
         return text(
             "the file has become larger than the file system or the limit of this process allows (see "
@@ -132,37 +101,28 @@ Error output_error(const std::string& path, int system_error) {
     }
 }
 
-unsigned kept_permissions(unsigned mode, bool same_group) noexcept {
-    return mode & (same_group ? 07777U : 07777U & ~(S_IRWXG | S_ISGID));
-}
-
 AtomicFile::AtomicFile(std::string path, Overwriting overwriting) : path_(std::move(path)) {
     buffer_.reset(new char[buffer_size]); // unused pages take no memory
     if (path_ == "-") {
-        descriptor_ = STDOUT_FILENO;
-        owns_descriptor_ = false;
+        file_ = standard_output();
+        owns_file_ = false;
         if (overwriting == Overwriting::yes)
             spool();
         return;
     }
     if (path_.empty())
         throw Error(ErrorKind::output, "cannot write a file without a name");
-    struct stat status {};
-    const bool exists = stat(path_.c_str(), &status) == 0;
-    if (exists && S_ISDIR(status.st_mode))
-        fail(EISDIR);
-    if (path_.back() == '/')
-        fail(exists ? EISDIR : ENOENT);
-    try {
-        target_ = follow_links(path_);
-    } catch (int system_error) {
-        fail(system_error);
-    }
-    if (!target_.empty() && (!exists || S_ISREG(status.st_mode))) {
+    OutputTarget target = find_target(path_);
+    if (target.error != 0)
+        fail(target.error);
+    if (!target.in_place) {
+        target_ = std::move(target.path);
         open_unfinished();
         return;
     }
-    open_in_place();
+    file_ = open_in_place(path_);
+    if (!file_.is_open())
+        fail(errno);
     if (overwriting == Overwriting::yes)
         spool();
 }
@@ -171,17 +131,9 @@ AtomicFile::~AtomicFile() {
     discard();
 }
 
-void AtomicFile::open_in_place() {
-    do
-        descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOCTTY, 0666);
-    while (descriptor_ < 0 && errno == EINTR); // opening a FIFO waits for its reader
-    if (descriptor_ < 0)
-        fail(errno);
-}
-
 void AtomicFile::spool() {
     spool_ = create_scratch(scratch_folder());
-    if (spool_ < 0)
+    if (!spool_.is_open())
         fail_spool(errno);
 }
 
@@ -189,48 +141,38 @@ void AtomicFile::fail_spool(int system_error) {
     discard();
     throw Error(ErrorKind::output,
                 fmt::format("cannot write a temporary file in the folder '{}', where this output waits for "
-                            "its end: {}; set the environment variable TMPDIR to a folder that can be "
+                            "its end: {}; set the environment variable {} to a folder that can be "
                             "written and has room",
-                            scratch_folder(), std::generic_category().message(system_error)));
+                            scratch_folder(), std::generic_category().message(system_error),
+                            scratch_variable()));
 }
 
 void AtomicFile::open_unfinished() {
-    struct stat status {};
-    const bool replaces = stat(target_.c_str(), &status) == 0;
-    if (!replaces && errno == ENAMETOOLONG) // the temporary name may be shorter
+    const Replaces replaces = replaced_at(target_);
+    if (replaces == Replaces::unknown)
         fail(errno);
     // A rename would replace a write-protected file, against the intention of its owner.
-    if (replaces && access(target_.c_str(), W_OK) != 0) {
-        const int error = errno;
-        if (error == EACCES)
-            throw Error(
-                ErrorKind::output,
-                fmt::format("cannot write '{}': the file there is write-protected; remove it or choose "
-                            "another name",
-                            path_));
-        fail(error);
-    }
-    constexpr mode_t everybody = 0666; // the umask applies
-    descriptor_ = create_nameless(folder_of(target_), everybody);
-    if (descriptor_ >= 0)
+    if (replaces == Replaces::protected_file)
+        throw Error(ErrorKind::output,
+                    fmt::format("cannot write '{}': the file there is write-protected; remove it or choose "
+                                "another name",
+                                path_));
+    file_ = create_nameless(folder_of(target_));
+    if (file_.is_open())
         nameless_ = true;
     else if (errno == EOPNOTSUPP)
-        open_named(everybody);
+        open_named();
     else
         fail(errno);
-    // A new file gets permissions from the umask. A replacement gets those of the old file, if this process
-    // may set them.
-    if (replaces) {
-        const bool same_group = fchown(descriptor_, static_cast<uid_t>(-1), status.st_gid) == 0;
-        static_cast<void>(fchmod(descriptor_, kept_permissions(status.st_mode, same_group)));
-    }
+    if (replaces == Replaces::file)
+        keep_permissions(file_, target_);
 }
 
-void AtomicFile::open_named(mode_t permissions) {
+void AtomicFile::open_named() {
     const UnfinishedName::Creation creation;
-    temporary_ = take_free_name(target_, this_process(), [&](const char* name) {
-        descriptor_ = ::open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, permissions);
-        return descriptor_ >= 0;
+    temporary_ = take_free_name(target_, this_process(), [this](const char* name) {
+        file_ = create_named(name);
+        return file_.is_open();
     });
     if (temporary_.empty())
         fail(errno);
@@ -239,8 +181,8 @@ void AtomicFile::open_named(mode_t permissions) {
 
 void AtomicFile::give_temporary_name() {
     const UnfinishedName::Creation creation;
-    temporary_ = take_free_name(target_, this_process(),
-                                [this](const char* name) { return name_file(descriptor_, name); });
+    temporary_ =
+        take_free_name(target_, this_process(), [this](const char* name) { return name_file(file_, name); });
     if (temporary_.empty())
         fail(errno);
     nameless_ = false;
@@ -261,7 +203,7 @@ const std::string& AtomicFile::share() {
 }
 
 void AtomicFile::append(std::string_view bytes) {
-    if (descriptor_ < 0)
+    if (!file_.is_open())
         throw Error(ErrorKind::internal, fmt::format("'{}' was written to after its end", path_));
     if (bytes.empty())
         return; // an empty view may be a null pointer
@@ -289,91 +231,67 @@ void AtomicFile::flush() {
 
 void AtomicFile::overwrite(std::uint64_t offset, std::string_view bytes) {
     flush();
-    while (!bytes.empty()) {
-        const int descriptor = spool_ >= 0 ? spool_ : descriptor_;
-        const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-        if (written >= 0) {
-            bytes.remove_prefix(static_cast<std::size_t>(written));
-            offset += static_cast<std::uint64_t>(written);
-        } else if (errno != EINTR) {
-            fail(errno);
-        }
-    }
+    if (!write_all_at(spool_.is_open() ? spool_ : file_, offset, bytes))
+        fail(errno);
 }
 
 // Copies the spool to the output; later writes go to the output directly.
 void AtomicFile::copy_spool() {
-    const int from = std::exchange(spool_, -1);
-    off_t offset = 0;
-    ssize_t got = 0;
-    do {
-        got = ::pread(from, buffer_.get(), buffer_size, offset);
-        if (got > 0) {
-            try {
-                write_out({buffer_.get(), static_cast<std::size_t>(got)});
-            } catch (...) {
-                ::close(from);
-                throw;
-            }
-            offset += got;
-        }
-    } while (got > 0 || (got < 0 && errno == EINTR));
-    const int system_error = errno;
-    ::close(from);
-    if (got < 0)
-        fail(system_error);
-}
-
-void AtomicFile::write_out(std::string_view bytes) {
-    while (!bytes.empty()) {
-        const ssize_t written = ::write(spool_ >= 0 ? spool_ : descriptor_, bytes.data(), bytes.size());
-        if (written >= 0) {
-            bytes.remove_prefix(static_cast<std::size_t>(written));
-        } else if (errno == EAGAIN || errno == EWOULDBLOCK) {
-            pollfd ready{.fd = descriptor_, .events = POLLOUT, .revents = 0};
-            ::poll(&ready, 1, -1); // the next write reports the result
-        } else if (errno != EINTR) {
+    const NativeFile from = std::move(spool_);
+    const std::span<std::byte> room(reinterpret_cast<std::byte*>(buffer_.get()), buffer_size);
+    std::uint64_t offset = 0;
+    for (;;) {
+        const std::ptrdiff_t got = read_at(from, offset, room);
+        if (got < 0)
             fail(errno);
-        }
+        if (got == 0)
+            return;
+        write_out({buffer_.get(), static_cast<std::size_t>(got)});
+        offset += static_cast<std::uint64_t>(got);
     }
 }
 
+void AtomicFile::write_out(std::string_view bytes) {
+    if (!write_all(spool_.is_open() ? spool_ : file_, bytes))
+        fail(errno);
+}
+
 void AtomicFile::commit() {
-    if (descriptor_ < 0)
+    if (!file_.is_open())
         throw Error(ErrorKind::internal, fmt::format("'{}' was ended twice", path_));
     flush();
-    if (spool_ >= 0)
+    if (spool_.is_open())
         copy_spool();
     // Only a rename can take a name that is in use.
     if (nameless_)
         give_temporary_name();
-    const int descriptor = std::exchange(descriptor_, -1);
-    // On Linux, an interrupted close has closed the file.
-    if (owns_descriptor_ && ::close(descriptor) != 0 && errno != EINTR)
-        fail(errno);
-    if (!temporary_.empty()) {
-        if (std::rename(temporary_.c_str(), target_.c_str()) != 0)
+    if (temporary_.empty()) {
+        if (!owns_file_)
+            file_.release();
+        else if (!file_.close())
             fail(errno);
-        temporary_.clear();
-        unfinished_.withdraw();
+        return;
     }
+    if (!close_and_rename(file_, temporary_, target_))
+        fail(errno);
+    temporary_.clear();
+    unfinished_.withdraw();
 }
 
 void AtomicFile::discard() noexcept {
-    const int descriptor = std::exchange(descriptor_, -1);
-    if (descriptor >= 0 && owns_descriptor_)
-        ::close(descriptor);
-    if (const int spooled = std::exchange(spool_, -1); spooled >= 0)
-        ::close(spooled);
+    if (!owns_file_)
+        file_.release();
+    file_.close();
+    spool_.close();
     if (!temporary_.empty())
-        ::unlink(temporary_.c_str());
+        remove_file(temporary_);
     temporary_.clear();
     nameless_ = false;
     unfinished_.withdraw();
 }
 
 void AtomicFile::fail(int system_error) {
-    if (spool_ >= 0 && (system_error == ENOSPC || system_error == EDQUOT))
+    if (spool_.is_open() && (system_error == ENOSPC || system_error == quota_error))
         fail_spool(system_error);
     discard();
     throw output_error(target_.empty() ? path_ : target_, system_error);
@@ -386,12 +304,8 @@ void write_whole_file(const std::string& path, std::string_view bytes) {
 }
 
 void check_writable(const std::string& path) {
-    struct stat status {};
-    const bool exists = path != "-" && stat(path.c_str(), &status) == 0;
-    if (path == "-" || names_open_file(path) ||
-        (exists && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode)))
-        return;
-    const AtomicFile file(path);
+    if (path != "-" && !find_target(path).in_place)
+        static_cast<void>(AtomicFile(path));
 }
 
 } // namespace lamella

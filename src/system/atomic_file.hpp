@@ -4,9 +4,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "system/native_file.hpp"
 #include "system/unfinished_name.hpp"
-
-#include <sys/types.h>
 
 #include <atomic>
 #include <cstddef>
@@ -16,10 +15,6 @@
 #include <string_view>
 
 namespace lamella {
-
-/// Returns the permissions of a replacement for a file with permissions `mode`. `same_group` states whether
-/// the replacement has the same group; if not, permissions of the group are dropped.
-[[nodiscard]] unsigned kept_permissions(unsigned mode, bool same_group) noexcept;
 
 /// Returns the name of an output in messages: "standard output" for "-".
 [[nodiscard]] std::string name_of_output(const std::string& path);
@@ -70,9 +65,8 @@ class AtomicFile {
     [[nodiscard]] const std::string& share();
 
   private:
-    void open_in_place();
     void open_unfinished();
-    void open_named(mode_t permissions);
+    void open_named();
     void give_temporary_name();
     void announce();
     void spool();
@@ -89,9 +83,9 @@ class AtomicFile {
     std::string temporary_; ///< the temporary name until `commit`; empty if there is none
     bool nameless_ = false; ///< true while the file has no name
     UnfinishedName unfinished_;
-    int descriptor_ = -1;
-    int spool_ = -1; ///< descriptor of the unnamed temporary file, if the output is kept in one
-    bool owns_descriptor_ = true;
+    NativeFile file_;
+    NativeFile spool_; ///< the unnamed temporary file, if the output is kept in one
+    bool owns_file_ = true;
     std::unique_ptr<char[]> buffer_;
     std::size_t buffered_ = 0;
     std::atomic<std::uint64_t> bytes_{0};

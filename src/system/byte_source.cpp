@@ -5,13 +5,9 @@
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "system/growing_memory.hpp"
+#include "system/mapped_file.hpp"
+#include "system/native_file.hpp"
 #include "system/spill_file.hpp"
-
-#include <fcntl.h>
-#include <poll.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cassert>
@@ -19,7 +15,7 @@
 #include <cstdint>
 #include <cstring>
 #include <memory>
-#include <new>
+#include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -51,23 +47,13 @@ namespace {
 
 } // namespace
 
-/// A regular file and its size when it was opened. The destructor closes it.
+/// A regular file and its size when it was opened.
 class OpenFile {
   public:
-    explicit OpenFile(int descriptor) : descriptor_(descriptor) {}
-    ~OpenFile() { close(descriptor_); }
-    OpenFile(const OpenFile&) = delete;
-    OpenFile& operator=(const OpenFile&) = delete;
+    explicit OpenFile(NativeFile opened) : file(std::move(opened)) {}
 
-    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
-    /// Returns false if the process already has half of the files open that it may open, because the others
-    /// are kept for other uses.
-    [[nodiscard]] bool may_stay_open() const noexcept { return descriptor_ < sysconf(_SC_OPEN_MAX) / 2; }
-
+    NativeFile file;
     std::uint64_t size = 0;
-
-  private:
-    int descriptor_;
 };
 
 std::uint64_t ByteSource::size() const noexcept {
@@ -76,83 +62,48 @@ std::uint64_t ByteSource::size() const noexcept {
 
 namespace {
 
-/// Memory mapped by the system.
-class Mapping {
-  public:
-    Mapping(void* data, std::size_t bytes) : data_(data), bytes_(bytes) {}
-    ~Mapping() { munmap(data_, bytes_); }
-    Mapping(const Mapping&) = delete;
-    Mapping& operator=(const Mapping&) = delete;
-
-  private:
-    void* data_;
-    std::size_t bytes_;
-};
-
 /// Maps a temporary file. It has no name, so no other process can shorten it.
-ByteSource map_spilled(std::string name, const SpillFile& file, std::size_t bytes) {
-    void* const data = mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file.descriptor(), 0);
-    if (data == MAP_FAILED)
-        throw std::bad_alloc();
-    const auto mapping = std::make_shared<Mapping>(data, bytes);
-    madvise(data, bytes, MADV_SEQUENTIAL); // readers go from front to back
-    return {std::move(name), {static_cast<const std::byte*>(data), bytes}, mapping, true};
+ByteSource map_spilled(std::string name, const SpillFile& spilled, std::size_t bytes) {
+    const auto mapping = std::make_shared<MappedFile>(spilled.file(), bytes);
+    return {std::move(name), mapping->bytes(), mapping, true};
 }
 
 [[noreturn]] void fail_cut_off(const ByteSource& source, std::uint64_t offset) {
-    struct stat status {};
-    std::uint64_t end = offset;
-    if (fstat(source.file->descriptor(), &status) == 0)
-        end = std::min(end, static_cast<std::uint64_t>(status.st_size));
+    const std::uint64_t end = std::min(offset, size_of(source.file->file).value_or(offset));
     fail(source.name, "was cut off while it was read: it had " + std::to_string(source.size()) +
                           " bytes, and ends after " + std::to_string(end) + " now");
 }
 
 /// Reads until `to` is full or the file ends. Returns the number of bytes read.
-std::size_t read_at(int descriptor, std::uint64_t offset, std::span<std::byte> to, const std::string& name) {
-    std::size_t done = 0;
-    while (done < to.size()) {
-        const ssize_t got =
-            pread(descriptor, to.data() + done, to.size() - done, static_cast<off_t>(offset + done));
-        if (got == 0)
-            break;
-        if (got > 0)
-            done += static_cast<std::size_t>(got);
-        else if (errno != EINTR)
-            fail_with_errno(name, errno);
-    }
-    return done;
+std::size_t read_from(const NativeFile& file, std::uint64_t offset, std::span<std::byte> to,
+                      const std::string& name) {
+    const std::ptrdiff_t got = read_at(file, offset, to);
+    if (got < 0)
+        fail_with_errno(name, errno);
+    return static_cast<std::size_t>(got);
 }
 
 /// Reads up to `most` bytes from the beginning of a regular file. Some system files have fewer bytes than
 /// they report.
-ByteSource read_beginning(int descriptor, std::string name, std::size_t most) {
+ByteSource read_beginning(const NativeFile& file, std::string name, std::size_t most) {
     const auto memory = std::make_shared<Pages>(most);
     auto* const data = static_cast<std::byte*>(memory->data());
-    const std::size_t bytes = read_at(descriptor, 0, {data, most}, name);
+    const std::size_t bytes = read_from(file, 0, {data, most}, name);
     if (bytes == 0)
         fail(name, "is empty, expected a file with content");
     return {std::move(name), {data, bytes}, memory};
 }
 
-/// Waits until reading does not block.
-void wait_for_bytes(int descriptor, const Execution& execution) {
+/// Waits for bytes and reads some of them. Returns 0 at the end.
+std::size_t read_stream(const NativeFile& file, std::span<std::byte> room, const std::string& name,
+                        const Execution& execution) {
     constexpr int patience_ms = 100;
     for (;;) {
-        if (execution.cancelled())
-            throw Error(ErrorKind::cancelled, "cancelled");
-        pollfd waiting{descriptor, POLLIN, 0};
-        if (poll(&waiting, 1, patience_ms) != 0)
-            return; // ready, or an error that the next read reports
-    }
-}
-
-/// Waits for bytes and reads some of them. Returns 0 at the end.
-std::size_t read_some(int descriptor, std::span<std::byte> room, const std::string& name,
-                      const Execution& execution) {
-    for (;;) {
-        wait_for_bytes(descriptor, execution);
-        const ssize_t got = read(descriptor, room.data(), room.size());
+        do {
+            if (execution.cancelled())
+                throw Error(ErrorKind::cancelled, "cancelled");
+        } while (!wait_for_bytes(file, patience_ms));
+        const std::ptrdiff_t got = read_some(file, room);
         if (got >= 0)
             return static_cast<std::size_t>(got);
         if (errno != EINTR && errno != EAGAIN)
@@ -161,7 +112,7 @@ std::size_t read_some(int descriptor, std::span<std::byte> room, const std::stri
 }
 
 /// Copies the bytes read before and all further ones to a spill file.
-ByteSource spool(int descriptor, std::string name, std::span<const std::byte> begin,
+ByteSource spool(const NativeFile& stream, std::string name, std::span<const std::byte> begin,
                  const Execution& execution) {
     SpillFile file;
     file.write(0, begin);
@@ -169,20 +120,20 @@ ByteSource spool(int descriptor, std::string name, std::span<const std::byte> be
     constexpr std::size_t at_once = std::size_t{1} << 20;
     const Pages memory(at_once);
     const std::span<std::byte> room(static_cast<std::byte*>(memory.data()), at_once);
-    while (const std::size_t got = read_some(descriptor, room, name, execution)) {
+    while (const std::size_t got = read_stream(stream, room, name, execution)) {
         file.write(size, room.first(got));
         size += got;
     }
     return map_spilled(std::move(name), file, size);
 }
 
-ByteSource read_to_end(int descriptor, std::string name, std::uint64_t most_in_memory,
+ByteSource read_to_end(const NativeFile& stream, std::string name, std::uint64_t most_in_memory,
                        const Execution& execution) {
     auto memory = std::make_shared<GrowingMemory>();
-    while (const std::size_t got = read_some(descriptor, memory->room(), name, execution)) {
+    while (const std::size_t got = read_stream(stream, memory->room(), name, execution)) {
         memory->use(got);
         if (memory->size() > most_in_memory)
-            return spool(descriptor, std::move(name), memory->bytes(), execution);
+            return spool(stream, std::move(name), memory->bytes(), execution);
     }
     if (memory->size() == 0)
         fail(name, "is empty, expected a file with content");
@@ -190,35 +141,34 @@ ByteSource read_to_end(int descriptor, std::string name, std::uint64_t most_in_m
     return {std::move(name), memory->bytes(), memory};
 }
 
-ByteSource take(std::shared_ptr<OpenFile> file, std::string name, std::uint64_t most_in_memory,
+ByteSource take(std::shared_ptr<OpenFile> opened, std::string name, std::uint64_t most_in_memory,
                 WindowTest* in_windows, const Execution& execution) {
-    const int descriptor = file->descriptor();
-    const int flags = fcntl(descriptor, F_GETFL);
-    if (flags < 0 || (flags & O_PATH) != 0 || (flags & O_ACCMODE) == O_WRONLY)
-        fail_with_errno(name, EBADF);
-    struct stat status {};
-    if (fstat(descriptor, &status) != 0)
+    const NativeFile& file = opened->file;
+    const std::optional<InputStatus> status = status_of_input(file);
+    if (!status)
         fail_with_errno(name, errno);
-    if (S_ISDIR(status.st_mode))
+    switch (status->kind) {
+    case InputKind::unreadable:
+        fail_with_errno(name, EBADF);
+    case InputKind::folder:
         fail_with_errno(name, EISDIR);
-    // A device may have no end. A terminal has one, when its user ends the input.
-    if (S_ISBLK(status.st_mode) || (S_ISCHR(status.st_mode) && isatty(descriptor) == 0))
+    case InputKind::device: // may have no end
         fail(name, "is a device, expected a file or a pipe");
-    // Some system files report a size of 0, and standard input may have been read in part. These are read to
-    // their end.
-    if (!S_ISREG(status.st_mode) || status.st_size <= 0 || lseek(descriptor, 0, SEEK_CUR) != 0)
-        return read_to_end(descriptor, std::move(name), most_in_memory, execution);
-    file->size = static_cast<std::uint64_t>(status.st_size);
-    ByteSource source =
-        read_beginning(descriptor, std::move(name), std::min<std::uint64_t>(file->size, window_beginning));
-    if (file->size < window_beginning && file->size <= most_in_memory)
+    case InputKind::stream:
+        return read_to_end(file, std::move(name), most_in_memory, execution);
+    case InputKind::file:
+        break;
+    }
+    opened->size = status->size;
+    const std::size_t expected = std::min<std::uint64_t>(opened->size, window_beginning);
+    ByteSource source = read_beginning(file, std::move(name), expected);
+    if (opened->size < window_beginning && opened->size <= most_in_memory)
         return source;
-    posix_fadvise(descriptor, 0, 0, POSIX_FADV_SEQUENTIAL); // doubles the read-ahead from a cold disk
-    const std::size_t expected = std::min<std::uint64_t>(file->size, window_beginning);
-    source.file = std::move(file);
+    read_ahead(file);
+    source.file = std::move(opened);
     if (source.bytes.size() < expected)
         fail_cut_off(source, source.bytes.size());
-    if (in_windows != nullptr && source.file->may_stay_open() && in_windows(source.bytes, source.size()))
+    if (in_windows != nullptr && may_stay_open(source.file->file) && in_windows(source.bytes, source.size()))
         return source;
     return whole(source, execution, most_in_memory);
 }
@@ -227,14 +177,11 @@ ByteSource take(std::shared_ptr<OpenFile> file, std::string name, std::uint64_t 
 
 ByteSource open_bytes(const std::string& path, const Execution& execution, std::uint64_t most_in_memory,
                       WindowTest* in_windows) {
-    const bool standard_input = path == "-";
-    std::string name = standard_input ? "standard input" : path;
-    // Non-blocking: waiting for the writer of a pipe must not delay cancellation.
-    const int descriptor = standard_input ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-                                          : open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
-    if (descriptor < 0)
+    std::string name = path == "-" ? "standard input" : path;
+    NativeFile file = open_input(path);
+    if (!file.is_open())
         fail_with_errno(name, errno);
-    return take(std::make_shared<OpenFile>(descriptor), std::move(name), most_in_memory, in_windows,
+    return take(std::make_shared<OpenFile>(std::move(file)), std::move(name), most_in_memory, in_windows,
                 execution);
 }
 
@@ -269,21 +216,15 @@ void copy_out(const ByteSource& source, std::uint64_t offset, std::span<std::byt
             std::memcpy(to.data(), source.bytes.data() + offset, to.size());
         return;
     }
-    if (const std::size_t got = read_at(source.file->descriptor(), offset, to, source.name); got < to.size())
+    if (const std::size_t got = read_from(source.file->file, offset, to, source.name); got < to.size())
         fail_cut_off(source, offset + got);
 }
 
 void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept {
     if (!source.on_disk)
         return;
-    // Other readers may be using the first and the last page of the range. These pages are then read again.
-    static const auto page = static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
-    const std::byte* const base = source.bytes.data(); // at the beginning of a page
-    const auto begin = static_cast<std::size_t>(stretch.data() - base);
-    const std::size_t first = begin / page * page;
-    const std::size_t last = begin + stretch.size();
-    if (first < last)
-        madvise(const_cast<std::byte*>(base) + first, last - first, MADV_DONTNEED);
+    const auto end = static_cast<std::size_t>(stretch.data() - source.bytes.data()) + stretch.size();
+    release_mapped(source.bytes.first(end), stretch);
 }
 
 Execution releasing(const ByteSource& source, const Execution& execution) {

@@ -2,6 +2,8 @@
 
 // Writes a part of a file that several processes write together.
 
+#include "system/native_file.hpp"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -13,10 +15,6 @@ class FileChunk {
   public:
     /// `name` is the name of the file in errors, because the user does not know its temporary path.
     FileChunk(const std::string& path, std::uint64_t offset, std::string name);
-    ~FileChunk();
-    FileChunk(const FileChunk&) = delete;
-    FileChunk& operator=(const FileChunk&) = delete;
-
     void append(std::string_view bytes);
 
     /// Makes sure that all bytes have reached the file. Must be called once, at the end.
@@ -25,7 +23,7 @@ class FileChunk {
   private:
     std::string name_;
     std::uint64_t offset_; ///< offset of the next byte
-    int descriptor_ = -1;
+    NativeFile file_;
 };
 
 } // namespace lamella

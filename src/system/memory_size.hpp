@@ -11,7 +11,9 @@ namespace lamella {
 [[nodiscard]] std::uint64_t memory_size();
 
 /// Returns the default memory limit of a job: three quarters of `memory_size`.
-[[nodiscard]] std::uint64_t usual_memory();
+[[nodiscard]] inline std::uint64_t usual_memory() {
+    return memory_size() / 4 * 3;
+}
 /// Returns the requested limit, or the default if that is 0.
 [[nodiscard]] inline std::uint64_t memory_limit(std::uint64_t wished) {
     return wished != 0 ? wished : usual_memory();

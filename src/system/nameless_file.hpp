@@ -2,7 +2,7 @@
 
 // Unnamed files, which disappear no matter how the process ends, and temporary names for unfinished files.
 
-#include <sys/types.h>
+#include "system/native_file.hpp"
 
 #include <filesystem>
 #include <functional>
@@ -11,10 +11,12 @@
 
 namespace lamella {
 
-/// Opens a new unnamed file in `folder`, for reading and writing. It can be named later. Returns the
-/// descriptor, which the caller must close. On failure returns -1 and sets errno, to EOPNOTSUPP if the system
-/// has no such files or cannot name them.
-[[nodiscard]] int create_nameless(const std::string& folder, mode_t permissions);
+/// Opens a new unnamed file in `folder`, for reading and writing. It can be named later. On failure the
+/// result is not open and errno is set, to EOPNOTSUPP if the system has no such files or cannot name them.
+/// (On Windows the file has a hidden name, but the system removes it when it is closed.)
+[[nodiscard]] NativeFile create_nameless(const std::string& folder);
+/// Opens a new file of this name, for writing. Fails with EEXIST if the name is in use.
+[[nodiscard]] NativeFile create_named(const char* name);
 
 /// Tries hidden names `.NAME.OWNER-N.tmp` in the folder of `target` until `take` returns true for one, and
 /// returns this name. If `take` returns false and sets errno to EEXIST, the name is in use, and the next one
@@ -28,14 +30,21 @@ namespace lamella {
 
 /// Gives a file of `create_nameless` its name. May be called once. On failure returns false and sets errno,
 /// to EEXIST if the name is in use.
-[[nodiscard]] bool name_file(int descriptor, const char* name);
+[[nodiscard]] bool name_file(const NativeFile& file, const char* name);
+/// Closes a file and gives it another name, which may be in use.
+[[nodiscard]] bool close_and_rename(NativeFile& file, const std::string& name, const std::string& target);
+/// Removes a file, if it exists.
+void remove_file(const std::string& name) noexcept;
 
-/// Returns the folder for scratch files: that in the environment variable TMPDIR, else /var/tmp, which is on
-/// a disk, whereas /tmp may be in memory; /tmp only if /var/tmp is not writable.
+/// Returns the folder for scratch files. On POSIX this is the one in the environment variable TMPDIR, else
+/// /var/tmp, which is on a disk, whereas /tmp may be in memory; /tmp only if /var/tmp is not writable. On
+/// Windows it is the one in TMP or TEMP.
 [[nodiscard]] std::string scratch_folder();
+/// Returns the environment variable that sets this folder.
+[[nodiscard]] std::string_view scratch_variable() noexcept;
 
 /// Opens a scratch file like create_nameless, but readable only by this user and never to be named. If the
 /// file system has no unnamed files, creates a named one and removes its name at once.
-[[nodiscard]] int create_scratch(const std::string& folder);
+[[nodiscard]] NativeFile create_scratch(const std::string& folder);
 
 } // namespace lamella

@@ -2,6 +2,8 @@
 
 // Stores data on disk that do not fit into memory.
 
+#include "system/native_file.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -20,9 +22,6 @@ class SpillFile {
     /// once, so that a full disk is detected before the work is done. `of_all` is the total size of several
     /// such files, for errors.
     explicit SpillFile(std::uint64_t bytes = 0, std::uint64_t of_all = 0);
-    ~SpillFile();
-    SpillFile(const SpillFile&) = delete;
-    SpillFile& operator=(const SpillFile&) = delete;
 
     void write(std::uint64_t offset, std::span<const std::byte> bytes);
     void read(std::uint64_t offset, std::span<std::byte> bytes) const;
@@ -30,14 +29,14 @@ class SpillFile {
     /// again.
     void forget(std::uint64_t offset, std::uint64_t bytes) noexcept;
 
-    [[nodiscard]] int descriptor() const noexcept { return descriptor_; }
+    [[nodiscard]] const NativeFile& file() const noexcept { return file_; }
 
   private:
     [[noreturn]] void fail(int system_error) const;
 
     std::string folder_;
     std::uint64_t bytes_; ///< size for errors
-    int descriptor_ = -1;
+    NativeFile file_;
 };
 
 } // namespace lamella

@@ -4,7 +4,8 @@
 
 #include "lamella/system/whole_file.hpp"
 
-#include <csignal>
+#include "system/ending.hpp"
+
 #include <string>
 
 namespace lamella {
@@ -26,9 +27,9 @@ class UnfinishedName {
     bool withdraw() noexcept;
 
     /// Must be held from before a name is created until it is announced or, if that fails, removed again.
-    /// remove_unfinished waits for all holders; after that the constructor throws Error{cancelled}. The signal
-    /// of used-up processor time is held back from this thread, because its handler could not wait for the
-    /// thread that it interrupts.
+    /// remove_unfinished waits for all holders; after that the constructor throws Error{cancelled}. The
+    /// signal of used-up processor time is held back from this thread, because its handler could not wait for
+    /// the thread that it interrupts.
     class Creation {
       public:
         Creation();
@@ -37,9 +38,7 @@ class UnfinishedName {
         Creation& operator=(const Creation&) = delete;
 
       private:
-        void end() noexcept;
-
-        sigset_t signals_before_{};
+        TimeSignalHold hold_; ///< until the creation has ended
     };
 
     struct Slot;

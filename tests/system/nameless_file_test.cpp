@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -15,36 +17,36 @@ namespace {
 
 TEST(NamelessFile, HasNoNameUntilItGetsOne) {
     const TemporaryFolder folder;
-    const int descriptor = create_nameless(folder.path().string(), 0640);
-    if (descriptor < 0 && errno == EOPNOTSUPP)
+    NativeFile file = create_nameless(folder.path().string());
+    if (!file.is_open() && errno == EOPNOTSUPP)
         GTEST_SKIP() << "this file system has no files without a name";
-    ASSERT_GE(descriptor, 0);
-    EXPECT_EQ(::write(descriptor, "bytes", 5), 5);
+    ASSERT_TRUE(file.is_open());
+    EXPECT_TRUE(write_all(file, "bytes"));
     EXPECT_TRUE(folder.entries().empty());
     write_file(folder.file("taken"), "old");
-    EXPECT_FALSE(name_file(descriptor, folder.file("taken").c_str()));
+    EXPECT_FALSE(name_file(file, folder.file("taken").c_str()));
     EXPECT_EQ(errno, EEXIST);
-    EXPECT_TRUE(name_file(descriptor, folder.file("new").c_str()));
-    ::close(descriptor);
+    EXPECT_TRUE(name_file(file, folder.file("new").c_str()));
+    file.close();
     EXPECT_EQ(file_bytes(folder.file("new")), "bytes");
     EXPECT_EQ(file_bytes(folder.file("taken")), "old");
 }
 
 TEST(NamelessFile, OfScratchIsForThisUserOnlyAndLeavesNothing) {
     const TemporaryFolder folder;
-    const int descriptor = create_scratch(folder.path().string());
-    ASSERT_GE(descriptor, 0);
+    NativeFile file = create_scratch(folder.path().string());
+    ASSERT_TRUE(file.is_open());
     EXPECT_TRUE(folder.entries().empty());
-    EXPECT_EQ(::write(descriptor, "bytes", 5), 5);
-    char read[5] = {};
-    EXPECT_EQ(::pread(descriptor, read, 5, 0), 5);
-    EXPECT_EQ(std::string(read, 5), "bytes");
+    EXPECT_TRUE(write_all(file, "bytes"));
+    std::array<std::byte, 6> read{};
+    EXPECT_EQ(read_at(file, 0, read), 5);
+    EXPECT_EQ(std::string(reinterpret_cast<const char*>(read.data()), 5), "bytes");
     struct stat status {};
-    ASSERT_EQ(::fstat(descriptor, &status), 0);
+    ASSERT_EQ(::fstat(static_cast<int>(file.handle()), &status), 0);
     EXPECT_EQ(status.st_mode & 0777U, 0600U);
-    ::close(descriptor);
+    file.close();
     EXPECT_TRUE(folder.entries().empty());
-    EXPECT_LT(create_scratch(folder.file("absent")), 0);
+    EXPECT_FALSE(create_scratch(folder.file("absent")).is_open());
     EXPECT_EQ(errno, ENOENT);
 }
 

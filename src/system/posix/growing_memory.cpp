@@ -1,5 +1,7 @@
 #include "system/growing_memory.hpp"
 
+#include "system/posix/kernel.hpp"
+
 #include <sys/mman.h>
 
 #include <cassert>
@@ -31,7 +33,7 @@ void GrowingMemory::trim() {
 }
 
 void GrowingMemory::resize(std::size_t bytes) {
-    void* moved = mremap(data_, capacity_, bytes, MREMAP_MAYMOVE);
+    void* const moved = resize_mapping(data_, capacity_, bytes);
     if (moved == MAP_FAILED)
         throw std::bad_alloc();
     data_ = static_cast<std::byte*>(moved);

@@ -62,8 +62,4 @@ std::uint64_t memory_size() {
     return size;
 }
 
-std::uint64_t usual_memory() {
-    return memory_size() / 4 * 3;
-}
-
 } // namespace lamella
