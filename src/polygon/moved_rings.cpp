@@ -61,8 +61,9 @@ struct MovedSide {
 struct Turn {
     double sine; ///< positive to the left
     double cosine;
-    double mitre; ///< 1 / (1 + cosine), infinite for a fold; moved sides meet at this times the sum of both
-                  ///< normals
+    /// 1 / (1 + cosine), infinite for a fold. Moved sides meet at the corner plus this factor times the sum
+    /// of their displacements.
+    double mitre;
 
     /// Returns whether the sides nearly run back along one another: then the turn is mostly rounding error.
     [[nodiscard]] bool folds() const noexcept { return !(1 + cosine > 1e-6); }
@@ -129,7 +130,7 @@ Point2 with_length(double length, const Point2& p) noexcept {
     return (length / std::sqrt(p.x * p.x + p.y * p.y)) * p;
 }
 
-/// Moved rings around the wedges of corners.
+/// Makes the paths of moved rings around the wedges at corners.
 class Wedges {
   public:
     Wedges(double reach, const OffsetCorners& corners)
@@ -146,7 +147,8 @@ class Wedges {
                 out.push_back(corner + turn.mitre * (n + m));
                 return;
             }
-            // Tangent of a quarter of the turn: along each side, the distance to the cut of the mitre.
+            // The tangent of a quarter of the turn. Times the offset distance, it is the length by which each
+            // moved side is extended to the cut of the mitre.
             const double along = std::sqrt(std::max(0.0, 1 - cosine)) /
                                  (std::sqrt(2.0) + std::sqrt(std::max(0.0, 1 + cosine)));
             out.push_back(corner + n + reach_ * along * u);
@@ -306,7 +308,7 @@ class RingMover {
         return sine < 0 || (sides_.turn(i).cosine > 0 && reach_ * sine <= rounding_);
     }
 
-    /// Finds rows of sides between corners where strips separate.
+    /// Finds the rows of sides between corners where strips separate, and shortens those with short sides.
     void find_rows() {
         const std::size_t n = sides_.size();
         std::size_t first = 0;
@@ -400,8 +402,8 @@ class RingMover {
         return true;
     }
 
-    /// Appends the ring, from the middle of the longest side if this middle remains, so that no loop is at
-    /// the ends of the ring.
+    /// Appends the ring, from the middle of the longest side if this middle remains, so that no loop
+    /// contains the point at which the ring begins.
     void put_ends(std::vector<Point2>& out) {
         const std::size_t longest = sides_.longest();
         const MovedSide& side = sides_[longest];
@@ -505,8 +507,8 @@ class RingMover {
     std::vector<Point2> ends_points_; ///< of one side
 };
 
-/// Removes repeated points of a ring from `begin` on. A side that shrank to length 0 has two equal end
-/// points.
+/// Removes repeated points of the ring that begins at `begin`, and the ring itself if fewer than three points
+/// remain. A side that shrank to length 0 has two equal end points.
 void drop_repeats(std::vector<Point2>& points, std::size_t begin) {
     points.erase(std::unique(points.begin() + static_cast<std::ptrdiff_t>(begin), points.end()),
                  points.end());

@@ -38,8 +38,8 @@ struct ClosedGaps {
 /// each last point, only the 64 closest first points are examined.
 ///
 /// If the two chains overlap, so that the segments before and after the join cross, one of the two ends is
-/// dropped. This happens where a vertex lies on the edge of a neighbour (a T-junction): both ends differ by
-/// rounding.
+/// dropped, unless the new segment would cross another one. This happens where a vertex lies on the edge of a
+/// neighbour (a T-junction): both ends differ by rounding.
 ///
 /// A layer without chains is returned as it is. Throws Error{usage} for a distance that is not a positive
 /// finite number. O(n + c log c) for n points and c chains if each chain is close to few others.

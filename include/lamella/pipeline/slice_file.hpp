@@ -63,8 +63,8 @@ struct FileJob {
     /// available memory. If an STL file is too large to be sliced as a whole, it is sliced in ranges of
     /// planes, with the same result; an anonymous temporary file in $TMPDIR, else /var/tmp, else /tmp, may
     /// hold its triangles. Some jobs need whole meshes: inspection, strict, repairs that change a mesh,
-    /// adaptive layers, engines that weld, and files that are not plain STL. They throw Error{limit} if they
-    /// exceed an explicit bound; the default bound does not apply to them.
+    /// adaptive layers, engines that weld, and files that are not uncompressed STL. They throw Error{limit}
+    /// if they exceed an explicit bound; the default bound does not apply to them.
     std::uint64_t max_memory = 0;
 
     /// Definition of the layers. Uniform layers are stacked from the bottom of the lowest part.
@@ -135,7 +135,8 @@ struct FileResult {
     std::vector<PartResult> parts;
     std::uint64_t triangles = 0; ///< sum over all parts
     Box3 box;                    ///< box of all parts
-    double mesh_volume_mm3 = 0;  ///< signed volume of all parts; meaningful if they are closed
+    /// Signed volume of all parts, with FileJob::layer_statistics; meaningful if the parts are closed.
+    double mesh_volume_mm3 = 0;
     /// Sums over all parts, with FileJob::inspect or strict.
     std::optional<Inspection> inspection;
     std::vector<std::size_t> unsound; ///< indices of the `files` whose meshes have defects, if inspected
@@ -219,8 +220,8 @@ struct FileResult {
 /// Several processes can slice a job together: all of them call this function with the same job. The file is,
 /// byte for byte, the one that a single process writes. Each process returns the result of the whole job, in
 /// which each time is the longest over all processes. Each process reads a part of each binary STL file, and
-/// slices a range of planes of about equal work. Other files, and jobs that need the whole mesh (other
-/// engines, inspection, repair, adaptive layers), are read by each process as a whole; the planes are divided
+/// slices a range of planes of about equal work. If a file is not binary STL, or if the job needs whole
+/// meshes (see FileJob::max_memory), each process reads all files completely; the planes are divided
 /// nevertheless. If the format has LayerFormat::chunks, each process writes its layers to its part of the
 /// file, which must be on a shared file system. For other formats and for standard output, layers are sent to
 /// process 0, which writes them. If one process throws an error, all of them throw it. With several

@@ -53,8 +53,8 @@ struct OffsetCorners {
 /// another end at their intersection. Growing adds to the material a strip along each edge, and a wedge at
 /// each corner where edges separate; shrinking removes them. The result is exact, with two exceptions. Points
 /// where moved edges intersect are rounded to doubles. Rings that touch or cross themselves or others after
-/// the move, and rings whose collinear points are removed, have errors of a few times 2^-36 of the layer's
-/// extent.
+/// the move, and rings whose collinear points are removed, have errors of a few units of the grid to which
+/// `fill` rounds.
 ///
 /// Open chains stay as they are. A distance of 0 returns the layer itself, bit for bit; other results have no
 /// hatches. `vanished`, if given, is set to the number of rings that vanish: rings of bodies that are too

@@ -85,8 +85,9 @@ struct ContourRule {
     double start_direction_degrees = 90; ///< of StartPoint::aligned
     /// Treatment of walls thinner than twice the beam's offset. With ThinWalls::line, walls at least
     /// `thinnest` wide get lines. These are stored as hatches (two points each) in the exposure of the
-    /// outermost contour. Where an inner contour does not fit, its exposure has lines, too. The exposure of
-    /// the innermost contour also has lines in narrow areas that hatch lines miss.
+    /// outermost contour. Where an inner contour does not fit and the previous contour does not reach all
+    /// material, its exposure has lines, too. The exposure of the innermost contour also has lines in narrow
+    /// areas that hatch lines miss.
     ThinWalls thin_walls = ThinWalls::line;
     double thinnest = 0.05;
     ParameterSet parameters{.name = "contour", .power_w = 120, .speed_mm_s = 500};
@@ -102,7 +103,8 @@ struct SkinRule {
     HatchRule hatch;
 };
 
-/// Rules for support parts. These need not be dense, so the default is a wider hatch spacing and less energy.
+/// Rules for support parts. These need not be dense, so the default is a larger hatch distance and less
+/// energy.
 struct SupportRule {
     ContourRule contours{.parameters = {.name = "support", .power_w = 120, .speed_mm_s = 1000}};
     HatchRule hatch{.pattern = HatchPattern::meander,
@@ -118,7 +120,7 @@ struct ScanStrategy {
     SkinRule downskin{.hatch = {.parameters = {.name = "downskin", .power_w = 120, .speed_mm_s = 1200}}};
     SupportRule support; ///< for support parts, which have no skins
     std::uint64_t seed = 1;
-    /// Area, in mm^2, of a layer of a part that vectors may leave unreached without a warning.
+    /// Largest unreached area of a part on a layer that causes no warning, mm^2.
     double accepted_mm2 = 0.005;
 };
 
