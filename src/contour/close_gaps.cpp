@@ -175,7 +175,7 @@ struct JoinedContour {
 
 /// If a vertex lies on the edge of a neighbour, the two ends are the same point except for rounding, and the
 /// join may lead back. Then the chains overlap: the segments before and after the join cross, and one of the
-/// two ends is dropped.
+/// two joined points is dropped.
 ///
 ///        p ------------- a                  p ------------ a
 ///                   b ---+---- q    ->                      `----- q

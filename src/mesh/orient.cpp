@@ -38,7 +38,7 @@ namespace lamella {
 namespace {
 
 /// If an edge has two triangles, the neighbour over it is stored for each of them as twice the neighbour's
-/// number, plus 1 if both triangles run through the edge in the same direction.
+/// number, plus 1 if both triangles use the edge in the same direction.
 constexpr std::uint32_t no_neighbour = 0xffffffff;
 
 PageArray<std::uint32_t> find_neighbours(Executor& executor, const IndexedMesh& mesh) {

@@ -53,8 +53,8 @@ std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& en
     return {};
 }
 
-/// Returns the range of n records that a process reads. It consists of whole chunks of the ordered sum
-/// (`fold_chunk`), so that sums have the same bits as in a single process.
+/// Returns the range of n records that a process reads. It consists of whole chunks of `fold_chunk` records.
+/// Volumes are summed chunk by chunk, so they have the same bits as in a single process.
 RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes) {
     const std::uint64_t chunks = (n + fold_chunk - 1) / fold_chunk;
     const auto bound = [&](std::size_t p) {
@@ -212,7 +212,7 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
     plate_ = build_plate(job.inputs, std::move(meshes), execution, job.max_memory);
 }
 
-/// The first pass. Finds the bounding boxes and the unusable triangles.
+/// The first pass. Finds the bounding boxes, and counts the unusable triangles (not all coordinates finite).
 void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution) {
     for (MeshInput& input : inputs) {
         File& file = files_.emplace_back(File{std::move(input), std::nullopt, std::nullopt, {}, 0, {}, {}});
@@ -512,7 +512,8 @@ std::vector<PlaneRange> Feed::ranges_of(const Plan& plan, PlaneRange mine, unsig
     return ranges;
 }
 
-/// The third pass of a process that reads all files. Reads the chunks that these planes cut.
+/// The third pass of a process that reads all files. Reads the chunks that these planes cut, and ASCII files
+/// as a whole.
 void Feed::bring_own(PlaneRange planes, RangeStore& store, const Execution& execution) {
     for (const File& file : files_) {
         std::atomic<bool> fits{true};

@@ -53,7 +53,7 @@ class Feed {
     /// True if the memory of the job is too small for the meshes.
     [[nodiscard]] bool in_ranges() const noexcept { return in_ranges_; }
 
-    /// Number of usable triangles of a shape, over all processes.
+    /// Number of triangles of a shape with finite coordinates, over all processes.
     [[nodiscard]] std::uint64_t triangles(std::size_t shape) const;
 
     /// Counts the triangles of all parts on the planes, over all processes.
@@ -101,7 +101,7 @@ class Feed {
         std::optional<std::uint64_t> records; ///< number of records of a binary file, when it was opened
         std::optional<RecordRange> part;      ///< read by this process; unset: the whole file
         std::vector<std::size_t> shapes;      ///< of the plate that are made from it
-        std::uint64_t triangles = 0;          ///< number of usable triangles, over all processes
+        std::uint64_t triangles = 0;          ///< number with finite coordinates, over all processes
         Point3f first_corner;                 ///< as stored
         /// For each chunk of a binary file that one process reads: the range of planes that cut its
         /// triangles. Empty for other files.

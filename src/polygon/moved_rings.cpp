@@ -45,10 +45,10 @@ namespace {
 //
 // Short sides. A side can be too short for the lengths cut off at its ends, such as those of a fillet whose
 // radius is below the distance. Such a side is dropped, and its neighbours are extended to their intersection
-// X. This requires that X lies beyond the moved side that is dropped: its strip is then covered by the strips
-// of the neighbours and the area between these strips and X. In a row of concave corners, one pass with a
-// stack finds the remaining sides, as for the lower envelope of lines. If that fails, the ring makes the
-// loops A P B.
+// X. This requires that X lies beyond the dropped side after its move. The strip of the dropped side is then
+// covered by the strips of its neighbours and the area between those and X. In a row of concave corners, one
+// pass with a stack finds the remaining sides, as for the lower envelope of lines. If that fails, the ring
+// makes the loops A P B.
 
 /// A side between two different points.
 struct MovedSide {
@@ -71,7 +71,7 @@ struct Turn {
 
 /// The end of a moved side.
 enum class SideEnd : std::uint8_t {
-    at_corner,    ///< by the rule of the corner
+    at_corner,    ///< at the path around its last corner, see turn_from
     intersection, ///< at the intersection with the next remaining side
     gone,         ///< none: the side is dropped
 };
@@ -120,8 +120,8 @@ MovedSide side_between(const Point2& a, const Point2& b) noexcept {
 }
 
 /// Returns the tolerance of chords. Chords finer than the grid to which crossings are rounded would only add
-/// points. The unit of the grid is at least 2^-37 of the layer's extent, which is at least twice the
-/// distance.
+/// points. The unit of the grid is at least 2^-37 of the extent of the moved layer. A layer with arcs usually
+/// extends over at least twice the distance.
 double arc_tolerance(double reach, const OffsetCorners& corners) noexcept {
     return std::max(corners.arc_tolerance_mm, reach * 0x1p-36);
 }
@@ -482,7 +482,9 @@ class RingMover {
     [[nodiscard]] bool short_cut(std::size_t i) const noexcept {
         if (!stays(i) || !stays(after(i)))
             return false;
-        // A bevel has no wedge to cover points nearest to a corner; there, both strips must stay complete.
+        // The wedge of a bevel does not contain all points nearest to its corner, so point 2 of the proof
+        // does not hold. Instead, the whole kite must lie in both strips: its points then lose only one of
+        // them.
         return shape_ != OffsetCorner::bevel ||
                (sides_.turn(i).cosine >= 0 &&
                 reach_ * -parting(i) <= std::min(sides_[i].length, sides_[after(i)].length));

@@ -30,8 +30,8 @@ namespace lamella {
 
 namespace {
 
-/// Moved rings that cross more often are united by halves. They hardly do unless most bodies overlap most
-/// others when they are moved.
+/// Moved rings that cross more often are united by divide and conquer. They hardly do unless most bodies
+/// overlap most others when they are moved.
 constexpr CrossingLimit few_crossings{4096, 16};
 
 void check(std::span<const double> distances, const OffsetCorners& corners) {

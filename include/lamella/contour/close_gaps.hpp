@@ -37,9 +37,9 @@ struct ClosedGaps {
 /// or would close a single chain that is shorter than twice its gap: a short straight chain is no ring. For
 /// each last point, only the 64 closest first points are examined.
 ///
-/// If the two chains overlap, so that the segments before and after the join cross, one of the two ends is
-/// dropped, unless the new segment would cross another one. This happens where a vertex lies on the edge of a
-/// neighbour (a T-junction): both ends differ by rounding.
+/// If the two chains overlap, so that the segments before and after the join cross, one of the two joined
+/// points is dropped, unless the new segment would cross another one. This happens where a vertex lies on the
+/// edge of a neighbour (a T-junction): both points differ by rounding.
 ///
 /// A layer without chains is returned as it is. Throws Error{usage} for a distance that is not a positive
 /// finite number. O(n + c log c) for n points and c chains if each chain is close to few others.

@@ -64,7 +64,8 @@ struct FileJob {
     /// planes, with the same result; an anonymous temporary file in $TMPDIR, else /var/tmp, else /tmp, may
     /// hold its triangles. Some jobs need whole meshes: inspection, strict, repairs that change a mesh,
     /// adaptive layers, engines that weld, and files that are not uncompressed STL. They throw Error{limit}
-    /// if they exceed an explicit bound; the default bound does not apply to them.
+    /// if they exceed an explicit bound; the default bound applies only while their files are read (see
+    /// MeshReadOptions).
     std::uint64_t max_memory = 0;
 
     /// Definition of the layers. Uniform layers are stacked from the bottom of the lowest part.
@@ -190,8 +191,8 @@ struct FileResult {
 
     /// Wall times. `read` includes finding the bounding box; `weld` includes inspection and repair of meshes,
     /// and welding for engines that need it. `write` is the part of writing that must be done in order.
-    /// `slice` includes formatting, which is done in parallel, layer steps and scan vectors; `polygon` and
-    /// `scan` are the times of the last two, summed over threads.
+    /// `slice` includes layer steps, scan vectors, and the part of writing that is done in parallel;
+    /// `polygon` and `scan` are the times of layer steps and of scan vectors, summed over threads.
     struct Seconds {
         double read = 0;
         double weld = 0;

@@ -51,10 +51,10 @@ struct OffsetCorners {
 /// edges that separate are extended to their intersection, so that parts keep their corners; a corner that
 /// would move by more than twice the distance (sharper than 60 degrees) is cut off. Edges that run into one
 /// another end at their intersection. Growing adds to the material a strip along each edge, and a wedge at
-/// each corner where edges separate; shrinking removes them. The result is exact, with two exceptions. Points
-/// where moved edges intersect are rounded to doubles. Rings that touch or cross themselves or others after
-/// the move, and rings whose collinear points are removed, have errors of a few units of the grid to which
-/// `fill` rounds.
+/// each corner where edges separate; shrinking removes them. The result is exact, with two exceptions. New
+/// points are rounded to doubles. Rings that touch or cross themselves or others, before or after the move,
+/// and rings whose collinear points are removed, may have errors of a few units of the grid to which `fill`
+/// rounds.
 ///
 /// Open chains stay as they are. A distance of 0 returns the layer itself, bit for bit; other results have no
 /// hatches. `vanished`, if given, is set to the number of rings that vanish: rings of bodies that are too

@@ -86,8 +86,8 @@ struct ContourRule {
     /// Treatment of walls thinner than twice the beam's offset. With ThinWalls::line, walls at least
     /// `thinnest` wide get lines. These are stored as hatches (two points each) in the exposure of the
     /// outermost contour. Where an inner contour does not fit and the previous contour does not reach all
-    /// material, its exposure has lines, too. The exposure of the innermost contour also has lines in narrow
-    /// areas that hatch lines miss.
+    /// material, the exposure of the inner contour has such lines, too. The exposure of the innermost contour
+    /// also has lines in narrow areas that hatch lines miss.
     ThinWalls thin_walls = ThinWalls::line;
     double thinnest = 0.05;
     ParameterSet parameters{.name = "contour", .power_w = 120, .speed_mm_s = 500};
@@ -97,7 +97,7 @@ struct ContourRule {
 struct SkinRule {
     std::uint32_t layers = 0; ///< at most `most_skin_layers`; 0: no such region
     /// Strips narrower than this are not skin: rounding and sloping walls leave such strips at edges, in
-    /// grooves and on ribs. The limit is accurate to 1 %. The default is the width of a line.
+    /// grooves and on ribs. The limit is accurate to 1 %. The default is the default hatch distance.
     double narrowest = 0.1;
     double overlap = 0.1; ///< distance by which the region is grown into the core
     HatchRule hatch;

@@ -52,7 +52,7 @@ struct MatchingCounts {
 
 /// Sizes and times of one slicing.
 struct SliceReport {
-    double weld_seconds = 0;  ///< joining equal vertices, also into an indexed mesh if the engine needs one
+    double weld_seconds = 0;  ///< joining equal vertices of an indexed mesh, or welding a soup if needed
     double link_seconds = 0;  ///< sweep: ranks, cut graph; others: ranks, intersections, lists
     double slice_seconds = 0; ///< sweep: walk and points; others: reading the lists
     std::uint64_t layers = 0;
@@ -109,8 +109,8 @@ struct Engine {
 
 /// Returns one layer per plane of the plan, in order, each in normal form, empty where the plane misses the
 /// mesh. On a closed, consistently oriented mesh every contour is a ring, for any coordinates. On other
-/// meshes, contours that do not close are kept as open chains. `visitor`, if given, receives the mesh with
-/// joined vertices.
+/// meshes, contours that do not close are kept as open chains. `visitor`, if given, receives the mesh; if it
+/// is indexed, with equal vertices joined.
 ///
 /// Throws Error{limit} for about 2^32 / 3 triangles or more, Error{cancelled}, and the exceptions of the
 /// progress function. The default engine takes O(triangles + points + c log c) for c contours in a layer, and
@@ -129,8 +129,9 @@ void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const E
               std::uint64_t points_in_flight = 0, const TriangleVisitor& visitor = {});
 
 /// Returns the area of the section at each plane of the plan, mm^2, computed directly from the triangles,
-/// without contours. For closed meshes this area equals the area of the layers of every engine, except for
-/// rounding; `lamella verify --mesh` and the tests use it as an independent check. O(triangles + points).
+/// without contours. For closed, consistently oriented meshes this area equals the area of the layers of
+/// every engine, except for rounding; `lamella verify --mesh` and the tests use it as an independent check.
+/// O(triangles + points).
 [[nodiscard]] std::vector<double> section_areas(const Mesh& mesh, const Plan& plan,
                                                 const Execution& execution = {});
 
