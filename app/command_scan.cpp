@@ -1,4 +1,3 @@
-#include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/version.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
@@ -19,7 +18,6 @@
 #include "scan_figures.hpp"
 #include "scan_options.hpp"
 #include "standard_streams.hpp"
-#include "strategy_file.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
@@ -72,34 +70,21 @@ void check_layers(const LayerFile& file) {
 }
 
 Json stats_of(const Command& command, const std::string& path, const LayerFile& file,
-              const ScanStrategy& strategy, const ScanLosses& losses, const ScanResult& result) {
-    Json layers = Json::array();
-    double volume_mm3 = 0;
-    for (std::size_t i = 0; i < result.layers.size(); ++i) {
-        const Layer& first = file.parts.front().layers[i];
-        LayerMeasure measured;
-        for (const LayerPart& part : file.parts)
-            measured.add(measure(part.layers[i]));
-        const double layer_mm3 = measured.area_mm2 * first.thickness();
-        volume_mm3 += layer_mm3;
-        layers.push_back(
-            {{"index", first.index},
-             {"z", first.z},
-             {"thickness", first.thickness()},
-             {"area_mm2", measured.area_mm2},
-             {"scan", with_hash(with_density(scan_json(result.exposures, result.layers[i]), layer_mm3),
-                                result.hashes[i])}});
-    }
-    Json stats = {
-        {"lamella", version()},
-        {"options", options_in_effect(command)},
-        {"input", {{"path", path}, {"format", file.format}, {"parts", file.parts.size()}}},
-        {"seconds", {{"scan", result.scan_seconds}}},
-        {"volume_mm3", volume_mm3},
-        {"scan", with_unreached(with_density(scan_json(result.exposures), volume_mm3), result.unreached)}};
-    stats["scan"]["strategy"] = strategy_json(strategy);
-    stats.update(inverted_json(losses.inverted));
-    stats["layers"] = std::move(layers);
+              const ScanStrategy& strategy, const FileResult& result) {
+    Json stats = {{"lamella", version()},
+                  {"options", options_in_effect(command)},
+                  {"input", {{"path", path}, {"format", file.format}, {"parts", file.parts.size()}}},
+                  {"seconds", {{"scan", result.seconds.scan}}},
+                  {"volume_mm3", result.volume_mm3},
+                  {"scan", scan_json(result, strategy)}};
+    stats.update(doubts_json(result));
+    Json& layers = stats["layers"] = Json::array();
+    for (const LayerStatistics& layer : result.layers)
+        layers.push_back({{"index", layer.index},
+                          {"z", layer.z},
+                          {"thickness", layer.thickness},
+                          {"area_mm2", layer.measure.area_mm2},
+                          {"scan", scan_json(result.exposures, layer)}});
     return stats;
 }
 
@@ -125,13 +110,12 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         hatch_lines += part.hatch_lines();
     }
     const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
-    ScanLosses losses = scan_losses(stacks, file.rounding, execution, max_memory);
-    losses.hatches = hatch_lines;
-    for (const std::vector<std::string>& warnings : {file.warnings, losses.texts()})
-        warn_about(file, warnings, arguments.strict, context.messages);
+    warn_about(file, file.warnings, arguments.strict, context.messages);
+    warn_about(file, LayerDoubts().scan_losses(hatch_lines), arguments.strict, context.messages);
     const LayerFileInfo info = info_of(file);
-    const ScanResult result = scan_layers(arguments.output, format, stacks, file.rounding, info, strategy,
+    const FileResult result = scan_layers(arguments.output, format, stacks, file.rounding, info, strategy,
                                           options, execution, max_memory, file.path);
+    warn_about(file, result.doubts.front().scan_losses(), false, context.messages);
     if (result.unreached.layers > 0)
         context.messages.warn(fmt::format("{}: {}", file.path, result.unreached.text()));
     context.messages.warn_of(output_name(arguments.output), result.warnings);
@@ -139,7 +123,7 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         if (arguments.stats.empty())
             return;
         const std::string text =
-            json_text(stats_of(context.command, arguments.input, file, strategy, losses, result));
+            json_text(stats_of(context.command, arguments.input, file, strategy, result));
         if (arguments.stats == "-")
             context.messages.result(text);
         else

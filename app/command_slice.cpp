@@ -319,11 +319,16 @@ std::string summary(const FileJob& job, const FileResult& result) {
         text += fmt::format("changed  {}\n", changes_text(job.steps, *result.changes));
     if (job.scan)
         text += fmt::format("scan     {}\n", scan_text(result.exposures));
-    const Json figures = as_json(run_figures(result));
+    using Seconds = FileResult::Seconds;
     std::string stages;
-    for (const char* stage : {"read", "weld", "link", "slice", "write"})
-        if (const double seconds = figures[stage]; seconds > 0)
-            stages += fmt::format("{}{} {:.3f}", stages.empty() ? "" : ", ", stage, seconds);
+    for (const auto& [stage, seconds] : {std::pair(Stage::read, &Seconds::read),
+                                         {Stage::weld, &Seconds::weld},
+                                         {Stage::link, &Seconds::link},
+                                         {Stage::slice, &Seconds::slice},
+                                         {Stage::write, &Seconds::write}})
+        if (result.seconds.*seconds > 0)
+            stages += fmt::format("{}{} {:.3f}", stages.empty() ? "" : ", ", stage_name(stage),
+                                  result.seconds.*seconds);
     text += fmt::format("took     {:.3f} s on {} ({})\n", result.seconds.total,
                         counted(result.threads, "thread"), stages);
     if (!result.format.empty())

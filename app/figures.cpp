@@ -120,9 +120,7 @@ Json layers_json(const FileResult& result) {
         if (result.changes)
             layers.back().update(changes_json(layer.changes));
         if (!layer.scan.empty())
-            layers.back()["scan"] = with_hash(with_density(scan_json(result.exposures, layer.scan),
-                                                           layer.measure.area_mm2 * layer.thickness),
-                                              layer.scan_hash);
+            layers.back()["scan"] = scan_json(result.exposures, layer);
     }
     return layers;
 }
@@ -325,10 +323,18 @@ Json open_gaps_json(const OpenGaps& gaps) {
         {"open_gaps", gaps.count}, {"longest_open_gap_mm", gaps.longest_mm}, {"open_gaps_mm", gaps.total_mm}};
 }
 
-Json inverted_json(const InvertedLayers& inverted) {
-    if (inverted.rings == 0)
-        return Json::object();
-    return {{"inverted_rings", inverted.rings}, {"inverted_mm3", inverted.volume_mm3}};
+Json doubts_json(const FileResult& result) {
+    OpenGaps open_gaps;
+    InvertedLayers inverted;
+    for (const LayerDoubts& of_file : result.doubts) {
+        open_gaps += of_file.open_gaps;
+        inverted.rings += of_file.inverted.rings;
+        inverted.volume_mm3 += of_file.inverted.volume_mm3;
+    }
+    Json found = open_gaps.count > 0 ? open_gaps_json(open_gaps) : Json::object();
+    if (inverted.rings > 0)
+        found.update({{"inverted_rings", inverted.rings}, {"inverted_mm3", inverted.volume_mm3}});
+    return found;
 }
 
 Json processes_json(const std::vector<ProcessFigures>& figures) {
@@ -375,11 +381,8 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
         changes.update(changes_json(*result.changes));
         stats["changes"] = std::move(changes);
     }
-    if (job.scan) {
-        stats["scan"] =
-            with_unreached(with_density(scan_json(result.exposures), result.volume_mm3), result.unreached);
-        stats["scan"]["strategy"] = strategy_json(*job.scan);
-    }
+    if (job.scan)
+        stats["scan"] = scan_json(result, *job.scan);
     if (result.report.matching)
         stats["matching"] = matching_json(*result.report.matching);
     if (result.parts.size() > 1) {
@@ -393,16 +396,7 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
             repairs.back()["path"] = result.files[repair.file].path;
         }
     }
-    OpenGaps open_gaps;
-    InvertedLayers inverted;
-    for (const MeshDoubts& of_file : result.doubts) {
-        open_gaps += of_file.open_gaps;
-        inverted.rings += of_file.inverted.rings;
-        inverted.volume_mm3 += of_file.inverted.volume_mm3;
-    }
-    if (open_gaps.count > 0)
-        stats.update(open_gaps_json(open_gaps));
-    stats.update(inverted_json(inverted));
+    stats.update(doubts_json(result));
     if (Json near = near_faces_json(result); !near.empty())
         stats["near_faces"] = std::move(near);
     if (job.repair.close_gaps_mm)

@@ -41,9 +41,9 @@ void warn_about_inverted(const LayerSteps& steps, const LayerFile& file, bool st
     for (const LayerPart& part : file.parts)
         if (!part.exposure)
             contours.push_back(part.layers);
-    const InvertedLayers inverted = inverted_layers(
-        contours, file.rounding, steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick,
-        execution, max_memory);
+    const InversionSearch search = steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick;
+    const InvertedLayers inverted =
+        layer_doubts(contours, file.rounding, search, execution, max_memory).inverted;
     if (inverted.rings > 0)
         warn_about(file, {inverted.text_of_file(contours.front().size())}, strict, messages);
 }

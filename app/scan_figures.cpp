@@ -1,6 +1,7 @@
 #include "scan_figures.hpp"
 
 #include "numbers.hpp"
+#include "strategy_file.hpp"
 
 #include <fmt/format.h>
 
@@ -71,6 +72,13 @@ std::string energy_text(double joules) {
                            : fmt::format("{:.1f} MJ", joules / mega);
 }
 
+/// Returns the figures with the volumetric energy density.
+Json with_density(std::span<const ExposureResult> exposures, double volume_mm3) {
+    Json scan = scan_json(exposures);
+    scan["energy_j_mm3"] = volume_mm3 > 0 ? Json(sums_of(exposures).all.energy_j / volume_mm3) : Json();
+    return scan;
+}
+
 } // namespace
 
 Figures scan_figures(std::span<const ExposureResult> exposures) {
@@ -110,26 +118,20 @@ std::vector<RegionFigures> region_figures(std::span<const ExposureResult> exposu
     return regions;
 }
 
-Json scan_json(std::span<const ExposureResult> exposures, std::span<const ScanFigures> layer) {
-    assert(layer.size() == exposures.size());
+Json scan_json(const FileResult& result, const ScanStrategy& strategy) {
+    Json scan = with_density(result.exposures, result.volume_mm3);
+    scan["unreached_layers"] = result.unreached.layers;
+    scan["strategy"] = strategy_json(strategy);
+    return scan;
+}
+
+Json scan_json(std::span<const ExposureResult> exposures, const LayerStatistics& layer) {
+    assert(layer.scan.size() == exposures.size());
     std::vector<ExposureResult> its(exposures.begin(), exposures.end());
     for (std::size_t i = 0; i < its.size(); ++i)
-        its[i].figures = layer[i];
-    return scan_json(its);
-}
-
-Json with_density(Json scan, double volume_mm3) {
-    scan["energy_j_mm3"] = volume_mm3 > 0 ? Json(scan["energy_j"].get<double>() / volume_mm3) : Json();
-    return scan;
-}
-
-Json with_unreached(Json scan, const UnreachedMaterial& unreached) {
-    scan["unreached_layers"] = unreached.layers;
-    return scan;
-}
-
-Json with_hash(Json scan, std::uint64_t hash) {
-    scan["hash"] = fmt::format("{:016x}", hash); // a JSON number loses digits beyond 2^53
+        its[i].figures = layer.scan[i];
+    Json scan = with_density(its, layer.measure.area_mm2 * layer.thickness);
+    scan["hash"] = fmt::format("{:016x}", layer.scan_hash); // a JSON number loses digits beyond 2^53
     return scan;
 }
 

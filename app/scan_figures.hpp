@@ -2,7 +2,7 @@
 
 // The figures of scan vectors.
 
-#include "lamella/pipeline/scan_layers.hpp"
+#include "lamella/pipeline/slice_file.hpp"
 
 #include "figures.hpp"
 
@@ -28,18 +28,13 @@ struct RegionFigures {
 };
 [[nodiscard]] std::vector<RegionFigures> region_figures(std::span<const ExposureResult> exposures);
 
-/// Returns the figures of one layer. `layer` must be in the order of `exposures`.
-[[nodiscard]] Json scan_json(std::span<const ExposureResult> exposures, std::span<const ScanFigures> layer);
+/// Returns the figures of a job, and also `energy_j_mm3` (the volumetric energy density; null if the volume
+/// is 0), `unreached_layers` (the number of layers with more unreached material than the strategy accepts)
+/// and the strategy.
+[[nodiscard]] Json scan_json(const FileResult& result, const ScanStrategy& strategy);
 
-/// Adds the key `energy_j_mm3`, the volumetric energy density; null if the volume is 0.
-[[nodiscard]] Json with_density(Json scan, double volume_mm3);
-
-/// Adds the key `unreached_layers`, the number of layers with more unreached material than the strategy
-/// accepts.
-[[nodiscard]] Json with_unreached(Json scan, const UnreachedMaterial& unreached);
-
-/// Adds the key `hash`, the hash of the vectors of a layer.
-[[nodiscard]] Json with_hash(Json scan, std::uint64_t hash);
+/// Returns the figures of one layer, and also `energy_j_mm3` and `hash`, the hash of its vectors.
+[[nodiscard]] Json scan_json(std::span<const ExposureResult> exposures, const LayerStatistics& layer);
 
 /// Returns "1,234,567 vectors, 12.3 m marked, 1.2 m jumped, 1 h 02 min, 45.0 kJ".
 [[nodiscard]] std::string scan_text(std::span<const ExposureResult> exposures);

@@ -170,33 +170,43 @@ std::vector<ScanFigures> measured(const std::vector<LayerPointer>& vectors,
     return figures;
 }
 
+/// The losses of layers that arrive one by one.
+struct ScanLosses {
+    LayerDoubts found;
+    std::uint64_t hatches = 0;
+
+    void add(const LayerPointer& shared) {
+        const Layer& layer = shared->get();
+        hatches += shared->hatches().size() / 2;
+        ++found.layers;
+        found.add(layer.z, layer.thickness(), open_gaps(layer),
+                  result_of_points(layer.points.size(), [shared](const Execution& execution) {
+                      return inverted_rings(shared->get(), {}, InversionSearch::full,
+                                            layer_limits(execution));
+                  }));
+    }
+};
+
 void bind_losses(py::module_& module) {
     py::class_<ScanLosses>(module, "ScanLosses")
         .def(py::init())
-        .def("add",
-             [](ScanLosses& self, const LayerPointer& layer) {
-                 self.hatches += layer->hatches().size() / 2;
-                 self.add({&layer->get(), 1},
-                          result_of_points(layer->get().points.size(), [layer](const Execution& execution) {
-                              return inverted_rings(layer->get(), {}, InversionSearch::full,
-                                                    layer_limits(execution));
-                          }));
-             })
-        .def("texts", &ScanLosses::texts);
+        .def("add", &ScanLosses::add)
+        .def("texts", [](const ScanLosses& self) { return self.found.scan_losses(self.hatches); });
     module.def("scan_losses", [](const Stack& stack) {
         return result_of(0, py::none(), [&](const Execution& execution) {
             const LayerStack layers = plain(stack.layers);
-            ScanLosses losses = scan_losses({&layers, 1}, stack.rounding, execution);
+            std::uint64_t hatches = 0;
             for (const LayerPointer& layer : stack.layers)
-                losses.hatches += layer->hatches().size() / 2;
-            return losses.texts();
+                hatches += layer->hatches().size() / 2;
+            return layer_doubts({&layers, 1}, stack.rounding, InversionSearch::full, execution)
+                .scan_losses(hatches);
         });
     });
     module.def("inverted_layers", [](const Stack& stack, unsigned threads, const py::object& progress) {
         return result_of(threads, progress, [&](const Execution& execution) -> std::vector<std::string> {
             const LayerStack layers = plain(stack.layers);
             const InvertedLayers inverted =
-                inverted_layers({&layers, 1}, stack.rounding, InversionSearch::quick, execution);
+                layer_doubts({&layers, 1}, stack.rounding, InversionSearch::quick, execution).inverted;
             if (inverted.rings == 0)
                 return {};
             return {inverted.text_of_file(layers.size())};

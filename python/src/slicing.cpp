@@ -80,13 +80,10 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const CutPlan& cuts,
 
 /// Returns the defects of the mesh that show in its layers.
 std::vector<std::string> doubts_of(const Stack& stack) {
-    const GilRelease released;
-    MeshDoubts doubts{.layers = stack.layers.size()};
-    for (const LayerPointer& shared : stack.layers) {
-        const Layer& layer = shared->get();
-        doubts.add(layer.z, layer.thickness(), open_gaps(layer), inverted_rings(layer));
-    }
-    return doubts.texts();
+    return result_of(0, py::none(), [&](const Execution& execution) {
+        const LayerStack layers = plain(stack.layers);
+        return layer_doubts({&layers, 1}, {}, InversionSearch::quick, execution).texts();
+    });
 }
 
 /// Returns a warning if rounding decides the content of layers; else "".

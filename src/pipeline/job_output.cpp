@@ -78,18 +78,17 @@ void write_at(const std::string& path, std::uint64_t position, const ByteStore& 
 
 } // namespace
 
-JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Communicator& processes,
+JobOutput::JobOutput(const OutputFiles& files, LayerFileInfo info, PlaneRange mine, Communicator& processes,
                      std::uint64_t most_in_memory)
-    : processes_(processes), path_(job.output), most_bytes_(job.write.most_bytes), strict_(job.write.strict),
-      waiting_(most_in_memory) {
-    if (!job.output.empty()) {
-        format_ = &layer_format(job.format, job.output);
-        LayerWriteOptions options = job.write;
-        shared_ = processes.size() > 1 && format_->chunks && can_be_shared(job.output);
+    : processes_(processes), path_(files.path), most_bytes_(files.write.most_bytes),
+      strict_(files.write.strict), format_(files.format), waiting_(most_in_memory) {
+    if (format_ != nullptr) {
+        LayerWriteOptions options = files.write;
+        shared_ = processes.size() > 1 && format_->chunks && can_be_shared(path_);
         if (shared_) {
             in_agreement(processes, [&] {
                 if (processes.process() == 0)
-                    file_.emplace(job.output);
+                    file_.emplace(path_);
             });
             working_path_ = processes.gather(file_ ? file_->share() : std::string()).front();
             chunk_ = {mine.begin, mine.size(), [this](std::string_view bytes) {
@@ -102,12 +101,12 @@ JobOutput::JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Co
         }
         in_agreement(processes, [&] {
             if (shared_ || processes.process() == 0)
-                writer_ = open_layer_writer(job.output, *format_, info, options);
+                writer_ = open_layer_writer(path_, *format_, info, options);
         });
         info.chunk = nullptr;
     }
-    if (!job.report.path.empty())
-        page_ = open_layer_page(job.report.path, info, job.report.page);
+    if (!files.page_path.empty())
+        page_ = open_layer_page(files.page_path, info, files.page);
 }
 
 template <class Plane, class Message>
@@ -137,11 +136,10 @@ std::function<void()> JobOutput::prepare(const ScanVectors& vectors) {
     return prepared(vectors, [&] { return packed(vectors.polylines, vectors.hatches); });
 }
 
-JobOutput::Written JobOutput::finish_file() {
-    Written written;
+void JobOutput::finish_file(FileResult& result) {
     if (format_ == nullptr)
-        return written;
-    written.format = format_->name;
+        return;
+    result.format = format_->name;
     in_agreement(processes_, [&] {
         if (!writer_)
             return send_layers();
@@ -149,17 +147,15 @@ JobOutput::Written JobOutput::finish_file() {
             write_layers_of_others();
         if (!shared_ || chunk_.layers > 0)
             writer_->finish();
-        written.bytes = shared_ ? 0 : writer_->bytes();
+        result.bytes = shared_ ? 0 : writer_->bytes();
     });
     if (shared_)
         gather_losses();
-    written.warnings = warnings_of_file();
-    if (shared_) {
-        written.bytes = write_shared();
-    } else {
-        processes_.sum(std::span(&written.bytes, 1)); // the other processes have 0
-    }
-    return written;
+    result.warnings = warnings_of_file();
+    if (shared_)
+        result.bytes = write_shared();
+    else
+        processes_.sum(std::span(&result.bytes, 1)); // the other processes have 0
 }
 
 /// Adds the losses of all ranges to those of the first range, which process 0 has written.

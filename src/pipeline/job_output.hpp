@@ -6,6 +6,7 @@
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/plan.hpp"
+#include "lamella/write/layer_page.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "container/byte_store.hpp"
@@ -21,6 +22,15 @@
 
 namespace lamella {
 
+/// The files that a job writes.
+struct OutputFiles {
+    std::string path = {};
+    const LayerFormat* format = nullptr; ///< null if there is no slice file
+    LayerWriteOptions write = {};
+    std::string page_path = {}; ///< "" if there is no page
+    PageOptions page = {};
+};
+
 /// The slice file of a job, and the page beside it. A single process writes while it slices. If there are
 /// several processes, and the layers of the file lie one after the other (LayerFormat::chunks), each process
 /// writes its range of the file once all sizes are known. For other formats and for standard output, all
@@ -31,20 +41,16 @@ class JobOutput {
     /// Creates the files, so that an unwritable path fails before hours of slicing. `mine` is the range of
     /// planes of this process among those of `info`. Each process keeps up to `most_in_memory` bytes of its
     /// output in memory.
-    JobOutput(const FileJob& job, LayerFileInfo info, PlaneRange mine, Communicator& processes,
-              std::uint64_t most_in_memory);
+    JobOutput(const OutputFiles& files, LayerFileInfo info, PlaneRange mine,
+              Communicator& processes = alone(), std::uint64_t most_in_memory = 0);
 
     /// Works as LayerWriter::prepare, for all outputs.
     [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts);
     [[nodiscard]] std::function<void()> prepare(const ScanVectors& vectors);
 
-    /// Figures of the written file. They are complete after the layers of all processes are written.
-    struct Written {
-        std::string format; ///< "" without a slice file
-        std::uint64_t bytes = 0;
-        std::vector<std::string> warnings;
-    };
-    [[nodiscard]] Written finish_file();
+    /// Ends the slice file, if there is one, after the layers of all processes are written. Sets `format`,
+    /// `bytes` and `warnings` of the result.
+    void finish_file(FileResult& result);
     /// Ends the page with these notes, and returns the warnings of the page.
     [[nodiscard]] std::vector<std::string> finish_page(const PageNotes& notes);
     [[nodiscard]] bool has_page() const noexcept { return page_ != nullptr; }

@@ -13,46 +13,35 @@
 
 namespace lamella {
 
-std::vector<std::uint32_t> files_of(const Plate& plate) {
-    std::vector<std::uint32_t> files;
-    for (const PlatePart& part : plate.parts)
-        files.push_back(static_cast<std::uint32_t>(plate.shapes[part.shape].input));
-    for (const PlateNegative& negative : plate.negatives)
-        files.push_back(static_cast<std::uint32_t>(plate.shapes[negative.shape].input));
-    return files;
-}
-
-LayerTotals::LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes,
-                         const std::vector<bool>& supports, std::vector<std::uint32_t> files)
-    : closed_(job.repair.close_gaps_mm ? planes.size() : 0), changes_(job.steps.any() ? planes.size() : 0),
-      statistics_(job.layer_statistics ? planes.size() : 0), parts_(supports.size()),
-      files_(std::move(files)), has_changes_(job.steps.any()) {
+LayerTotals::LayerTotals(const LayerJob& job, std::span<const PlannedLayer> planes)
+    : closed_(job.close_gaps_mm ? planes.size() : 0), changes_(job.steps.any() ? planes.size() : 0),
+      statistics_(job.statistics ? planes.size() : 0), parts_(job.supports.size()), files_(job.files),
+      has_changes_(job.steps.any()) {
     files_.resize(std::max(files_.size(), parts_.size()));
     assert(std::is_sorted(files_.begin(), files_.begin() + static_cast<std::ptrdiff_t>(parts_.size())));
     rows_.reserve(planes.size());
     for (const PlannedLayer& plane : planes)
-        rows_.push_back({.index = plane.index, .z = plane.z, .thickness = plane.top - plane.bottom});
+        rows_.push_back({.z = plane.z, .thickness = plane.top - plane.bottom});
     if (job.scan)
-        for (Exposure& exposure : plane_exposures(supports, *job.scan))
+        for (Exposure& exposure : plane_exposures(job.supports, *job.scan))
             exposures_.push_back({std::move(exposure), {}});
     vectors_.resize(planes.size() * exposures_.size());
 }
 
-void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes,
-                      std::span<const InvertedRings> inverted, std::span<const Layer> bodies) {
+void LayerTotals::add(std::size_t plane, std::span<const Layer> parts, std::vector<GapJoin> joins,
+                      const LayerChanges& changes, std::span<const InvertedRings> inverted,
+                      std::span<const Layer> bodies) {
     const Layer& first = parts.front();
-    assert(parts.size() == parts_.size());
-    const auto position = static_cast<std::size_t>(first.index - rows_.front().index);
-    assert(rows_.at(position).index == first.index);
+    assert(parts.size() == parts_.size() && plane < rows_.size());
     if (!closed_.empty())
         for (const GapJoin& join : joins) {
-            FileResult::Gaps& closed = closed_[position];
+            FileResult::Gaps& closed = closed_[plane];
             ++closed.closed;
             closed.longest_mm = std::max(closed.longest_mm, join.length_mm);
             closed.total_mm += join.length_mm;
         }
     if (!changes_.empty())
-        changes_[position] = changes;
+        changes_[plane] = changes;
     if (bodies.empty())
         bodies = parts;
     std::vector<OpenGaps> gaps; // gaps of each body; empty if there are none
@@ -71,7 +60,7 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
             together.add(measure(layer));
     }
     if (!statistics_.empty()) {
-        LayerStatistics& statistics = statistics_[position];
+        LayerStatistics& statistics = statistics_[plane];
         statistics = {.index = first.index,
                       .z = first.z,
                       .thickness = first.thickness(),
@@ -86,17 +75,15 @@ void LayerTotals::add(std::span<const Layer> parts, std::vector<GapJoin> joins, 
         for (const OpenGaps& of_part : gaps)
             statistics.open_gaps += of_part;
     }
-    add_doubts(position, gaps, inverted);
+    add_doubts(plane, gaps, inverted);
 }
 
-void LayerTotals::add(std::uint64_t index, const PlaneVectors& vectors) {
-    assert(vectors.figures.size() == exposures_.size());
-    const auto position = static_cast<std::size_t>(index - rows_.front().index);
-    assert(rows_.at(position).index == index);
-    rows_[position].scan_hash = vectors.hash;
+void LayerTotals::add(std::size_t plane, const PlaneVectors& vectors) {
+    assert(vectors.figures.size() == exposures_.size() && plane < rows_.size());
+    rows_[plane].scan_hash = vectors.hash;
     std::copy(vectors.figures.begin(), vectors.figures.end(),
-              vectors_.begin() + static_cast<std::ptrdiff_t>(position * exposures_.size()));
-    add_doubts(position, {}, vectors.inverted, vectors.unreached_mm2);
+              vectors_.begin() + static_cast<std::ptrdiff_t>(plane * exposures_.size()));
+    add_doubts(plane, {}, vectors.inverted, vectors.unreached_mm2);
 }
 
 /// Adds the doubts about the bodies on a plane, the parts first. An empty span means that no body has any.
@@ -112,8 +99,7 @@ void LayerTotals::add_doubts(std::size_t plane, std::span<const OpenGaps> gaps,
         auto doubt = std::find_if(found.begin(), found.end(),
                                   [&](const Doubt& of_file) { return of_file.file == files_[i]; });
         if (doubt == found.end())
-            doubt = found.insert(
-                doubt, {.file = files_[i], .plane = rows_[plane].index, .open_gaps = {}, .inverted = {}});
+            doubt = found.insert(doubt, {.file = files_[i], .plane = plane, .open_gaps = {}, .inverted = {}});
         if (open)
             doubt->open_gaps += gaps[i];
         doubt->unreached_mm2 += unreached;
@@ -180,11 +166,15 @@ void LayerTotals::gather(Communicator& processes) {
             part.inverted_rings += from.get<std::uint64_t>();
             part.points += from.get<std::uint64_t>();
         }
+        const std::uint64_t below = rows_.size();
         append(rows_, from.get_all<Row>());
         append(closed_, from.get_all<FileResult::Gaps>());
         append(changes_, from.get_all<LayerChanges>());
         append(vectors_, from.get_all<ScanFigures>());
-        append(doubts_, from.get_all<Doubt>());
+        for (Doubt doubt : from.get_all<Doubt>()) {
+            doubt.plane += below;
+            doubts_.push_back(doubt);
+        }
         while (!from.empty()) // in the order of put()
             statistics_.push_back({.index = from.get<std::uint64_t>(),
                                    .z = from.get<double>(),
@@ -203,7 +193,7 @@ void LayerTotals::gather(Communicator& processes) {
 /// Adds doubts in the order of the planes, so that sums have the same bits for every order of threads.
 void LayerTotals::store_doubts(FileResult& result) const {
     result.doubts.assign(*std::max_element(files_.begin(), files_.end()) + std::size_t{1},
-                         MeshDoubts{.layers = rows_.size()});
+                         LayerDoubts{.layers = rows_.size()});
     result.unreached_by_file.resize(result.doubts.size());
     std::vector<Doubt> doubts = doubts_;
     std::sort(doubts.begin(), doubts.end(), [](const Doubt& a, const Doubt& b) {
@@ -212,7 +202,7 @@ void LayerTotals::store_doubts(FileResult& result) const {
     double unreached_mm2 = 0; // of all files on the plane
     for (std::size_t i = 0; i < doubts.size(); ++i) {
         const Doubt& doubt = doubts[i];
-        const Row& row = rows_[static_cast<std::size_t>(doubt.plane - rows_.front().index)];
+        const Row& row = rows_[doubt.plane];
         result.doubts[doubt.file].add(row.z, row.thickness, doubt.open_gaps, doubt.inverted);
         result.unreached_by_file[doubt.file].add(doubt.unreached_mm2, row.z);
         unreached_mm2 += doubt.unreached_mm2;
@@ -230,7 +220,7 @@ void LayerTotals::store_doubts(FileResult& result) const {
                     found.push_back(result.parts[i].label);
             return found.size() < end - begin ? found : std::vector<std::string>();
         };
-        MeshDoubts& of_file = result.doubts[files_[begin]];
+        LayerDoubts& of_file = result.doubts[files_[begin]];
         of_file.open_parts = labels(&Counts::open_chains);
         of_file.inverted_parts = labels(&Counts::inverted_rings);
     }

@@ -3,11 +3,11 @@
 // Gathers figures of the layers that are written.
 
 #include "lamella/contour/layer.hpp"
-#include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/plan.hpp"
 
+#include "pipeline/layer_job.hpp"
 #include "pipeline/plane_scan.hpp"
 
 #include <atomic>
@@ -18,28 +18,23 @@
 
 namespace lamella {
 
-/// Returns the index of the file of each part, and then of each negative volume.
-[[nodiscard]] std::vector<std::uint32_t> files_of(const Plate& plate);
-
 /// Stores a row for each plane, and adds up the rows in their order at the end. So the figures are the same,
 /// bit for bit, for any number of threads, ranges and processes.
 class LayerTotals {
   public:
-    /// `planes` are those of this process, possibly none. `supports` is true for each part that is a support.
-    /// `files` has the index of the file of each part, in ascending order, and then of each other body. If
-    /// `files` is empty, all bodies belong to the first file.
-    LayerTotals(const FileJob& job, std::span<const PlannedLayer> planes, const std::vector<bool>& supports,
-                std::vector<std::uint32_t> files = {});
+    /// `planes` are those of this process, possibly none.
+    LayerTotals(const LayerJob& job, std::span<const PlannedLayer> planes);
 
-    /// Adds the layers of all parts on one plane, as they are written, with the closed gaps and the changes
-    /// by layer steps. `inverted` has the inverted rings of each body, if they are already known. `bodies`
-    /// are the parts and the negative volumes before the subtraction; they, not `parts`, are examined for
-    /// doubts about the mesh. May be called from any thread, once for each plane.
-    void add(std::span<const Layer> parts, std::vector<GapJoin> joins, const LayerChanges& changes,
-             std::span<const InvertedRings> inverted = {}, std::span<const Layer> bodies = {});
+    /// Adds the layers of all parts on one of the planes, as they are written, with the closed gaps and the
+    /// changes by layer steps. `inverted` has the inverted rings of each body, if they are already known.
+    /// `bodies` are the parts and the negative volumes before the subtraction; they, not `parts`, are
+    /// examined for doubts about the mesh. May be called from any thread, once for each plane.
+    void add(std::size_t plane, std::span<const Layer> parts, std::vector<GapJoin> joins,
+             const LayerChanges& changes, std::span<const InvertedRings> inverted = {},
+             std::span<const Layer> bodies = {});
     /// Adds the figures of the scan vectors of a plane, and the material without vectors. May be called from
     /// any thread, once for each plane.
-    void add(std::uint64_t index, const PlaneVectors& vectors);
+    void add(std::size_t plane, const PlaneVectors& vectors);
 
     /// Number of points of the layers that were added.
     [[nodiscard]] std::uint64_t points() const noexcept;
@@ -52,7 +47,6 @@ class LayerTotals {
 
   private:
     struct Row {
-        std::uint64_t index = 0;
         double z = 0;
         double thickness = 0;
         std::uint64_t scan_hash = 0;
@@ -61,7 +55,7 @@ class LayerTotals {
     struct Doubt {
         std::uint32_t file = 0;
         std::uint32_t unused = 0; ///< padding, so that no uninitialised bytes are sent between processes
-        std::uint64_t plane = 0;  ///< index of the plane
+        std::uint64_t plane = 0;  ///< index in rows_
         OpenGaps open_gaps;
         InvertedRings inverted;
         double unreached_mm2 = 0; ///< see PlaneVectors

@@ -46,20 +46,8 @@ std::string inverted_text(const InvertedLayers& inverted, std::uint64_t layers,
                        inverted.volume_mm3, one ? "it runs" : "they run");
 }
 
-/// Returns the inverted rings on each plane of the parts.
-std::vector<InvertedRings> inverted_on_planes(std::span<const LayerStack> parts, const Rounding& rounding,
-                                              InversionSearch search, const Execution& execution,
-                                              std::uint64_t max_memory) {
-    std::vector<InvertedRings> planes(parts.empty() ? 0 : parts.front().size());
-    Executor executor(execution);
-    const LayerLimits limits = layer_limits(execution, max_memory, executor.workers());
-    executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        for (const LayerStack& part : parts)
-            planes[i] += inverted_rings(part[i], rounding, search, limits);
-    });
-    executor.check_cancelled();
-    return planes;
-}
+/// The remedy for inverted rings in a file of layers.
+constexpr const char* file_remedy = "; converting them with `fill` nonzero turns them round";
 
 std::string power_of_ten_above(double length_mm);
 
@@ -133,27 +121,31 @@ std::string InvertedLayers::text(std::uint64_t of_layers) const {
 }
 
 std::string InvertedLayers::text_of_file(std::uint64_t of_layers) const {
-    return text(of_layers) + "; converting them with `fill` nonzero turns them round";
+    return text(of_layers) + file_remedy;
 }
 
-InvertedLayers inverted_layers(std::span<const LayerStack> parts, const Rounding& rounding,
-                               InversionSearch search, const Execution& execution, std::uint64_t max_memory) {
-    InvertedLayers inverted;
-    const std::vector<InvertedRings> planes =
-        inverted_on_planes(parts, rounding, search, execution, max_memory);
-    for (std::size_t i = 0; i < planes.size(); ++i)
-        inverted.add(parts.front()[i].z, parts.front()[i].thickness(), planes[i]);
-    return inverted;
+void UnreachedMaterial::add(double unreached_mm2, double z) noexcept {
+    area_mm2 += unreached_mm2;
+    if (unreached_mm2 > 0)
+        AffectedLayers::add(z);
 }
 
-void MeshDoubts::add(double z, double thickness, const OpenGaps& gaps, const InvertedRings& found) noexcept {
+std::string UnreachedMaterial::text() const {
+    return fmt::format("{:.4g} mm2 of material on {}, the lowest at z = {:.6g} mm, are reached by no vector: "
+                       "it is too narrow for contours, for lines of hatches or for lines of thin walls. More "
+                       "contours or smaller values of beam_offset, border, shortest or thinnest reach more; "
+                       "accepted_mm2 of the strategy says how much of a layer may be left",
+                       area_mm2, counted(layers, "layer"), first_z);
+}
+
+void LayerDoubts::add(double z, double thickness, const OpenGaps& gaps, const InvertedRings& found) noexcept {
     if (gaps.count > 0)
         open.add(z);
     open_gaps += gaps;
     inverted.add(z, thickness, found);
 }
 
-std::vector<std::string> MeshDoubts::texts() const {
+std::vector<std::string> LayerDoubts::texts() const {
     std::vector<std::string> texts;
     if (open_gaps.count > 0)
         texts.push_back(fmt::format("{} {}: {}", counted(open_gaps.count, "open chain"),
@@ -167,38 +159,36 @@ std::vector<std::string> MeshDoubts::texts() const {
     return texts;
 }
 
-void ScanLosses::add(std::span<const Layer> parts, const InvertedRings& found) {
-    ++layers;
-    for (const Layer& layer : parts)
-        open_chains += layer.open_chains();
-    inverted.add(parts.front().z, parts.front().thickness(), found);
-}
-
-std::vector<std::string> ScanLosses::texts() const {
+std::vector<std::string> LayerDoubts::scan_losses(std::uint64_t hatches) const {
     std::vector<std::string> texts;
     if (hatches > 0)
         texts.push_back(fmt::format("{} left out: layers are hatched anew", counted(hatches, "hatch line")));
-    if (open_chains > 0)
-        texts.push_back(fmt::format("{} left out: only closed contours bound material",
-                                    counted(open_chains, "open contour")));
+    if (open_gaps.count > 0)
+        texts.push_back(fmt::format("{} left out {}: only closed contours bound material",
+                                    counted(open_gaps.count, "open contour"),
+                                    where(open, layers, open_parts)));
     if (inverted.rings > 0)
-        texts.push_back(inverted.text_of_file(layers));
+        texts.push_back(inverted_text(inverted, layers, inverted_parts) + file_remedy);
     return texts;
 }
 
-ScanLosses scan_losses(std::span<const LayerStack> parts, const Rounding& rounding,
-                       const Execution& execution, std::uint64_t max_memory) {
-    ScanLosses losses;
-    const std::vector<InvertedRings> planes =
-        inverted_on_planes(parts, rounding, InversionSearch::full, execution, max_memory);
-    std::vector<Layer> plane;
-    for (std::size_t i = 0; i < planes.size(); ++i) {
-        plane.clear();
-        for (const LayerStack& part : parts)
-            plane.push_back(part[i]);
-        losses.add(plane, planes[i]);
-    }
-    return losses;
+LayerDoubts layer_doubts(std::span<const LayerStack> parts, const Rounding& rounding, InversionSearch search,
+                         const Execution& execution, std::uint64_t max_memory) {
+    LayerDoubts doubts{.layers = parts.empty() ? 0 : parts.front().size()};
+    std::vector<OpenGaps> gaps(doubts.layers);
+    std::vector<InvertedRings> inverted(doubts.layers);
+    Executor executor(execution);
+    const LayerLimits limits = layer_limits(execution, max_memory, executor.workers());
+    executor.for_chunks(doubts.layers, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        for (const LayerStack& part : parts) {
+            gaps[i] += open_gaps(part[i]);
+            inverted[i] += inverted_rings(part[i], rounding, search, limits);
+        }
+    });
+    executor.check_cancelled();
+    for (std::size_t i = 0; i < doubts.layers; ++i)
+        doubts.add(parts.front()[i].z, parts.front()[i].thickness(), gaps[i], inverted[i]);
+    return doubts;
 }
 
 } // namespace lamella

@@ -83,7 +83,7 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
         if (!part.exposure)
             contours.push_back(part.layers);
     }
-    shard.inverted = inverted_layers(contours, file.rounding, InversionSearch::quick, execution);
+    shard.inverted = layer_doubts(contours, file.rounding, InversionSearch::quick, execution).inverted;
     return shard;
 }
 

@@ -26,13 +26,6 @@ std::vector<ScanLayer> layers_of(std::size_t part, const std::vector<std::span<c
 
 } // namespace
 
-std::vector<bool> supports_of(const Plate& plate) {
-    std::vector<bool> supports;
-    for (const PlatePart& part : plate.parts)
-        supports.push_back(part.support);
-    return supports;
-}
-
 std::vector<Exposure> plane_exposures(const std::vector<bool>& supports, const ScanStrategy& strategy) {
     std::vector<Exposure> all;
     if (std::find(supports.begin(), supports.end(), false) != supports.end())

@@ -5,7 +5,6 @@
 #include "lamella/contour/exposure.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/layer_limits.hpp"
-#include "lamella/pipeline/plate.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 
@@ -33,9 +32,6 @@ struct PlaneVectors {
     std::vector<InvertedRings> inverted; ///< inverted rings of each part, which have no vectors
     std::uint64_t hash = 0;              ///< of `vectors`: see content_hash
 };
-
-/// Returns for each part whether it is a support.
-[[nodiscard]] std::vector<bool> supports_of(const Plate& plate);
 
 /// Returns the exposures that have figures: those of ordinary parts, if there are any, then those of
 /// supports, if there are any. `supports` is true for each part that is a support.

@@ -252,15 +252,15 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
 
 } // namespace
 
-std::vector<Layer> without_negatives(std::span<const Layer> layers, const Plate& plate,
+std::vector<Layer> without_negatives(std::span<const Layer> layers, std::span<const PlateNegative> negatives,
                                      const LayerLimits& limits) {
-    std::vector<Layer> parts(layers.begin(),
-                             layers.begin() + static_cast<std::ptrdiff_t>(plate.parts.size()));
-    for (std::size_t i = 0; i < plate.negatives.size(); ++i) {
-        const Layer& negative = layers[plate.parts.size() + i];
+    const std::span<const Layer> of_parts = layers.first(layers.size() - negatives.size());
+    std::vector<Layer> parts(of_parts.begin(), of_parts.end());
+    for (std::size_t i = 0; i < negatives.size(); ++i) {
+        const Layer& negative = layers[parts.size() + i];
         if (negative.rings == 0)
             continue;
-        for (const std::size_t part : plate.negatives[i].parts)
+        for (const std::size_t part : negatives[i].parts)
             if (parts[part].rings > 0)
                 parts[part] = combine(parts[part], negative, BooleanOperation::subtract, limits);
     }
@@ -271,7 +271,7 @@ void slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan, const
               const Engine& engine) {
     constexpr std::uint64_t points_in_flight = std::uint64_t{1} << 22; // 64 MB
     const PlateSink of_plate = [&](std::span<const Layer> layers) {
-        std::vector<Layer> parts = without_negatives(layers, plate);
+        std::vector<Layer> parts = without_negatives(layers, plate.negatives);
         return sink(parts.size() == 1 ? std::move(parts.front()) : merged(parts));
     };
     static_cast<void>(slice_plate_to(of_plate, plate, plan, execution, engine, points_in_flight));

@@ -31,7 +31,8 @@ enum class SinkCost { proportional, expanding };
 
 /// Returns the layers of the parts on one plane, with the negative volumes subtracted. `layers` are the
 /// argument of a PlateSink. Layers that no negative volume touches are unchanged, bit for bit.
-[[nodiscard]] std::vector<Layer> without_negatives(std::span<const Layer> layers, const Plate& plate,
+[[nodiscard]] std::vector<Layer> without_negatives(std::span<const Layer> layers,
+                                                   std::span<const PlateNegative> negatives,
                                                    const LayerLimits& limits = {});
 
 /// Slices a plate into a sink. A plate of a single body is sliced while its layers go to the sink. Other

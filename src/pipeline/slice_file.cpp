@@ -3,6 +3,7 @@
 #include "lamella/contour/close_gaps.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/inspect.hpp"
+#include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 
 #include "core/executor.hpp"
@@ -14,7 +15,6 @@
 #include "pipeline/job_output.hpp"
 #include "pipeline/job_plan.hpp"
 #include "pipeline/layer_processor.hpp"
-#include "pipeline/layer_totals.hpp"
 #include "pipeline/packed.hpp"
 #include "pipeline/plate_builder.hpp"
 #include "pipeline/plate_names.hpp"
@@ -60,6 +60,34 @@ LayerFileInfo file_info(const FileJob& job, const Plate& plate, const Plan& plan
     info.rule = plan.rule;
     info.known_finite = true;
     return job.scan ? with_exposures(info, *job.scan) : info;
+}
+
+OutputFiles output_files(const FileJob& job) {
+    return {.path = job.output,
+            .format = job.output.empty() ? nullptr : &layer_format(job.format, job.output),
+            .write = job.write,
+            .page_path = job.report.path,
+            .page = job.report.page};
+}
+
+LayerJob layer_job(const FileJob& job, const Plate& plate, const LayerLimits& limits) {
+    LayerJob layers{.names = names_of_parts(plate),
+                    .negatives = plate.negatives,
+                    .close_gaps_mm = job.repair.close_gaps_mm,
+                    .steps = job.steps,
+                    .scan = job.scan,
+                    .statistics = job.layer_statistics,
+                    .limits = limits};
+    const auto add_file = [&](std::size_t shape) {
+        layers.files.push_back(static_cast<std::uint32_t>(plate.shapes[shape].input));
+    };
+    for (const PlatePart& part : plate.parts) {
+        layers.supports.push_back(part.support);
+        add_file(part.shape);
+    }
+    for (const PlateNegative& negative : plate.negatives)
+        add_file(negative.shape);
+    return layers;
 }
 
 /// Inspects every shape. With `keep_welded` the shapes stay welded, so that an engine that welds need not
@@ -225,6 +253,10 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
                     LayerProcessor& processor, SinkCost cost, Communicator& processes,
                     const Execution& execution) {
     Sliced done;
+    const std::uint64_t first = plan.layers.front().index;
+    const PlateSink sink = [&](std::span<const Layer> parts) {
+        return processor(static_cast<std::uint32_t>(parts.front().index - first), parts);
+    };
     const ShapeVisitor visitor = near_face_visitor(feed, plan);
     const std::vector<PlaneRange> ranges = feed.bring(plan, sliced, execution);
     done.ranges = ranges.size();
@@ -233,10 +265,10 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
         const Stopwatch slicing;
         for (std::size_t s = 0; s < ranges.size(); ++s) {
             const bool whole = ranges.size() == 1 && feed.meshes() != nullptr;
-            done.report += slice_plate_to(
-                std::ref(processor), feed.take(s, execution), part_of(plan, ranges[s]),
-                whole ? execution : in_range(ranges[s], sliced[processes.process()], execution), engine,
-                points_in_flight, cost, visitor);
+            done.report += slice_plate_to(sink, feed.take(s, execution), part_of(plan, ranges[s]),
+                                          whole ? execution
+                                                : in_range(ranges[s], sliced[processes.process()], execution),
+                                          engine, points_in_flight, cost, visitor);
         }
         if (visitor && ranges.empty()) // all processes count near faces
             for (std::size_t shape = 0; shape < feed.plate().shapes.size(); ++shape) {
@@ -303,13 +335,13 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     for (const PlaneRange& part : division)
         sliced.push_back(with_neighbours(job, part, plan.layers.size()));
 
-    JobOutput output(job, file_info(job, plate, plan, all), {mine.begin - all.begin, mine.end - all.begin},
-                     processes, feed.memory().of_output());
-    LayerTotals totals(job, std::span(plan.layers).subspan(mine.begin, mine.size()), supports_of(plate),
-                       files_of(plate));
-    const LayerLimits limits =
-        layer_limits(execution, feed.memory().limit, feed.memory().asked ? result.threads : 1);
-    LayerProcessor processor(job, plate, plan, sliced[processes.process()], mine, totals, output, limits);
+    JobOutput output(output_files(job), file_info(job, plate, plan, all),
+                     {mine.begin - all.begin, mine.end - all.begin}, processes, feed.memory().of_output());
+    LayerProcessor processor(
+        layer_job(job, plate,
+                  layer_limits(execution, feed.memory().limit, feed.memory().asked ? result.threads : 1)),
+        plan.layers, sliced[processes.process()], mine, output);
+    LayerTotals& totals = processor.totals();
     const Sliced done =
         slice_ranges(feed, plan, sliced, engine, processor,
                      job.scan ? SinkCost::expanding : SinkCost::proportional, processes, execution);
@@ -338,9 +370,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     if (feed.meshes() == nullptr)
         result.seconds.read = feed.figures().read_seconds;
     result.seconds.weld = prepared.seconds;
-    result.seconds.polygon = processor.step_seconds();
-    result.seconds.scan = processor.scan_seconds();
-    result.seconds.write = processor.write_seconds();
+    processor.set_times(result.seconds);
 
     ProcessFigures figures = feed.figures();
     figures.planes = mine.size();
@@ -357,10 +387,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     refuse_defects(job, result);
 
     const Stopwatch writing;
-    JobOutput::Written file = output.finish_file();
-    result.format = std::move(file.format);
-    result.bytes = file.bytes;
-    result.warnings = std::move(file.warnings);
+    output.finish_file(result);
     figures.write_seconds = writing.seconds();
     result.seconds.write += figures.write_seconds;
     result.seconds.weld += result.report.weld_seconds;

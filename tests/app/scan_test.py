@@ -335,7 +335,14 @@ class Scan(ProgramTest):
         self.fail_with(4, "hatched anew", "scan", "hatched.json", "-o", "x.cli", "--strict")
         self.write("open.stl", binary_stl(open_box(3, 4, 5)))
         self.succeed("slice", "open.stl", "-o", "open.json", "--layer-height", "1")
-        self.assertRegex(self.succeed("scan", "open.json", "-o", "open.cli").err, "5 open contours left out")
+        result = self.succeed("scan", "open.json", "-o", "open.cli", "--stats", "stats.json")
+        self.assertRegex(result.err, r"open\.json: 5 open contours left out in 5 of 5 layers, first at z = 0\.5 mm: only closed contours")
+        stats = json.loads(self.bytes_of("stats.json"))
+        self.assertEqual(stats["open_gaps"], 5)
+        self.assertGreater(stats["longest_open_gap_mm"], 0)
+        self.fail_with(4, "open.json: 5 open contours left out", "scan", "open.json", "-o", "x.cli", "--strict")
+        self.succeed("slice", "open.stl", "part.stl", "--translate", "20,0,0", "-o", "two.npz", "--layer-height", "1")
+        self.assertRegex(self.succeed("scan", "two.npz", "-o", "two.cli").err, r'left out in 5 of 5 layers of the part "open", first')
 
     def test_material_that_no_vector_reaches_is_measured(self):
         self.write("wall.stl", binary_stl(box_triangles(0.08, 6, 4)))

@@ -75,8 +75,8 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
         EXPECT_EQ(one.report.*count, other.report.*count);
     ASSERT_EQ(one.doubts.size(), other.doubts.size());
     for (std::size_t i = 0; i < one.doubts.size(); ++i) {
-        const MeshDoubts& doubts = one.doubts[i];
-        const MeshDoubts& same = other.doubts[i];
+        const LayerDoubts& doubts = one.doubts[i];
+        const LayerDoubts& same = other.doubts[i];
         EXPECT_EQ(doubts.texts(), same.texts());
         EXPECT_EQ(doubts.layers, same.layers);
         EXPECT_EQ(doubts.open.layers, same.open.layers);

@@ -29,50 +29,49 @@ TEST(JobOutput, HasTheBytesOfOneWriterForAnyNumberOfProcesses) {
         if (format.directory || format.name.starts_with("sl1"))
             continue;
         const TemporaryFolder folder;
-        FileJob job;
-        job.format = format.name;
-        job.output = folder.file("out");
-        job.write = options_for_any();
-        write_layers(job.output, format, layers, info_of(layers), job.write);
-        const std::string expected = file_bytes(job.output);
+        const OutputFiles files{.path = folder.file("out"), .format = &format, .write = options_for_any()};
+        write_layers(files.path, format, layers, info_of(layers), files.write);
+        const std::string expected = file_bytes(files.path);
         for (const std::size_t processes : {1U, 2U, 5U, 40U})
             for (const std::uint64_t in_memory : {std::uint64_t{0}, std::uint64_t{1} << 20}) {
-                write_file(job.output, "old");
+                write_file(files.path, "old");
                 test::run_processes(processes, [&](Communicator& own) {
                     const PlaneRange mine = range_of(layers.size(), own);
-                    JobOutput output(job, info_of(layers), mine, own, in_memory);
+                    JobOutput output(files, info_of(layers), mine, own, in_memory);
                     EXPECT_FALSE(output.has_page());
                     for (std::uint32_t i = mine.begin; i < mine.end; ++i)
                         output.prepare({&layers[i], 1})();
-                    EXPECT_EQ(file_bytes(job.output), "old") << "no name before all of it is written";
-                    const JobOutput::Written written = output.finish_file();
+                    EXPECT_EQ(file_bytes(files.path), "old") << "no name before all of it is written";
+                    FileResult written;
+                    output.finish_file(written);
                     EXPECT_EQ(written.format, format.name);
                     EXPECT_EQ(written.bytes, expected.size()) << format.name;
                 });
-                EXPECT_EQ(file_bytes(job.output), expected) << format.name << ' ' << processes;
+                EXPECT_EQ(file_bytes(files.path), expected) << format.name << ' ' << processes;
             }
     }
 }
 
 TEST(JobOutput, OfNothingWritesNothing) {
     const LayerStack layers = square_with_hole();
-    JobOutput output({}, info_of(layers), {0, 2}, alone(), 0);
+    JobOutput output({}, info_of(layers), {0, 2});
     EXPECT_FALSE(output.prepare(layers)) << "there is nothing to do";
-    EXPECT_EQ(output.finish_file().format, "");
+    FileResult written;
+    output.finish_file(written);
+    EXPECT_EQ(written.format, "");
 }
 
 TEST(JobOutput, LeavesTheOldFileWhereItIsNotFinished) {
     const TemporaryFolder folder;
-    FileJob job;
-    job.output = folder.file("out.cli");
-    write_file(job.output, "old");
+    const OutputFiles files{.path = folder.file("out.cli"), .format = &layer_format("cli", "")};
+    write_file(files.path, "old");
     const LayerStack layers = square_with_hole();
     for (const std::size_t processes : {1U, 3U})
         test::run_processes(processes, [&](Communicator& own) {
-            JobOutput output(job, info_of(layers), range_of(layers.size(), own), own, 0);
+            JobOutput output(files, info_of(layers), range_of(layers.size(), own), own, 0);
         });
     EXPECT_EQ(folder.entries(), std::vector<std::string>{"out.cli"});
-    EXPECT_EQ(file_bytes(job.output), "old");
+    EXPECT_EQ(file_bytes(files.path), "old");
 }
 
 } // namespace

@@ -24,10 +24,8 @@
 namespace lamella {
 namespace {
 
-FileJob measured() {
-    FileJob job;
-    job.layer_statistics = true;
-    return job;
+LayerJob measured(std::size_t parts, std::vector<std::uint32_t> files = {}) {
+    return {.supports = std::vector<bool>(parts), .files = std::move(files), .statistics = true};
 }
 
 FileResult told(const LayerTotals& totals, std::size_t parts) {
@@ -41,11 +39,12 @@ TEST(LayerTotals, AreTheSameInAnyOrder) {
     const TriangleSoup torus = make_torus(10, 3, 40, 20);
     const Plan plan = plan_uniform(-3, 3, {.layer_height = 0.5});
     const LayerStack layers = slice(torus, plan);
-    LayerTotals upwards(measured(), plan.layers, std::vector<bool>(1));
-    LayerTotals downwards(measured(), plan.layers, std::vector<bool>(1));
+    LayerTotals upwards(measured(1), plan.layers);
+    LayerTotals downwards(measured(1), plan.layers);
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        upwards.add(std::span(&layers[i], 1), {}, {});
-        downwards.add(std::span(&layers[layers.size() - 1 - i], 1), {}, {});
+        const std::size_t above = layers.size() - 1 - i;
+        upwards.add(i, std::span(&layers[i], 1), {}, {});
+        downwards.add(above, std::span(&layers[above], 1), {}, {});
     }
     const FileResult one = told(upwards, 1);
     const FileResult other = told(downwards, 1);
@@ -63,10 +62,10 @@ TEST(LayerTotals, AreTheSameInAnyOrder) {
 TEST(LayerTotals, CountPartsApartAndPlanesTogether) {
     const Plan plan = plan_uniform(0, 3, {.layer_height = 1});
     const LayerStack box = slice(make_box(1, 2, 3), plan);
-    LayerTotals totals(measured(), plan.layers, std::vector<bool>(2));
-    for (const Layer& layer : box) {
-        const std::array parts{layer, layer};
-        totals.add(parts, {}, {});
+    LayerTotals totals(measured(2), plan.layers);
+    for (std::size_t i = 0; i < box.size(); ++i) {
+        const std::array parts{box[i], box[i]};
+        totals.add(i, parts, {}, {});
     }
     const FileResult result = told(totals, 2);
     EXPECT_EQ(result.report.contours, 6U);
@@ -77,17 +76,16 @@ TEST(LayerTotals, CountPartsApartAndPlanesTogether) {
 }
 
 TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
-    FileJob job; // without statistics of layers
-    job.repair.close_gaps_mm = 1;
+    const LayerJob job{.supports = {false}, .close_gaps_mm = 1}; // without statistics of layers
     const Plan plan = plan_uniform(0, 2, {.layer_height = 1});
-    LayerTotals totals(job, plan.layers, std::vector<bool>(1));
+    LayerTotals totals(job, plan.layers);
     const PlannedLayer& above = plan.layers[1];
     Layer open = test::layer_of({}, {{{0, 0}, {3, 4}}});
     open.index = above.index;
     open.z = above.z;
     const Layer empty = LayerBuilder().finish(plan.layers[0].index, plan.layers[0].z, 0, 1);
-    totals.add(std::span(&empty, 1), {GapJoin{{}, {}, 0.5}, GapJoin{{}, {}, 0.25}}, {});
-    totals.add(std::span(&open, 1), {}, {});
+    totals.add(0, std::span(&empty, 1), {GapJoin{{}, {}, 0.5}, GapJoin{{}, {}, 0.25}}, {});
+    totals.add(1, std::span(&open, 1), {}, {});
     const FileResult result = told(totals, 1);
     ASSERT_EQ(result.doubts.size(), 1U);
     EXPECT_EQ(result.doubts[0].open.layers, 1U);
@@ -154,8 +152,9 @@ void add_all(LayerTotals& totals, std::span<const Plane> planes, unsigned thread
     for (unsigned t = 0; t < threads; ++t)
         team.emplace_back([&] {
             for (std::size_t i; (i = next++) < planes.size();) {
-                const Plane& plane = planes[planes.size() - 1 - i];
-                totals.add(plane.parts, plane.joins, plane.changes, plane.inverted);
+                const std::size_t number = planes.size() - 1 - i;
+                const Plane& plane = planes[number];
+                totals.add(number, plane.parts, plane.joins, plane.changes, plane.inverted);
             }
         });
     for (std::thread& thread : team)
@@ -166,10 +165,10 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
     test::Random random(3);
     for (int round = 0; round < 40; ++round) {
         SCOPED_TRACE(testing::Message() << "round " << round);
-        FileJob job;
-        job.layer_statistics = random.integer(0, 2) != 0;
+        LayerJob job;
+        job.statistics = random.integer(0, 2) != 0;
         if (random.integer(0, 2) != 0)
-            job.repair.close_gaps_mm = 1;
+            job.close_gaps_mm = 1;
         if (random.integer(0, 2) != 0)
             job.steps.largest_only = true;
         const auto parts = static_cast<std::size_t>(random.integer(1, 3));
@@ -177,12 +176,13 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
         const Plan plan =
             plan_uniform(0, 9, {.layer_height = 0.3}, SliceAt::middle, {.index_range = {{7, 29}}});
         const std::vector<Plane> planes = random_planes(random, plan, parts);
-        std::vector<std::uint32_t> files; // some of several parts
-        for (std::size_t part = 0; part < parts; ++part)
-            files.push_back(part == 0 ? 0 : files.back() + static_cast<std::uint32_t>(random.bits() % 2));
-        LayerTotals whole(job, plan.layers, std::vector<bool>(parts), files);
-        for (const Plane& plane : planes)
-            whole.add(plane.parts, plane.joins, plane.changes, plane.inverted);
+        job.supports.resize(parts);
+        for (std::size_t part = 0; part < parts; ++part) // some files have several parts
+            job.files.push_back(part == 0 ? 0
+                                          : job.files.back() + static_cast<std::uint32_t>(random.bits() % 2));
+        LayerTotals whole(job, plan.layers);
+        for (std::size_t i = 0; i < planes.size(); ++i)
+            whole.add(i, planes[i].parts, planes[i].joins, planes[i].changes, planes[i].inverted);
         const FileResult expected = told(whole, parts);
 
         const auto processes = static_cast<std::size_t>(random.integer(1, 4));
@@ -194,8 +194,7 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
         test::run_processes(processes, [&](Communicator& own) {
             const std::size_t begin = bounds[own.process()];
             const std::size_t count = bounds[own.process() + 1] - begin;
-            LayerTotals mine(job, std::span(plan.layers).subspan(begin, count), std::vector<bool>(parts),
-                             files);
+            LayerTotals mine(job, std::span(plan.layers).subspan(begin, count));
             add_all(mine, std::span(planes).subspan(begin, count), 3);
             mine.gather(own);
             EXPECT_EQ(mine.points(), whole.points());
@@ -205,8 +204,9 @@ TEST(LayerTotals, AreTheSameBitsForAnyThreadsSharesAndProcesses) {
 }
 
 /// A plane of parts, of which some have a ring that bounds no material, and some an open chain.
-void add_plane(LayerTotals& totals, const PlannedLayer& plane,
+void add_plane(LayerTotals& totals, const Plan& plan, std::size_t number,
                const std::vector<std::vector<double>>& inverted, const std::vector<bool>& open) {
+    const PlannedLayer& plane = plan.layers[number];
     std::vector<Layer> parts;
     std::vector<InvertedRings> found;
     for (std::size_t i = 0; i < inverted.size(); ++i) {
@@ -222,15 +222,15 @@ void add_plane(LayerTotals& totals, const PlannedLayer& plane,
         found.push_back(inverted_rings(layer));
         parts.push_back(std::move(layer));
     }
-    totals.add(parts, {}, {}, found);
+    totals.add(number, parts, {}, {}, found);
 }
 
 TEST(LayerTotals, NameTheFileAndThePartsThatHaveADefect) {
     const Plan plan = plan_uniform(0, 2, {.layer_height = 0.5});
-    LayerTotals totals(measured(), plan.layers, std::vector<bool>(4), {0, 1, 1, 2});
-    add_plane(totals, plan.layers[3], {{}, {}, {2}, {}}, {false, false, false, true});
-    add_plane(totals, plan.layers[1], {{}, {}, {2}, {}}, {false, false, false, true});
-    add_plane(totals, plan.layers[0], {{}, {}, {}, {}}, {false, false, false, true});
+    LayerTotals totals(measured(4, {0, 1, 1, 2}), plan.layers);
+    add_plane(totals, plan, 3, {{}, {}, {2}, {}}, {false, false, false, true});
+    add_plane(totals, plan, 1, {{}, {}, {2}, {}}, {false, false, false, true});
+    add_plane(totals, plan, 0, {{}, {}, {}, {}}, {false, false, false, true});
     FileResult result;
     result.parts.resize(4);
     result.parts[2].label = "bracket";

@@ -13,8 +13,8 @@ namespace {
 
 using Texts = std::vector<std::string>;
 
-TEST(MeshDoubts, AreReportedWithCountsAndTheLowestPlace) {
-    MeshDoubts doubts{.layers = 4};
+TEST(LayerDoubts, AreReportedWithCountsAndTheLowestPlace) {
+    LayerDoubts doubts{.layers = 4};
     EXPECT_EQ(doubts.texts(), Texts());
     doubts.add(1.5, 0.5, {}, {.rings = 3, .area_mm2 = 8, .at = {}});
     doubts.add(2.5, 0.25, {}, {.rings = 1, .area_mm2 = 2, .at = {}});
@@ -37,9 +37,9 @@ TEST(MeshDoubts, AreReportedWithCountsAndTheLowestPlace) {
               std::string::npos);
 }
 
-TEST(MeshDoubts, NameWhatClosesGapsThatRoundingLeaves) {
+TEST(LayerDoubts, NameWhatClosesGapsThatRoundingLeaves) {
     const auto text_of = [](double longest) {
-        MeshDoubts doubts{.layers = 1};
+        LayerDoubts doubts{.layers = 1};
         doubts.add(0.5, 1, {.count = 1, .longest_mm = longest, .total_mm = longest, .from = {}, .to = {}},
                    {});
         return doubts.texts().front();
@@ -67,7 +67,7 @@ TEST(NearFaceLayers, AreReportedWithTheirAreaAndADistanceThatIsEnough) {
               "counts them as on the plane");
 }
 
-TEST(ScanLosses, CountALayerOnceWhicheverOfItsPartsHaveInvertedRings) {
+TEST(LayerDoubts, CountALayerOnceWhicheverOfItsPartsHaveInvertedRings) {
     Layer square = test::normal_layer({test::rectangle(0, 0, 9, 9)});
     Layer turned = test::normal_layer({test::reversed(test::rectangle(0, 0, 9, 9))});
     turned.z = 2;
@@ -76,14 +76,15 @@ TEST(ScanLosses, CountALayerOnceWhicheverOfItsPartsHaveInvertedRings) {
     Layer above = square;
     above.z = 3;
     const std::array parts{LayerStack{square, turned, above}, LayerStack{square, turned, square}};
-    EXPECT_EQ(scan_losses(std::array{LayerStack{square}, LayerStack{square}}, {}).texts(), Texts());
-    ScanLosses losses = scan_losses(parts, {});
-    losses.hatches = 1;
-    EXPECT_EQ(losses.texts(),
+    EXPECT_EQ(layer_doubts(std::array{LayerStack{square}, LayerStack{square}}, {}, InversionSearch::full)
+                  .scan_losses(),
+              Texts());
+    const LayerDoubts doubts = layer_doubts(parts, {}, InversionSearch::full);
+    EXPECT_EQ(doubts.scan_losses(1),
               Texts({"1 hatch line left out: layers are hatched anew",
                      "2 rings bound no material in 1 of 3 layers, first at z = 2 mm (162 mm3 lost): they run "
                      "clockwise outside of material; converting them with `fill` nonzero turns them round"}));
-    const InvertedLayers inverted = inverted_layers(parts, {}, InversionSearch::quick);
+    const InvertedLayers& inverted = doubts.inverted;
     EXPECT_EQ(inverted.rings, 2U);
     EXPECT_EQ(inverted.layers, 1U);
     EXPECT_EQ(inverted.first_z, 2);

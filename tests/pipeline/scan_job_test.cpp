@@ -238,13 +238,13 @@ TEST_F(ScanJob, MeasuresMaterialThatNoVectorReaches) {
         info.parts.push_back({.label = part.label});
         stacks.push_back(part.layers);
     }
-    const ScanResult of_layers =
+    const FileResult of_layers =
         scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, {}, info, *scanned.scan);
     EXPECT_EQ(of_layers.unreached.layers, 4U);
     EXPECT_EQ(of_layers.unreached.area_mm2, one.unreached.area_mm2);
     EXPECT_EQ(of_layers.unreached.first_z, one.unreached.first_z);
     for (std::size_t i = 0; i < one.layers.size(); ++i)
-        EXPECT_EQ(of_layers.hashes[i], one.layers[i].scan_hash);
+        EXPECT_EQ(of_layers.layers[i].scan_hash, one.layers[i].scan_hash);
 
     scanned.strict = true;
     EXPECT_THROW(static_cast<void>(slice_file(scanned)), Error);
@@ -385,7 +385,7 @@ TEST_F(ScanJob, OfLayersThatAreThereHasTheBytesOfSlicing) {
         stacks.push_back(part.layers);
     }
     for (const unsigned threads : {1U, 4U}) {
-        const ScanResult result = scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, {}, info,
+        const FileResult result = scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, {}, info,
                                               *scanned.scan, {}, {.threads = threads});
         EXPECT_EQ(content("scanned.cli"), content("sliced.cli"));
         EXPECT_EQ(result.bytes, sliced.bytes);
@@ -393,7 +393,7 @@ TEST_F(ScanJob, OfLayersThatAreThereHasTheBytesOfSlicing) {
         for (std::size_t e = 0; e < result.exposures.size(); ++e) {
             EXPECT_EQ(result.exposures[e].figures.vectors, sliced.exposures[e].figures.vectors);
             EXPECT_EQ(result.exposures[e].figures.jumped_mm, sliced.exposures[e].figures.jumped_mm);
-            EXPECT_EQ(result.layers[3][e].energy_j, sliced.layers[3].scan[e].energy_j);
+            EXPECT_EQ(result.layers[3].scan[e].energy_j, sliced.layers[3].scan[e].energy_j);
         }
     }
 }

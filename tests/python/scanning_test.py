@@ -74,7 +74,7 @@ def test_what_no_vectors_are_made_of_is_reported(tmp_path):
         lamella.scan(read)
     assert [str(warning.message) for warning in told] == [
         f"{tmp_path}/a.json: 1 hatch line left out: layers are hatched anew",
-        f"{tmp_path}/a.json: 1 open contour left out: only closed contours bound material",
+        f"{tmp_path}/a.json: 1 open contour left out in 1 of 1 layer, first at z = 1 mm: only closed contours bound material",
     ]
 
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Warnings about layers with unsound contours.
+// Warnings about layers with unsound contours, and about content that is lost.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/open_gaps.hpp"
@@ -56,14 +56,19 @@ struct InvertedLayers : AffectedLayers {
     [[nodiscard]] std::string text_of_file(std::uint64_t of_layers) const;
 };
 
-/// Finds such rings in the layers of parts on the same planes. Parallel over planes. `max_memory`: see
-/// layer_limits.
-[[nodiscard]] InvertedLayers inverted_layers(std::span<const LayerStack> parts, const Rounding& rounding,
-                                             InversionSearch search, const Execution& execution = {},
-                                             std::uint64_t max_memory = 0);
+/// Layers with more material of a part that no vector reaches than the strategy accepts.
+struct UnreachedMaterial : AffectedLayers {
+    double area_mm2 = 0; ///< of all of these layers
 
-/// Defects of a mesh file that show in its layers.
-struct MeshDoubts {
+    /// Adds the next layer above.
+    void add(double unreached_mm2, double z) noexcept;
+    /// Returns "8.1 mm2 of material on 10 layers, the lowest at z = 0.5 mm, are reached by no vector: ...",
+    /// with a remedy.
+    [[nodiscard]] std::string text() const;
+};
+
+/// Signs of defects in the layers of a file, which may be a mesh or a slice file.
+struct LayerDoubts {
     std::uint64_t layers = 0; ///< all layers
     AffectedLayers open = {}; ///< with open chains
     OpenGaps open_gaps = {};  ///< total of these layers
@@ -75,28 +80,20 @@ struct MeshDoubts {
 
     /// Adds the findings, if any, on the next plane above, which is at z.
     void add(double z, double thickness, const OpenGaps& gaps, const InvertedRings& found) noexcept;
-    /// Returns a line for each kind, such as "10 open chains in 5 of 20 layers, first at z = 0.5 mm: contours
-    /// do not close where the mesh has holes or flipped triangles, the longest gap is 3 mm".
+    /// Returns a line for each kind of defect of a mesh, such as "10 open chains in 5 of 20 layers, first at
+    /// z = 0.5 mm: contours do not close where the mesh has holes or flipped triangles, the longest gap is 3
+    /// mm".
     [[nodiscard]] std::vector<std::string> texts() const;
+    /// Returns a line for each kind of content of a slice file that is lost because scan vectors are not
+    /// derived from it. `hatches` is the number of hatch lines in the file.
+    [[nodiscard]] std::vector<std::string> scan_losses(std::uint64_t hatches = 0) const;
 };
 
-/// Content of layers that is lost because scan vectors are not derived from it.
-struct ScanLosses {
-    std::uint64_t layers = 0;  ///< all layers
-    std::uint64_t hatches = 0; ///< hatch lines, counted by the caller
-    std::uint64_t open_chains = 0;
-    InvertedLayers inverted;
-
-    /// Adds the layers of all parts, at least one, on the next plane above, and their inverted rings.
-    void add(std::span<const Layer> parts, const InvertedRings& found);
-    /// Returns a line for each kind.
-    [[nodiscard]] std::vector<std::string> texts() const;
-};
-
-/// Finds such content in the layers of parts, at least one, on the same planes. Parallel over planes.
+/// Finds them in the layers of parts on the same planes; does not set the parts. Parallel over planes.
 /// `max_memory`: see layer_limits.
-[[nodiscard]] ScanLosses scan_losses(std::span<const LayerStack> parts, const Rounding& rounding,
-                                     const Execution& execution = {}, std::uint64_t max_memory = 0);
+[[nodiscard]] LayerDoubts layer_doubts(std::span<const LayerStack> parts, const Rounding& rounding,
+                                       InversionSearch search, const Execution& execution = {},
+                                       std::uint64_t max_memory = 0);
 
 } // namespace lamella
 LAMELLA_API_END

@@ -2,6 +2,7 @@
 
 // Slices mesh files into a slice file, layer by layer.
 
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/execution.hpp"
@@ -11,8 +12,8 @@
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/repair_policies.hpp"
-#include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/polygon/layer_steps.hpp"
+#include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -102,6 +103,12 @@ struct FileJob {
     FileReport report;
 };
 
+/// Figures of one of the `exposures` of a strategy, or of one of its `support_exposures`.
+struct ExposureResult {
+    Exposure exposure; ///< without the label of a part: the figures are those of all parts
+    ScanFigures figures;
+};
+
 struct LayerStatistics {
     std::uint64_t index = 0;
     double z = 0;
@@ -163,15 +170,16 @@ struct FileResult {
     std::vector<ProcessFigures> processes;
     SliceReport report; ///< counts of contours and chains are those after contour gaps were closed
     std::optional<LayerChanges> changes; ///< changes by FileJob::steps; none if there are no steps
-    /// Figures of scan vectors, with FileJob::scan. All other figures are those of the layers from which
-    /// vectors are computed.
+    /// Figures of scan vectors, over all layers and parts, in the order of execution, supports last; with
+    /// FileJob::scan. One beam exposes the parts of a layer one after the other. Jumps between layers are not
+    /// counted. All other figures are those of the layers from which vectors are computed.
     std::vector<ExposureResult> exposures;
     UnreachedMaterial unreached;                      ///< with FileJob::scan
     std::vector<UnreachedMaterial> unreached_by_file; ///< the same for each of `files`
     /// Signs of defects that were found in the layers, for each of `files`. Inverted rings are counted before
     /// `steps`. The search for them is full with `scan`, an offset or negative volumes, otherwise quick (see
     /// InversionSearch). With a FillRule, which itself defines the material, none are counted.
-    std::vector<MeshDoubts> doubts;
+    std::vector<LayerDoubts> doubts;
     std::vector<NearFaceLayers> near_faces; ///< layers whose cut depends on rounding, for each of `files`
     std::uint64_t planned_layers = 0;       ///< number of layers of all shards together
     PlaneRange shard;        ///< range of the layers of this shard; all layers if there are no shards
