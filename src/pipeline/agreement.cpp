@@ -1,20 +1,21 @@
 #include "pipeline/agreement.hpp"
 
-#include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace lamella {
 namespace {
 
 /// Returns the kind as one character, then the text; "" if nothing was thrown.
-std::string outcome_of(const std::function<void()>& step) {
+std::string outcome_of(const std::exception_ptr& failure) {
     const auto failed = [](ErrorKind kind, const std::string& text) {
         return static_cast<char>('a' + static_cast<int>(kind)) + text;
     };
-    try {
-        step();
+    if (!failure)
         return {};
+    try {
+        std::rethrow_exception(failure);
     } catch (const Error& error) {
         return failed(error.kind(), error.what());
     } catch (const std::bad_alloc&) {
@@ -30,10 +31,8 @@ ErrorKind kind_of(const std::string& outcome) {
 
 } // namespace
 
-void in_agreement(Communicator& processes, const std::function<void()>& step) {
-    if (processes.size() == 1)
-        return step();
-    const std::vector<std::string> outcomes = processes.gather(outcome_of(step));
+void agree(Communicator& processes, const std::exception_ptr& failure) {
+    const std::vector<std::string> outcomes = processes.gather(outcome_of(failure));
     const std::string* worst = nullptr;
     for (const std::string& outcome : outcomes)
         if (!outcome.empty() && (worst == nullptr || (kind_of(*worst) == ErrorKind::cancelled &&

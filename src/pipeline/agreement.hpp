@@ -5,13 +5,29 @@
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/processes.hpp"
 
-#include <functional>
+#include <exception>
 
 namespace lamella {
 
-/// Runs a step without communication, and waits for all processes. If it throws on some processes, all
-/// processes throw the same Error: that of the first such process, but a cancellation only if there is no
-/// other error. An exception on a single process passes unchanged.
-void in_agreement(Communicator& processes, const std::function<void()>& step);
+/// Waits for all processes. If `failure` is set on some of them, all processes throw the same Error: that of
+/// the first such process, but a cancellation only if there is no other error.
+void agree(Communicator& processes, const std::exception_ptr& failure);
+
+/// Runs a step without communication, and lets all processes agree on its failure. An exception on a single
+/// process passes unchanged.
+template <class Step>
+void in_agreement(Communicator& processes, const Step& step) {
+    if (processes.size() == 1) {
+        step();
+        return;
+    }
+    std::exception_ptr failure;
+    try {
+        step();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    agree(processes, failure);
+}
 
 } // namespace lamella

@@ -1,21 +1,21 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/pipeline/verify.hpp"
 #include "lamella/polygon/boolean.hpp"
-#include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 #include "lamella/polygon/offset.hpp"
 
 #include "contour/distance.hpp"
 #include "core/counted.hpp"
 #include "core/executor.hpp"
+#include "pipeline/exposure_groups.hpp"
 #include "pipeline/layer_check.hpp"
 #include "pipeline/layer_heights.hpp"
-#include "pipeline/length_around.hpp"
 #include "pipeline/moved_cuts.hpp"
+#include "pipeline/prescribed_lines.hpp"
+#include "pipeline/vector_cover.hpp"
+#include "pipeline/vector_findings.hpp"
 #include "polygon/edge_tree.hpp"
 #include "scan/hatch.hpp"
-#include "scan/hatch_lines.hpp"
-#include "scan/unreached.hpp"
 
 #include <fmt/format.h>
 
@@ -25,245 +25,10 @@
 #include <cstddef>
 #include <limits>
 #include <map>
-#include <utility>
 
 namespace lamella {
 
 namespace {
-
-/// Exposures whose vectors fill the same material.
-struct Group {
-    std::vector<const LayerPart*> exposures;
-    const LayerPart* outermost = nullptr; ///< of its contours
-};
-
-double area_of(const LayerPart& part) {
-    double area = 0;
-    for (const Layer& layer : part.layers)
-        area += measure(layer).area_mm2;
-    return area;
-}
-
-/// Compares contours of one part by number or, since some files do not number them, by area.
-bool lies_outside(const LayerPart& part, const LayerPart& other) {
-    return part.exposure->contour != other.exposure->contour
-               ? part.exposure->contour < other.exposure->contour
-               : area_of(part) > area_of(other);
-}
-
-std::vector<Group> groups_of(std::span<const LayerPart> parts, bool all_together) {
-    std::map<std::string, Group> groups;
-    for (const LayerPart& part : parts) {
-        if (!part.exposure)
-            continue;
-        Group& group = groups[all_together ? std::string() : part.exposure->part];
-        group.exposures.push_back(&part);
-        if (part.exposure->kind == VectorKind::contour &&
-            (group.outermost == nullptr || lies_outside(part, *group.outermost)))
-            group.outermost = &part;
-    }
-    std::vector<Group> result;
-    for (auto& [name, group] : groups)
-        result.push_back(std::move(group));
-    return result;
-}
-
-const ContourRule& contours_of(const ScanStrategy& strategy, ScanRegion region) noexcept {
-    return region == ScanRegion::support ? strategy.support.contours : strategy.contours;
-}
-
-const HatchRule& hatch_of(const ScanStrategy& strategy, ScanRegion region) noexcept {
-    switch (region) {
-    case ScanRegion::upskin:
-        return strategy.upskin.hatch;
-    case ScanRegion::downskin:
-        return strategy.downskin.hatch;
-    case ScanRegion::support:
-        return strategy.support.hatch;
-    default:
-        return strategy.hatch;
-    }
-}
-
-/// Returns the required distance of the vectors of an exposure from the outline of the part.
-double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept {
-    const ContourRule& contours = contours_of(strategy, exposure.region);
-    return exposure.kind == VectorKind::contour ? contour_depth(contours, std::max(1U, exposure.contour))
-                                                : hatch_depth(contours, hatch_of(strategy, exposure.region));
-}
-
-/// Returns the largest distance of the lines of a contour from the outline of the part.
-double deepest_line(const Exposure& exposure, const ScanStrategy& strategy) noexcept {
-    const ContourRule& contours = contours_of(strategy, exposure.region);
-    double depth = depth_of(exposure, strategy);
-    if (exposure.contour != 0 && exposure.contour < contours.count)
-        return depth; // number 0 means that the number is unknown
-    const auto too_thin_for = [&](const HatchRule& hatch) {
-        depth = std::max(depth, hatch_depth(contours, hatch) + surely_hatched(hatch) / 2);
-    };
-    too_thin_for(hatch_of(strategy, exposure.region));
-    if (exposure.region != ScanRegion::support)
-        for (const SkinRule* const skin : {&strategy.upskin, &strategy.downskin})
-            if (skin->layers > 0)
-                too_thin_for(skin->hatch);
-    return depth;
-}
-
-/// Findings about the contours of one number.
-struct ContourRow {
-    Finding missing;
-    Finding elsewhere; ///< the area is not that at the depth of the contour
-
-    void add(const ContourRow& other) {
-        missing.add(other.missing);
-        elsewhere.add(other.elsewhere);
-    }
-};
-
-struct PlaneCheck : ContourFindings {
-    Finding outside;
-    Finding too_short;
-    Finding misplaced;
-    Finding miscovered;
-    Finding unreached;
-    Finding inverted;
-    std::map<std::uint32_t, ContourRow> rows; ///< by contour number; only contours with findings
-    std::uint64_t contour_vectors = 0;
-    std::uint64_t hatch_vectors = 0;
-    std::uint64_t unbounded = 0;
-    double covered_mm2 = 0;
-    double filled_mm2 = 0; ///< area that had to be covered
-    double unreached_mm2 = 0;
-    double inverted_mm3 = 0;
-};
-
-/// Possible sections of the material of a plane. There are several if the format may have moved the cut.
-struct Bounds {
-    std::vector<Layer> sections; ///< the first is at the height in the file
-    double depth = 0;            ///< distance of their outlines from that of the part
-};
-
-class Slack {
-  public:
-    /// The area covered by lines may end half a line distance beside the edge of the filled area. Areas
-    /// narrower than the shortest line have no lines. Stripes and islands overlap, and each leaves out lines
-    /// that are too short.
-    void add(const HatchRule& rule) {
-        const bool cells = rule.pattern != HatchPattern::lines && rule.pattern != HatchPattern::meander;
-        strip_less_ = std::max(strip_less_, rule.distance / 2 + rule.shortest);
-        strip_more_ = std::max(strip_more_, rule.distance / 2 + (cells ? rule.overlap : 0));
-        if (!cells)
-            return;
-        const double longer = 1 + rule.overlap / rule.cell;
-        // A square has all lines whose width reaches into it; lines in hexagons end at the border.
-        constexpr double rounding = 1e-9;
-        const double wider = rule.pattern == HatchPattern::chessboard
-                                 ? std::ceil((rule.cell + std::max(rule.overlap, rule.distance)) /
-                                             rule.distance * (1 - rounding)) *
-                                       rule.distance / rule.cell
-                             : rule.pattern == HatchPattern::hexagons
-                                 ? 1 + 2 * std::max(rule.overlap, rule.distance) / rule.cell
-                                 : longer;
-        share_more_ = std::max(share_more_, longer * wider - 1);
-        share_less_ = std::max(share_less_, (rule.shortest / rule.cell) * (rule.shortest / rule.cell));
-    }
-    [[nodiscard]] double less(const LayerMeasure& area) const noexcept {
-        return strip_less_ * area.perimeter_mm + share_less_ * area.area_mm2;
-    }
-    [[nodiscard]] double more(const LayerMeasure& area) const noexcept {
-        return strip_more_ * area.perimeter_mm + share_more_ * area.area_mm2;
-    }
-
-  private:
-    double strip_less_ = 0;
-    double strip_more_ = 0;
-    double share_less_ = 0;
-    double share_more_ = 0;
-};
-
-double length_of(std::span<const Point2> hatches) {
-    double length = 0;
-    for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
-        length += distance(hatches[i], hatches[i + 1]);
-    return length;
-}
-
-/// The lines that a strategy prescribes for a layer.
-class AskedLines {
-  public:
-    /// `tolerance` applies to the ends of lines.
-    AskedLines(const HatchRule& rule, std::uint64_t layer, double tolerance)
-        : distance_(rule.distance), phase_(line_phase(rule.pattern)), tolerance_(tolerance) {
-        for (const CosSin& angle : line_angles(rule, layer))
-            frames_.push_back({angle});
-    }
-
-    [[nodiscard]] bool have(const Point2& a, const Point2& b) const {
-        return std::any_of(frames_.begin(), frames_.end(), [&](const LineFrame& frame) {
-            const double across = frame.across(a);
-            const double v = (std::nearbyint(across / distance_ - phase_) + phase_) * distance_;
-            return std::abs(across - v) <= tolerance_ && std::abs(frame.across(b) - v) <= tolerance_;
-        });
-    }
-
-  private:
-    std::vector<LineFrame> frames_;
-    double distance_;
-    double phase_;
-    double tolerance_;
-};
-
-struct HatchLine {
-    const Point2* ends = nullptr;
-    const HatchRule* rule = nullptr;
-    std::uint64_t layer = 0;
-
-    [[nodiscard]] double length() const noexcept { return ends == nullptr ? 0 : distance(ends[0], ends[1]); }
-};
-
-/// Returns the longest line for each plane and rule with lines. Begins with the lowest plane and stops when
-/// there are enough lines.
-std::vector<HatchLine> longest_lines(const std::vector<Group>& groups, const ScanStrategy& strategy,
-                                     std::size_t planes) {
-    constexpr std::size_t enough = 32;
-    std::vector<HatchLine> lines;
-    for (std::size_t plane = 0; plane < planes && lines.size() < enough; ++plane) {
-        std::map<const HatchRule*, HatchLine> longest;
-        for (const Group& group : groups)
-            for (const LayerPart* const part : group.exposures) {
-                const std::span<const Point2> hatches = part->hatches_of(plane);
-                const HatchRule& rule = hatch_of(strategy, part->exposure->region);
-                for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
-                    if (const HatchLine line{&hatches[i], &rule, part->layers[plane].index};
-                        line.length() > longest[&rule].length())
-                        longest[&rule] = line;
-            }
-        for (const auto& of_rule : longest)
-            if (of_rule.second.ends != nullptr)
-                lines.push_back(of_rule.second);
-    }
-    return lines;
-}
-
-/// Returns the number of layers of the plan below the first layer of the file. It is the number for which the
-/// most lines are at their expected positions.
-std::uint64_t layers_before(const std::vector<HatchLine>& lines, double tolerance, const Executor& executor) {
-    constexpr std::uint64_t most = 1 << 17;
-    std::uint64_t best = 0;
-    std::ptrdiff_t most_fit = 0;
-    for (std::uint64_t before = 0; before < most && most_fit < std::ssize(lines); ++before) {
-        if (before % 1024 == 0)
-            executor.check_cancelled();
-        const auto fit = std::count_if(lines.begin(), lines.end(), [&](const HatchLine& line) {
-            return AskedLines(*line.rule, before + line.layer, tolerance).have(line.ends[0], line.ends[1]);
-        });
-        if (fit > most_fit) {
-            most_fit = fit;
-            best = before;
-        }
-    }
-    return best;
-}
 
 class VectorCheck {
   public:
@@ -273,7 +38,8 @@ class VectorCheck {
         : options_(options), rounding_(rounding), tolerance_(rounding + options.steps.simplify_mm),
           before_(before) {}
 
-    void check(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
+    void check(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,
+               PlaneFindings& found) const {
         std::uint64_t all = 0;
         for (const LayerPart* const part : group.exposures) {
             const Layer& vectors = part->layers[plane];
@@ -295,14 +61,15 @@ class VectorCheck {
         }
         find_outside(group, plane, bounds, found);
         if (options_.strategy) {
-            measure_cover(group, plane, bounds, found);
-            measure_unreached(group, plane, bounds, found);
+            check_cover(group, plane, bounds, *options_.strategy, tolerance_, found);
+            check_reach(group, plane, bounds, *options_.strategy, tolerance_, found);
         }
     }
 
     /// Checks that each contour that the strategy prescribes for a part is present and encloses the area at
     /// its depth.
-    void check_rows(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
+    void check_rows(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,
+                    PlaneFindings& found) const {
         if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0)
             return;
         const ContourRule& rule = contours_of(*options_.strategy, group.exposures.front()->exposure->region);
@@ -344,11 +111,6 @@ class VectorCheck {
     }
 
   private:
-    /// Overlapping bodies are united even if the depth is 0, as in `scan`.
-    static Layer moved_inwards(const Layer& section, double depth, const OffsetCorners& corners = {}) {
-        return depth == 0 ? fill(section, FillRule::positive).layer : offset(section, -depth, corners);
-    }
-
     /// Returns findings about contours of one number. These must not cross, and none may lie within the
     /// material of another.
     [[nodiscard]] ContourFindings of_one_exposure(const Exposure& exposure, const Layer& vectors) const {
@@ -368,14 +130,14 @@ class VectorCheck {
     }
 
     void check_lines(const Exposure& exposure, const Layer& layer, std::span<const Point2> hatches,
-                     PlaneCheck& found) const {
+                     PlaneFindings& found) const {
         const HatchRule& rule = hatch_of(*options_.strategy, exposure.region);
         // Lines of a contour run along the middle of thin walls.
         if (exposure.kind == VectorKind::contour &&
             contours_of(*options_.strategy, exposure.region).thin_walls == ThinWalls::line)
             return;
         const bool asked = asks_for_lines(exposure);
-        const AskedLines lines(rule, before_ + layer.index, rounding_);
+        const PrescribedLines lines(rule, before_ + layer.index, rounding_);
         for (std::size_t i = 0; i + 1 < hatches.size(); i += 2) {
             const Point2& a = hatches[i];
             const Point2& b = hatches[i + 1];
@@ -386,7 +148,8 @@ class VectorCheck {
         }
     }
 
-    void find_outside(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
+    void find_outside(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,
+                      PlaneFindings& found) const {
         // The material is grown a little, so that points on an edge are inside.
         Layer material = bounds.sections.front();
         for (std::size_t i = 1; i < bounds.sections.size(); ++i)
@@ -463,103 +226,6 @@ class VectorCheck {
         Point2 at_;
     };
 
-    void measure_cover(const Group& group, std::size_t plane, const Bounds& bounds, PlaneCheck& found) const {
-        const ScanStrategy& strategy = *options_.strategy;
-        Slack slack;
-        double shallow = std::numeric_limits<double>::infinity();
-        double deep = -shallow;
-        const auto expect = [&](ScanRegion region) {
-            const HatchRule& rule = hatch_of(strategy, region);
-            slack.add(rule);
-            const double depth = hatch_depth(contours_of(strategy, region), rule) - bounds.depth;
-            shallow = std::min(shallow, depth);
-            deep = std::max(deep, depth);
-        };
-        // Files may list only regions that are not empty, and skins may cover all of the core.
-        if (group.exposures.front()->exposure->region == ScanRegion::support) {
-            expect(ScanRegion::support);
-        } else {
-            expect(ScanRegion::core);
-            if (strategy.upskin.layers > 0)
-                expect(ScanRegion::upskin);
-            if (strategy.downskin.layers > 0)
-                expect(ScanRegion::downskin);
-        }
-        double covered = 0;
-        double around_skins = 0; // mm; skins overlap adjacent regions
-        double over_others = 0;
-        for (const LayerPart* const part : group.exposures) {
-            const Exposure& exposure = *part->exposure;
-            if (exposure.kind != VectorKind::hatch)
-                continue;
-            expect(exposure.region);
-            const HatchRule& rule = hatch_of(strategy, exposure.region);
-            const double area = length_of(part->hatches_of(plane)) * rule.distance;
-            covered += area;
-            if (exposure.region == ScanRegion::upskin || exposure.region == ScanRegion::downskin) {
-                const double around = length_around(part->hatches_of(plane), rule.distance);
-                around_skins += around;
-                over_others += around * (exposure.region == ScanRegion::upskin ? strategy.upskin.overlap
-                                                                               : strategy.downskin.overlap);
-            }
-        }
-        const Layer* section = &bounds.sections.front();
-        LayerMeasure
-            to_fill; // of the first section with material, since rounded heights may be outside of the part
-        LayerMeasure largest;
-        double least = std::numeric_limits<double>::infinity();
-        for (const Layer& moved : bounds.sections) {
-            const LayerMeasure area = measure(offset(moved, -shallow));
-            if (to_fill.area_mm2 == 0 && area.area_mm2 != 0) {
-                to_fill = area;
-                section = &moved;
-            }
-            largest.area_mm2 = std::max(largest.area_mm2, area.area_mm2);
-            largest.perimeter_mm = std::max(largest.perimeter_mm, area.perimeter_mm);
-            least = std::min(least, measure(offset(moved, -deep)).area_mm2);
-        }
-        const double moved_edges = tolerance_ * largest.perimeter_mm;
-        LayerMeasure edges = largest; // including those of skins
-        edges.perimeter_mm += around_skins;
-        least -= slack.less(edges) + moved_edges;
-        const double greatest = largest.area_mm2 + slack.more(edges) + over_others + moved_edges;
-        if (covered < least || covered > greatest)
-            found.miscovered.add(group.exposures.front()->layers[plane],
-                                 section->points.empty() ? Point2{} : section->points[0]);
-        found.covered_mm2 += covered;
-        found.filled_mm2 += to_fill.area_mm2;
-    }
-
-    /// Measures the unreached material of each possible section, and keeps the smallest result.
-    void measure_unreached(const Group& group, std::size_t plane, const Bounds& bounds,
-                           PlaneCheck& found) const {
-        const ScanStrategy& strategy = *options_.strategy;
-        const ScanRegion region = group.exposures.front()->exposure->region;
-        const ContourRule& contours = contours_of(strategy, region);
-        const HatchRule& hatch = region == ScanRegion::support ? strategy.support.hatch : strategy.hatch;
-        std::vector<Stroke> strokes;
-        double least = std::numeric_limits<double>::infinity();
-        Point2 at;
-        for (const Layer& section : bounds.sections) {
-            const Layer positions = narrow_points(moved_inwards(section, 0), bounds.depth, contours, hatch);
-            if (positions.rings > 0 && strokes.empty())
-                for (const LayerPart* const part : group.exposures)
-                    add_strokes(part->layers[plane], part->hatches_of(plane),
-                                2 * tolerance_ +
-                                    (part->exposure->kind == VectorKind::hatch
-                                         ? hatch_of(strategy, part->exposure->region).distance
-                                         : contour_reach(contours_of(strategy, part->exposure->region))),
-                                strokes);
-            if (const double left = unreached_area(positions, strokes); left < least) {
-                least = left;
-                at = positions.points.empty() ? Point2{} : positions.points[0];
-            }
-        }
-        if (least > strategy.accepted_mm2)
-            found.unreached.add(group.exposures.front()->layers[plane], at);
-        found.unreached_mm2 += least;
-    }
-
     const VerifyOptions& options_;
     double rounding_;  ///< tolerance of ends of lines
     double tolerance_; ///< tolerance of edges of the material, including simplification
@@ -568,39 +234,39 @@ class VectorCheck {
 
 /// A kind of finding, its member in the checks of planes, and its count for the file.
 struct KindOfFinding {
-    Finding PlaneCheck::*found;
+    Finding PlaneFindings::*found;
     std::uint64_t VectorVerification::*total;
     FindingWords words;
 };
 
 std::array<KindOfFinding, 9> kinds_of_findings(bool strategy) {
     return {
-        {{&PlaneCheck::open_chains, &VectorVerification::open_chains, open_chains_words},
-         {&PlaneCheck::crossings, &VectorVerification::crossings, crossings_words},
-         {&PlaneCheck::misoriented, &VectorVerification::misoriented, misoriented_words},
-         {&PlaneCheck::outside, &VectorVerification::outside,
+        {{&PlaneFindings::open_chains, &VectorVerification::open_chains, open_chains_words},
+         {&PlaneFindings::crossings, &VectorVerification::crossings, crossings_words},
+         {&PlaneFindings::misoriented, &VectorVerification::misoriented, misoriented_words},
+         {&PlaneFindings::outside, &VectorVerification::outside,
           strategy ? FindingWords{"vector is nearer to the edge of the material than the strategy says, or "
                                   "outside;",
                                   "vectors are nearer to the edge of the material than the strategy says, or "
                                   "outside;"}
                    : FindingWords{"vector leaves the material;", "vectors leave the material;"}},
-         {&PlaneCheck::too_short,
+         {&PlaneFindings::too_short,
           &VectorVerification::too_short,
           {"hatch line is shorter than the strategy says;",
            "hatch lines are shorter than the strategy says;"}},
-         {&PlaneCheck::misplaced,
+         {&PlaneFindings::misplaced,
           &VectorVerification::misplaced,
           {"hatch line lies beside those of the strategy, has another angle or another exposure;",
            "hatch lines lie beside those of the strategy, have another angle or another exposure;"}},
-         {&PlaneCheck::miscovered,
+         {&PlaneFindings::miscovered,
           &VectorVerification::miscovered,
           {"layer has lines that cover more or less than they should fill;",
            "layers have lines that cover more or less than they should fill;"}},
-         {&PlaneCheck::unreached,
+         {&PlaneFindings::unreached,
           &VectorVerification::unreached_layers,
           {"layer has more material that no vector reaches than the strategy accepts;",
            "layers have more material that no vector reaches than the strategy accepts;"}},
-         {&PlaneCheck::inverted,
+         {&PlaneFindings::inverted,
           &VectorVerification::inverted_rings,
           {"ring of the mesh bounds no material and has no vectors, as triangles face inwards;",
            "rings of the mesh bound no material and have no vectors, as triangles face inwards;"}}}};
@@ -623,9 +289,10 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
     for (const LayerPart& part : parts)
         for (const Layer& layer : part.layers)
             check(layer);
-    const std::vector<Group> groups = groups_of(parts, options.mesh.has_value());
+    const std::vector<ExposureGroup> groups = groups_of(parts, options.mesh.has_value());
     // Requirements on contours apply to each part. A mesh does not distinguish parts.
-    const std::vector<Group> of_parts = options.strategy ? groups_of(parts, false) : std::vector<Group>();
+    const std::vector<ExposureGroup> of_parts =
+        options.strategy ? groups_of(parts, false) : std::vector<ExposureGroup>();
     VectorVerification result;
     const auto check_number = [&] {
         result.none = options.strategy && result.contour_vectors + result.hatch_vectors == 0;
@@ -646,7 +313,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
             });
 
     double largest = 0;
-    for (const Group& group : groups)
+    for (const ExposureGroup& group : groups)
         for (const LayerPart* const part : group.exposures)
             for (std::size_t i = 0; i < part->layers.size(); ++i)
                 largest = std::max({largest, largest_coordinate(part->layers[i].points.span()),
@@ -657,14 +324,12 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
     Executor executor(execution);
     const VectorCheck vectors(
         options, rounding,
-        options.strategy
-            ? layers_before(longest_lines(groups, *options.strategy, planes.size()), rounding, executor)
-            : 0);
-    std::vector<PlaneCheck> checks(planes.size());
+        options.strategy ? layers_below(groups, *options.strategy, planes.size(), rounding, executor) : 0);
+    std::vector<PlaneFindings> checks(planes.size());
     ProgressMeter progress(execution, Stage::polygon, planes.size());
     executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        const auto bounds_of = [&](const Group& group, bool by_mesh) {
-            Bounds bounds;
+        const auto bounds_of = [&](const ExposureGroup& group, bool by_mesh) {
+            MaterialBounds bounds;
             if (by_mesh)
                 bounds.sections = sections[i];
             else if (group.outermost != nullptr)
@@ -672,7 +337,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
                           options.strategy ? depth_of(*group.outermost->exposure, *options.strategy) : 0};
             return bounds;
         };
-        for (const Group& group : groups)
+        for (const ExposureGroup& group : groups)
             vectors.check(group, i, bounds_of(group, options.mesh.has_value()), checks[i]);
         if (options.mesh) {
             const InvertedRings inverted =
@@ -681,7 +346,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
                 checks[i].inverted.add(planes[i], inverted.at, inverted.rings);
             checks[i].inverted_mm3 = inverted.area_mm2 * planes[i].thickness();
         }
-        for (const Group& group : of_parts)
+        for (const ExposureGroup& group : of_parts)
             vectors.check_rows(group, i, bounds_of(group, options.mesh && of_parts.size() == 1), checks[i]);
         progress.add(1);
     });
@@ -689,7 +354,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
 
     for (const KindOfFinding& kind : kinds_of_findings(options.strategy.has_value())) {
         Finding all;
-        for (const PlaneCheck& check : checks)
+        for (const PlaneFindings& check : checks)
             all.add(check.*kind.found);
         result.*kind.total = all.total;
         append_finding(all, kind.words, result.findings);
@@ -697,7 +362,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
     std::map<std::uint32_t, ContourRow> rows;
     double covered_mm2 = 0;
     double filled_mm2 = 0;
-    for (const PlaneCheck& check : checks) {
+    for (const PlaneFindings& check : checks) {
         for (const auto& row : check.rows)
             rows[row.first].add(row.second);
         result.contour_vectors += check.contour_vectors;

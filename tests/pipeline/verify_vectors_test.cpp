@@ -1,85 +1,14 @@
-#include "lamella/pipeline/verify.hpp"
-#include "lamella/scan/scan.hpp"
-#include "lamella/slicing/slice.hpp"
-
-#include "fixtures/layers.hpp"
-#include "fixtures/meshes.hpp"
+#include "verify_vectors_fixture.hpp"
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace lamella {
+namespace lamella::verify_vectors_cases {
 namespace {
-
-using test::box_mesh;
-using test::layer_of;
-using test::rectangle;
-
-/// The vectors of layers, as a file has them.
-std::vector<LayerPart> scanned(const LayerStack& layers, const ScanStrategy& strategy,
-                               const std::string& part) {
-    std::vector<LayerPart> parts;
-    for (const Exposure& exposure : exposures(strategy, part))
-        parts.push_back({exposure.label(), {}, exposure});
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        std::vector<ScanLayer> below(layers.begin(), layers.begin() + static_cast<std::ptrdiff_t>(i));
-        std::reverse(below.begin(), below.end());
-        const std::vector<ScanLayer> above(layers.begin() + static_cast<std::ptrdiff_t>(i) + 1, layers.end());
-        ScanVectors vectors = scan(layers[i], below, above, strategy).vectors;
-        for (std::size_t k = 0; k < parts.size(); ++k) {
-            parts[k].layers.push_back(std::move(vectors.polylines[k]));
-            parts[k].hatches.push_back(std::move(vectors.hatches[k]));
-        }
-    }
-    return parts;
-}
-
-/// A block of 20 x 10 x 1 mm in ten layers.
-class VerifyVectors : public testing::Test {
-  protected:
-    VerifyVectors() {
-        strategy_.contours.count = 2;
-        strategy_.upskin.layers = 2;
-        strategy_.downskin.layers = 2;
-        plan_ = plan_uniform(0, 1, {.layer_height = 0.1});
-        parts_ = scanned(slice(mesh_, plan_), strategy_, "block");
-    }
-
-    /// With the mesh and the strategy, with one of them, with none.
-    VectorVerification with_all() const {
-        return verify_vectors(parts_, {.mesh = mesh_, .strategy = strategy_});
-    }
-    VectorVerification with_strategy() const { return verify_vectors(parts_, {.strategy = strategy_}); }
-    VectorVerification with_mesh() const { return verify_vectors(parts_, {.mesh = mesh_}); }
-    VectorVerification with_nothing() const { return verify_vectors(parts_); }
-
-    LayerPart& part(const std::string& name) {
-        for (LayerPart& part : parts_)
-            if (part.exposure->name() == name)
-                return part;
-        throw std::out_of_range(name);
-    }
-    /// Changes the hatches of a layer.
-    template <class Change>
-    void change_hatches(const std::string& name, std::size_t layer, const Change& change) {
-        PointArray& hatches = part(name).hatches[layer];
-        std::vector<Point2> points(hatches.begin(), hatches.end());
-        change(points);
-        hatches = PointArray(std::move(points));
-    }
-
-    Mesh mesh_ = box_mesh({0, 0, 0}, {20, 10, 1});
-    Plan plan_;
-    ScanStrategy strategy_;
-    std::vector<LayerPart> parts_;
-};
 
 TEST_F(VerifyVectors, FindsNothingInWhatScanMakes) {
     for (const HatchPattern pattern : {HatchPattern::lines, HatchPattern::meander, HatchPattern::stripes,
@@ -164,84 +93,6 @@ TEST_F(VerifyVectors, FindsLinesThatAreTooShort) {
     EXPECT_TRUE(with_mesh().ok());
 }
 
-TEST_F(VerifyVectors, FindsLinesThatAreTurnedOrLieBesideWhatTheStrategySays) {
-    for (const HatchPattern pattern :
-         {HatchPattern::stripes, HatchPattern::chessboard, HatchPattern::hexagons}) {
-        for (HatchRule* const rule : {&strategy_.hatch, &strategy_.upskin.hatch, &strategy_.downskin.hatch})
-            rule->pattern = pattern;
-        const auto scanned_by = [&](double angle, double turn, double distance) {
-            ScanStrategy other = strategy_;
-            for (HatchRule* const rule : {&other.hatch, &other.upskin.hatch, &other.downskin.hatch}) {
-                rule->angle_degrees = angle;
-                rule->turn_degrees = turn;
-                rule->distance = distance;
-            }
-            parts_ = scanned(slice(mesh_, plan_), other, "block");
-            const VectorVerification found = with_all();
-            EXPECT_EQ(with_strategy().misplaced, found.misplaced);
-            EXPECT_EQ(found.misplaced == 0, found.ok());
-            EXPECT_EQ(with_mesh().misplaced + with_nothing().misplaced, 0U);
-            return found.misplaced;
-        };
-        EXPECT_EQ(scanned_by(0, 67, 0.1), 0U);
-        EXPECT_GT(scanned_by(0.5, 67, 0.1), 1000U);
-        EXPECT_GT(scanned_by(0, 66, 0.1), 1000U);
-        EXPECT_GT(scanned_by(0, 67, 0.101), 1000U);
-    }
-}
-
-TEST_F(VerifyVectors, FindsThatAllHatchesAreMissing) {
-    std::erase_if(parts_, [](const LayerPart& part) { return part.exposure->kind == VectorKind::hatch; });
-    for (const VectorVerification& found : {with_all(), with_strategy()}) {
-        EXPECT_EQ(found.miscovered, 10U);
-        EXPECT_EQ(found.cover, 0);
-    }
-    EXPECT_TRUE(with_mesh().ok());
-}
-
-TEST_F(VerifyVectors, AFileMayBeginWithAnyLayerOfItsPlan) {
-    // Regions turn by themselves.
-    strategy_.hatch.turn_degrees = 90;
-    strategy_.upskin.hatch.turn_degrees = 33.3;
-    for (const std::uint64_t first : {1U, 103U, 5000U}) {
-        Plan later = plan_;
-        for (PlannedLayer& layer : later.layers)
-            layer.index += first;
-        parts_ = scanned(slice(mesh_, later), strategy_, "block");
-        for (LayerPart& part : parts_)
-            for (std::size_t i = 0; i < part.layers.size(); ++i)
-                part.layers[i].index = i; // as files number them
-        EXPECT_TRUE(with_all().ok()) << first;
-        // A layer that is not at its place is one, all others are right.
-        std::swap(part("core hatch").hatches[5], part("core hatch").hatches[6]);
-        EXPECT_GT(with_all().misplaced, 100U) << first;
-        EXPECT_LE(with_all().misplaced,
-                  (part("core hatch").hatches[5].size() + part("core hatch").hatches[6].size()) / 2)
-            << first;
-    }
-}
-
-TEST_F(VerifyVectors, FindsWhatIsNotFilledAndWhatIsFilledTwice) {
-    const std::vector<LayerPart> sound = parts_;
-    change_hatches("core hatch", 4,
-                   [](std::vector<Point2>& points) { points.resize(points.size() / 2 & ~1U); });
-    EXPECT_EQ(with_all().miscovered, 1U);
-    EXPECT_EQ(with_strategy().miscovered, 1U);
-    EXPECT_LT(*with_all().cover, 1.0);
-    EXPECT_TRUE(with_mesh().ok());
-
-    parts_ = sound;
-    change_hatches("core hatch", 4, [](std::vector<Point2>& points) {
-        const std::vector<Point2> again = points;
-        points.insert(points.end(), again.begin(), again.end());
-    });
-    EXPECT_EQ(with_all().miscovered, 1U);
-
-    parts_ = sound;
-    change_hatches("upskin hatch", 9, [](std::vector<Point2>& points) { points.clear(); });
-    EXPECT_EQ(with_all().miscovered, 1U) << "a skin is missing";
-}
-
 TEST_F(VerifyVectors, FindsWhatIsWrongWithContours) {
     Layer& vectors = part("core contour 1").layers[2];
     vectors = layer_of({rectangle(1, 1, 9, 9), rectangle(2, 2, 8, 8)}, {{{2, 3}, {4, 3}}});
@@ -249,82 +100,6 @@ TEST_F(VerifyVectors, FindsWhatIsWrongWithContours) {
     EXPECT_EQ(found.open_chains, 1U);
     EXPECT_EQ(found.misoriented, 1U);
     EXPECT_FALSE(found.ok());
-}
-
-TEST_F(VerifyVectors, FindsLinesOfExposuresThatHaveNone) {
-    const auto line_at = [&](std::size_t i) {
-        const PointArray& lines = part("core hatch").hatches[4];
-        return std::vector<Point2>{lines[2 * i], lines[2 * i + 1]};
-    };
-    const std::vector<Point2> line = line_at(0);
-    const std::vector<Point2> amid = line_at(part("core hatch").hatches[4].size() / 4);
-    const std::vector<LayerPart> sound = parts_;
-    // The innermost contour has lines of what is too narrow for a hatch.
-    for (const auto& [contour, points] : {std::pair{"core contour 1", line}, {"core contour 2", amid}}) {
-        part(contour).hatches[4] = PointArray(points);
-        EXPECT_EQ(with_all().misplaced, 1U) << contour;
-        EXPECT_EQ(with_strategy().misplaced, 1U) << contour;
-        parts_ = sound;
-    }
-    part("upskin hatch").hatches[4] = PointArray(line);
-    EXPECT_EQ(with_all().misplaced, 0U);
-    strategy_.upskin.layers = 0;
-    EXPECT_GE(with_all().misplaced, 1U) << "no skin is asked for";
-}
-
-TEST_F(VerifyVectors, TakesContoursThatFilesDoNotNumber) {
-    LayerPart both = part("core contour 1");
-    for (LayerPart& part : parts_)
-        part.exposure->contour = 0;
-    std::swap(parts_[0], parts_[1]); // the inner one comes first
-    EXPECT_TRUE(with_nothing().ok());
-    EXPECT_TRUE(with_mesh().ok());
-    both.layers[3] = layer_of({rectangle(1, 1, 9, 9), rectangle(2, 2, 8, 8)});
-    EXPECT_EQ(verify_vectors(std::vector{both}).misoriented, 1U);
-    both.exposure->contour = 0;
-    EXPECT_EQ(verify_vectors(std::vector{both}).misoriented, 0U);
-}
-
-TEST_F(VerifyVectors, FindsMaterialThatNoVectorReaches) {
-    mesh_ = test::box_mesh({0, 0, 0}, {20, 0.08F, 1});
-    strategy_ = {};
-    parts_ = scanned(slice(mesh_, plan_), strategy_, "fin");
-    EXPECT_TRUE(with_all().ok());
-    EXPECT_LT(with_all().unreached_mm2, 0.01);
-    EXPECT_TRUE(with_strategy().ok());
-    change_hatches("core contour 1", 3, [](std::vector<Point2>& points) { points.clear(); });
-    const VectorVerification found = with_all();
-    EXPECT_FALSE(found.ok());
-    EXPECT_EQ(found.unreached_layers, 1U);
-    EXPECT_NEAR(found.unreached_mm2, 1.6, 0.01);
-    ASSERT_EQ(found.findings.size(), 1U);
-    EXPECT_TRUE(found.findings.front().starts_with(
-        "1 layer has more material that no vector reaches than the strategy accepts; "))
-        << found.findings.front();
-    strategy_.accepted_mm2 = 2;
-    EXPECT_TRUE(with_all().ok());
-    strategy_.contours.thin_walls = ThinWalls::leave_out; // then lines are none of a contour
-    EXPECT_GT(with_all().misplaced, 0U);
-    // Lines of thin walls may be near to the edge of the material, and not beyond.
-    strategy_ = {};
-    change_hatches("core contour 1", 4, [](std::vector<Point2>& points) { points[0].x -= 1; });
-    EXPECT_EQ(with_all().outside, 1U);
-}
-
-TEST_F(VerifyVectors, FindsThatTheMiddleOfAWallIsNotFilled) {
-    mesh_ = test::box_mesh({0, 0, 0}, {20, 0.25F, 1});
-    strategy_ = {};
-    parts_ = scanned(slice(mesh_, plan_), strategy_, "wall");
-    EXPECT_TRUE(with_all().ok()) << "where the hatch has no lines there is one along the middle";
-    EXPECT_LT(with_all().unreached_mm2, 0.01);
-    strategy_.contours.thin_walls = ThinWalls::leave_out;
-    parts_ = scanned(slice(mesh_, plan_), strategy_, "wall");
-    const VectorVerification found = with_all();
-    EXPECT_GT(found.unreached_layers, 3U);
-    EXPECT_GT(found.unreached_mm2, 0.05 * 19.8 * 3);
-    EXPECT_NEAR(with_strategy().unreached_mm2, found.unreached_mm2, 0.01)
-        << "within its contours it is known";
-    EXPECT_EQ(with_mesh().unreached_layers, 0U) << "nobody asks for any";
 }
 
 TEST_F(VerifyVectors, OfNoVectorsFails) {
@@ -392,23 +167,6 @@ TEST_F(VerifyVectors, FindsContoursAtAnotherDepth) {
     EXPECT_EQ(with_strategy().wrong_contours, 1U) << "the outermost one tells";
 }
 
-TEST_F(VerifyVectors, SkinsExcuseNoMoreThanTheirOverlap) {
-    const std::vector<LayerPart> sound = parts_;
-    for (const std::size_t layer : {0U, 9U}) { // all of these is skin
-        const char* const name = layer == 0 ? "downskin hatch" : "upskin hatch";
-        parts_ = sound;
-        change_hatches(name, layer,
-                       [](std::vector<Point2>& points) { points.resize(points.size() / 2 & ~1U); });
-        EXPECT_EQ(with_all().miscovered, 1U) << name;
-        parts_ = sound;
-        change_hatches(name, layer, [](std::vector<Point2>& points) {
-            const std::vector<Point2> again = points;
-            points.insert(points.end(), again.begin(), again.end());
-        });
-        EXPECT_EQ(with_all().miscovered, 1U) << name;
-    }
-}
-
 TEST_F(VerifyVectors, FindsLayersThatAreMissingInTheMiddle) {
     for (LayerPart& part : parts_) {
         part.layers.erase(part.layers.begin() + 4);
@@ -437,17 +195,5 @@ TEST_F(VerifyVectors, GrantsTheRoundingOfTheFormat) {
         verify_vectors(parts_, {.mesh = mesh_, .rounding = {.step_mm = 0.01}, .strategy = strategy_}).ok());
 }
 
-TEST_F(VerifyVectors, DistinguishesParts) {
-    const LayerStack other = slice(box_mesh({30, 0, 0}, {50, 10, 1}), plan_);
-    for (LayerPart& part : scanned(other, strategy_, "other"))
-        parts_.push_back(std::move(part));
-    EXPECT_TRUE(with_strategy().ok());
-    change_hatches("core hatch", 5, [](std::vector<Point2>& points) { // into the other part
-        points[0].x += 30;
-        points[1].x += 30;
-    });
-    EXPECT_EQ(with_strategy().outside, 1U);
-}
-
 } // namespace
-} // namespace lamella
+} // namespace lamella::verify_vectors_cases
