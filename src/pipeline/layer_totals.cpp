@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstddef>
 #include <string>
 #include <utility>
 
@@ -17,7 +18,7 @@ LayerTotals::LayerTotals(const LayerJob& job, std::span<const PlannedLayer> plan
     : closed_(job.close_gaps_mm ? planes.size() : 0), changes_(job.steps.any() ? planes.size() : 0),
       statistics_(job.statistics ? planes.size() : 0), parts_(job.supports.size()), files_(job.files),
       has_changes_(job.steps.any()) {
-    files_.resize(std::max(files_.size(), parts_.size()));
+    files_.resize(std::max({files_.size(), parts_.size(), std::size_t{1}}));
     assert(std::is_sorted(files_.begin(), files_.begin() + static_cast<std::ptrdiff_t>(parts_.size())));
     rows_.reserve(planes.size());
     for (const PlannedLayer& plane : planes)

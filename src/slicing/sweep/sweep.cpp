@@ -168,20 +168,20 @@ void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& 
     const std::vector<SweepTask> tasks = schedule(loads, executor.workers(), job.points_in_flight);
     const StartIndex starts(graph, shares, loads, tasks, executor);
     std::vector<std::unique_ptr<Sweep<Ends>>> sweeps(executor.workers());
-    const auto sweep = [&](std::size_t task, unsigned worker) {
+    const auto sweep_for = [&](std::size_t task, unsigned worker) -> Sweep<Ends>& {
         if (!sweeps[worker])
             sweeps[worker] = std::make_unique<Sweep<Ends>>(graph, starts, loads, ranks, job.plan,
                                                            tasks[task].shared, executor, job.sink, delivery);
-        sweeps[worker]->sweep(tasks[task], starts.carried(task));
+        return *sweeps[worker];
     };
     if (tasks.size() == 1) {
-        sweep(0, 0);
+        sweep_for(0, 0).sweep(tasks[0], starts.carried(0));
     } else {
         executor.for_chunks(tasks.size(), 1, [&](std::uint64_t t, std::uint64_t, unsigned worker) {
             const bool bounded = job.points_in_flight != 0 && t > executor.workers();
             if (bounded && !delivery.wait_for(tasks[t - executor.workers()].planes.begin))
                 return;
-            sweep(t, worker);
+            sweep_for(t, worker).sweep(tasks[t], starts.carried(t));
         });
     }
     executor.check_cancelled();
@@ -197,10 +197,10 @@ void slice_by_sweep(const SliceJob& job) {
     const Stopwatch linking;
     const Ranks ranks(job.plan);
     ProgressMeter progress(job.execution, Stage::link, job.mesh.size());
-    const auto sweep = [&](const auto& graph) {
+    const auto linked = [&](const auto& graph) -> const auto& {
         progress.finish();
         job.report.link_seconds = linking.seconds();
-        sweep_graph(job, graph, ranks, executor);
+        return graph;
     };
     RangeVisitor visit;
     if (job.visitor != nullptr)
@@ -208,11 +208,14 @@ void slice_by_sweep(const SliceJob& job) {
             (*job.visitor)(job.mesh, begin, end);
         };
     if (job.mesh.indexed() != nullptr)
-        sweep(build_cut_graph(*job.mesh.indexed(), ranks, executor, progress, visit));
+        sweep_graph(job, linked(build_cut_graph(*job.mesh.indexed(), ranks, executor, progress, visit)),
+                    ranks, executor);
     else if (job.mesh.soup()->has_placement())
-        sweep(build_placed_cut_graph(*job.mesh.soup(), ranks, executor, progress, visit));
+        sweep_graph(job, linked(build_placed_cut_graph(*job.mesh.soup(), ranks, executor, progress, visit)),
+                    ranks, executor);
     else
-        sweep(build_cut_graph(*job.mesh.soup(), ranks, executor, progress, visit));
+        sweep_graph(job, linked(build_cut_graph(*job.mesh.soup(), ranks, executor, progress, visit)), ranks,
+                    executor);
 }
 
 } // namespace lamella
