@@ -110,8 +110,10 @@ std::vector<ExposureResult> exposures_of(const LayerFile& file) {
         auto exposure = exposures.begin();
         for (const LayerPart& part : file.parts)
             if (part.exposure) {
-                exposure->figures +=
+                const MeasuredVectors measured =
                     measure_vectors(part.layers[i], part.hatches_of(i), part.exposure->parameters, beam);
+                beam = measured.beam;
+                exposure->figures += measured.figures;
                 ++exposure;
             }
     }

@@ -33,8 +33,9 @@ int run_merge(const MergeArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
     check_stamps(arguments.shards, execution);
-    const MergeResult result = merge_layer_files(arguments.shards, arguments.output, format.name, options,
-                                                 arguments.limits.of_layers(), execution);
+    const MergeResult result = merge_layer_files(
+        arguments.shards, arguments.output,
+        {.format = format.name, .writing = options, .reading = arguments.limits.of_layers()}, execution);
     for (const std::string& warning : result.file_warnings)
         context.messages.warn(warning);
     context.messages.warn_of(output_name(arguments.output), result.warnings);

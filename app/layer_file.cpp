@@ -89,9 +89,11 @@ StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Me
                             ? file.path
                             : fmt::format("{}, part \"{}\"", file.path, excerpt(part.label)));
     }
-    StepChanges changes;
     const std::vector<LayerStack> before = parts; // shares their points
-    parts = lamella::take_steps(steps, std::move(parts), changes.planes, execution, max_memory, names);
+    ChangedStacks stepped = lamella::take_steps(
+        steps, std::move(parts), {.execution = execution, .max_memory = max_memory, .names = names});
+    parts = std::move(stepped.parts);
+    StepChanges changes{.planes = std::move(stepped.planes), .all = {}};
     std::uint64_t contours = 0;
     std::uint64_t hatches_dropped = 0;
     for (std::size_t i = 0; i < parts.size(); ++i) {

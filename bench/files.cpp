@@ -33,7 +33,11 @@ std::unique_ptr<LayerWriter> open_writer(const OpenedPart& opened, const LayerFo
 void into_file(const Part& part, const LayerFormat& format, const std::string& path) {
     const OpenedPart opened = open_part(part, {});
     const auto writer = open_writer(opened, format, path);
-    slice_to([&](Layer&& layer) { return writer->prepare(layer); }, opened.mesh, opened.plan, {});
+    slice_to({.prepare =
+                  [&](Layer&& layer) {
+                      return writer->prepare(layer);
+                  }},
+             opened.mesh, opened.plan);
     writer->finish();
 }
 

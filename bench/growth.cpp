@@ -29,14 +29,13 @@ Run slice_soup(const TriangleSoup& soup, unsigned planes, unsigned threads) {
     const Box3 box = bounding_box(soup, execution);
     const Plan plan = plan_uniform(box.min.z, box.max.z,
                                    {.layer_height = (box.max.z - box.min.z) / static_cast<double>(planes)});
-    SliceReport report;
     std::vector<double> found(plan.layers.size());
-    const auto sink = [&](Layer&& layer) -> std::function<void()> {
+    const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
         found[layer.index] = measure(layer).area_mm2;
         return {};
-    };
+    }};
     const auto start = Clock::now();
-    slice_to(sink, soup, plan, execution, &report);
+    const SliceReport report = slice_to(sink, soup, plan, {.execution = execution});
     Run run{seconds_since(start), soup.size(), report.points, report.open_chains, 0};
     const std::vector<double> areas = section_areas(soup, plan, execution);
     double largest = 0;

@@ -336,7 +336,7 @@ Timed grow(const Layer& layer, const Expected& expected) {
 /// Outwards, or inwards if `by` is below 0: the result has no crossings and, filled, stays as it is.
 Timed move_by(const Layer& layer, double by, OffsetCorner shape = OffsetCorner::mitre) {
     const auto start = Clock::now();
-    const Layer moved = offset(layer, by, {.shape = shape});
+    const Layer moved = offset(layer, by, {.corners = {.shape = shape}});
     const double seconds = seconds_since(start);
     const double added = measure(moved).area_mm2 - measure(layer).area_mm2;
     return {seconds, layer.points.size(),
@@ -362,7 +362,7 @@ Timed make_vectors(const Layer& layer, double area_mm2) {
 /// Offsets inwards until nothing is left.
 Timed shrink_away(const Layer& layer, double by, OffsetCorner shape) {
     const auto start = Clock::now();
-    const Layer left = offset(layer, -by, {.shape = shape});
+    const Layer left = offset(layer, -by, {.corners = {.shape = shape}});
     return {seconds_since(start), layer.points.size(), left.contours() == 0};
 }
 

@@ -93,7 +93,9 @@ void sweep(benchmark::State& state, const TriangleSoup& soup, double planes) {
     const Execution execution = on(state);
     SliceReport report;
     for ([[maybe_unused]] const auto _ : state) {
-        const LayerStack layers = slice(soup, plan, execution, &report);
+        LayerStack layers;
+        layers.reserve(plan.layers.size());
+        report = slice_to(appending_to(layers), soup, plan, {.execution = execution, .points_in_flight = 0});
         state.SetIterationTime(report.slice_seconds);
     }
     state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(report.points));

@@ -31,17 +31,30 @@ bool equal(const LayerStack& a, const LayerStack& b) {
         a, b, [](const Layer& x, const Layer& y) { return content_hash(x) == content_hash(y); });
 }
 
+struct Stepped {
+    LayerStack layers;
+    LayerChanges changes;
+};
+
+/// Applies the steps to one part, and adds up the changes of its layers.
+Stepped stepped(const LayerSteps& steps, const LayerStack& layers, const Execution& execution) {
+    ChangedStacks result = take_steps(steps, std::vector<LayerStack>{layers}, {.execution = execution});
+    Stepped all{std::move(result.parts.front()), {}};
+    for (const LayerChanges& plane : result.planes)
+        all.changes += plane;
+    return all;
+}
+
 Timed fill_clean(const Part& part, const Execution& execution) {
     const OpenedPart opened = open_part(part, execution);
     Timed result;
     const auto slicing = Clock::now();
-    const LayerStack layers = slice(opened.mesh, opened.plan, execution);
+    const LayerStack layers = slice(opened.mesh, opened.plan, {.execution = execution});
     result.slice = seconds_since(slicing);
     for (const Layer& layer : layers)
         result.points += layer.points.size();
-    LayerChanges changes;
     const auto filling = Clock::now();
-    const LayerStack filled = take_steps({.fill = FillRule::nonzero}, layers, changes, execution);
+    const auto [filled, changes] = stepped({.fill = FillRule::nonzero}, layers, execution);
     result.fill = seconds_since(filling);
     result.right = changes.changed_layers == 0 && equal(filled, layers);
     return result;
@@ -65,17 +78,15 @@ Timed fill_doubled(const Part& part, const Execution& execution) {
     const OpenedPart opened = open_part(part, execution);
     Timed result;
     const auto slicing = Clock::now();
-    const LayerStack single = slice(opened.mesh, opened.plan, execution);
+    const LayerStack single = slice(opened.mesh, opened.plan, {.execution = execution});
     result.slice = seconds_since(slicing);
     const LayerStack layers = doubled(single, (opened.box.max.x - opened.box.min.x) / 2);
     for (const Layer& layer : layers)
         result.points += layer.points.size();
-    LayerChanges changes;
     const auto filling = Clock::now();
-    const LayerStack filled = take_steps({.fill = FillRule::nonzero}, layers, changes, execution);
+    const auto [filled, changes] = stepped({.fill = FillRule::nonzero}, layers, execution);
     result.fill = seconds_since(filling);
-    LayerChanges again;
-    const LayerStack same = take_steps({.fill = FillRule::nonzero}, filled, again, execution);
+    const auto [same, again] = stepped({.fill = FillRule::nonzero}, filled, execution);
     result.right = changes.groups_united > 0 && again.changed_layers == 0 && equal(same, filled) &&
                    std::ranges::none_of(filled, [](const Layer& layer) { return has_crossings(layer); });
     return result;
@@ -99,11 +110,10 @@ Moved move_layers(const Part& part, double distance) {
     const OpenedPart opened = open_part(part, {.threads = 1});
     Moved result;
     const auto slicing = Clock::now();
-    const LayerStack layers = slice(opened.mesh, opened.plan, {.threads = 1});
+    const LayerStack layers = slice(opened.mesh, opened.plan, {.execution = {.threads = 1}});
     result.slice = seconds_since(slicing);
-    LayerChanges changes;
     const auto moving = Clock::now();
-    const LayerStack moved = take_steps({.offset_mm = distance}, layers, changes, {.threads = 1});
+    const LayerStack moved = stepped({.offset_mm = distance}, layers, {.threads = 1}).layers;
     result.ours = seconds_since(moving);
     // The other libraries are slow, so a few layers represent all.
     const auto compare = [&](std::size_t count, double tolerance, const auto& area_by, double& seconds) {

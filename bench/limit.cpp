@@ -93,8 +93,10 @@ Run run_lamella(const Part& part, unsigned threads, bool weld_too) {
     const Box3 box = bounding_box(mesh, execution);
     run.read = seconds_since(start);
     const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = part.layer_height});
-    SliceReport report;
-    const LayerStack layers = slice(mesh, plan, execution, &report);
+    LayerStack layers;
+    layers.reserve(plan.layers.size());
+    const SliceReport report =
+        slice_to(appending_to(layers), mesh, plan, {.execution = execution, .points_in_flight = 0});
     run.total = seconds_since(start);
     run.link = report.link_seconds;
     run.slice = report.slice_seconds;
@@ -191,7 +193,7 @@ std::uint64_t peak_of_slicing(const Part& part, unsigned threads) {
                const Mesh mesh = read_mesh(part.path, {}, execution).mesh();
                const Box3 box = bounding_box(mesh, execution);
                const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = part.layer_height});
-               return std::uint64_t{slice(mesh, plan, execution).size()};
+               return std::uint64_t{slice(mesh, plan, {.execution = execution}).size()};
            })
         .peak_bytes;
 }

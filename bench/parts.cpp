@@ -59,7 +59,7 @@ double seconds_into_memory(const Part& part, unsigned threads) {
     const auto start = Clock::now();
     const Execution execution{.threads = threads};
     const OpenedPart opened = open_part(part, execution);
-    const LayerStack layers = slice(opened.mesh, opened.plan, execution);
+    const LayerStack layers = slice(opened.mesh, opened.plan, {.execution = execution});
     return seconds_since(start);
 }
 

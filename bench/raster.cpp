@@ -47,7 +47,11 @@ std::unique_ptr<LayerWriter> open_job(const OpenedPart& opened, const std::strin
 void into_job(const Part& part, const std::string& path, unsigned antialias) {
     const OpenedPart opened = open_part(part, {});
     const auto writer = open_job(opened, path, antialias);
-    slice_to([&](Layer&& layer) { return writer->prepare(layer); }, opened.mesh, opened.plan, {});
+    slice_to({.prepare =
+                  [&](Layer&& layer) {
+                      return writer->prepare(layer);
+                  }},
+             opened.mesh, opened.plan);
     writer->finish();
 }
 
@@ -80,7 +84,7 @@ Steps steps_of(const Part& part, const std::string& path, unsigned antialias) {
     LayerStack layers;
     steps.slicing = cost_of([&] {
         opened = open_part(part, alone);
-        layers = slice(opened.mesh, opened.plan, alone);
+        layers = slice(opened.mesh, opened.plan, {.execution = alone});
     });
     const PixelGrid grid = grid_of(opened.box);
     steps.raster = cost_of([&] {

@@ -43,8 +43,7 @@ ScanStrategy lines_only(HatchPattern pattern) {
 
 /// Returns the length of the vectors of the first exposure.
 double length_of(const ScanVectors& vectors) {
-    std::optional<Point2> beam;
-    return measure_vectors(vectors.polylines.front(), vectors.hatches.front().span(), {}, beam).marked_mm;
+    return measure_vectors(vectors.polylines.front(), vectors.hatches.front().span(), {}).figures.marked_mm;
 }
 
 /// Lines of Clipper across a layer.
@@ -108,7 +107,7 @@ struct Hatched {
 
 Hatched hatch_layers(const Part& part, HatchPattern pattern, bool compare) {
     const OpenedPart opened = open_part(part, {.threads = 1});
-    const LayerStack layers = slice(opened.mesh, opened.plan, {.threads = 1});
+    const LayerStack layers = slice(opened.mesh, opened.plan, {.execution = {.threads = 1}});
     const ScanStrategy strategy = lines_only(pattern);
     Hatched result;
     const std::size_t step = std::max<std::size_t>(1, layers.size() / 5);
@@ -146,7 +145,7 @@ Job whole_job(const Part& part, const ScanStrategy& strategy) {
     const OpenedPart opened = open_part(part, {.threads = 1});
     Job job;
     const auto slicing = Clock::now();
-    const LayerStack sliced = slice(opened.mesh, opened.plan, {.threads = 1});
+    const LayerStack sliced = slice(opened.mesh, opened.plan, {.execution = {.threads = 1}});
     job.slice = seconds_since(slicing);
     const auto scanning = Clock::now();
     std::vector<ScanLayer> layers(sliced.begin(), sliced.end());

@@ -9,13 +9,13 @@ int main() {
     };
     const lamella::Plan plan = lamella::plan_uniform(0, 10, {.layer_height = 0.5});
 
-    // The sink does the work: several threads call it, in any order. The functions that it returns are called
-    // in the order of the layers, one at a time: they output the results.
-    const auto sink = [](lamella::Layer&& layer) -> std::function<void()> {
+    // `prepare` does the work: several threads call it, in any order. The commits that it returns are called
+    // one at a time, in the order of the layers: they output the results.
+    const lamella::LayerSink sink{.prepare = [](lamella::Layer&& layer) -> lamella::Commit {
         const double area = lamella::measure(layer).area_mm2;
         return [z = layer.z, area] {
             std::printf("%5.2f mm  %7.3f mm2\n", z, area);
         };
-    };
+    }};
     lamella::slice_to(sink, mesh, plan);
 }

@@ -51,7 +51,7 @@ void tour() {
     const Mesh mesh = Mesh(oriented.mesh).transformed(compose(translation(100, 50, 0), rotation('z', 30)));
     const Box3 box = bounding_box(mesh);
     const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = 0.5});
-    LayerStack layers = slice(mesh, plan, execution);
+    LayerStack layers = slice(mesh, plan, {.execution = execution});
 
     // The hole in the mesh leaves contours open; gaps that are small enough are closed.
     for (Layer& layer : layers) {

@@ -82,15 +82,16 @@ LayerStream::LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, uns
     worker_ = std::thread([this, execution] {
         std::exception_ptr failure;
         try {
-            const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+            const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
                 return [this, kept = with_own_points(std::move(layer))]() mutable {
                     queue_.put(std::move(kept));
                 };
-            };
+            }};
+            const SliceOptions options{.execution = execution, .engine = engine_};
             if (mesh_->source().has_negatives())
-                slice_to(sink, mesh_->source().plate(execution), plan(), execution, engine_);
+                slice_to(sink, mesh_->source().plate(execution), plan(), options);
             else
-                slice_to(sink, mesh_->mesh(), plan(), execution, nullptr, engine_);
+                slice_to(sink, mesh_->mesh(), plan(), options);
         } catch (...) {
             failure = std::current_exception();
         }
@@ -181,13 +182,13 @@ std::vector<LayerPointer> sliced(const Mesh& mesh, const Plan& plan, const Execu
                                  const Engine& engine) {
     std::vector<LayerPointer> layers;
     layers.reserve(plan.layers.size());
-    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+    const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
         return [&, kept = std::make_shared<SharedLayer>(with_own_points(std::move(layer)),
                                                         plan.rule)]() mutable {
             layers.push_back(std::move(kept));
         };
-    };
-    slice_to(sink, mesh, plan, execution, nullptr, engine);
+    }};
+    slice_to(sink, mesh, plan, {.execution = execution, .engine = engine});
     return layers;
 }
 

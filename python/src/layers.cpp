@@ -213,8 +213,7 @@ std::string layer_text(const SharedLayer& layer) {
 /// Returns the layer after the steps. Its hatch lines remain only if the contours that they fill do.
 LayerPointer after(const LayerPointer& layer, const LayerSteps& steps) {
     return result_of_points(layer->get().points.size(), [layer, steps](const Execution& execution) {
-        LayerChanges changes;
-        Layer made = take_steps(steps, layer->get(), changes, layer_limits(execution));
+        Layer made = take_steps(steps, layer->get(), layer_limits(execution)).layer;
         PointArray hatches = same_contours(layer->get(), made) ? layer->hatches() : PointArray();
         return std::make_shared<SharedLayer>(std::move(made), layer->rule(), std::move(hatches));
     });

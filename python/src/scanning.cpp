@@ -164,9 +164,12 @@ std::vector<ScanFigures> measured(const std::vector<LayerPointer>& vectors,
     const GilRelease released;
     std::vector<ScanFigures> figures;
     std::optional<Point2> beam;
-    for (std::size_t i = 0; i < vectors.size(); ++i)
-        figures.push_back(measure_vectors(vectors[i]->get(), vectors[i]->hatches().span(),
-                                          exposures.at(i).parameters, beam));
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+        const MeasuredVectors measured = measure_vectors(vectors[i]->get(), vectors[i]->hatches().span(),
+                                                         exposures.at(i).parameters, beam);
+        beam = measured.beam;
+        figures.push_back(measured.figures);
+    }
     return figures;
 }
 

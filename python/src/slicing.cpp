@@ -64,10 +64,11 @@ std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const CutPlan& cuts,
     const Engine& chosen = engine(with);
     auto stack = std::make_shared<Stack>();
     run(threads, progress, [&](const Execution& execution) {
-        stack->layers =
-            mesh->source().has_negatives()
-                ? shared(slice(mesh->source().plate(execution), cuts.plan, execution, chosen), cuts.plan.rule)
-                : sliced(mesh->mesh(), cuts.plan, execution, chosen);
+        stack->layers = mesh->source().has_negatives()
+                            ? shared(slice(mesh->source().plate(execution), cuts.plan,
+                                           {.execution = execution, .engine = chosen}),
+                                     cuts.plan.rule)
+                            : sliced(mesh->mesh(), cuts.plan, execution, chosen);
         stack->planned = planned(cuts, *mesh, execution);
     });
     stack->rule = cuts.plan.rule;

@@ -52,6 +52,15 @@ void refuse_first_of(std::span<const Point2> points, const Layer& layer, const s
 } // namespace
 
 void check(const Layer& layer) {
+    const std::vector<std::uint64_t>& offsets = layer.offsets;
+    const bool divided = offsets.empty() ? layer.points.empty()
+                                         : offsets.front() == 0 && offsets.back() == layer.points.size() &&
+                                               std::is_sorted(offsets.begin(), offsets.end());
+    if (!divided || layer.rings > layer.contours())
+        throw Error(ErrorKind::usage,
+                    fmt::format("layer {}: its offsets do not divide {} points into {} rings and further "
+                                "chains; they must ascend from 0 to the number of points",
+                                layer.index, layer.points.size(), layer.rings));
     for (const double height : {layer.z, layer.bottom, layer.top})
         if (is_too_far(height))
             refuse(layer, "its heights", height);
@@ -61,7 +70,11 @@ void check(const Layer& layer) {
 }
 
 void check(const ScanVectors& vectors) {
-    assert(vectors.polylines.size() == vectors.hatches.size());
+    if (vectors.polylines.size() != vectors.hatches.size())
+        throw Error(ErrorKind::usage,
+                    fmt::format("scan vectors have polylines of {} exposures and hatch lines of {}; each "
+                                "exposure has both",
+                                vectors.polylines.size(), vectors.hatches.size()));
     for (std::size_t i = 0; i < vectors.exposures(); ++i) {
         const Layer& layer = vectors.polylines[i];
         const PointArray& hatches = vectors.hatches[i];

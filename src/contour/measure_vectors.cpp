@@ -17,8 +17,8 @@ ScanFigures& ScanFigures::operator+=(const ScanFigures& other) noexcept {
     return *this;
 }
 
-ScanFigures measure_vectors(const Layer& polylines, std::span<const Point2> hatches,
-                            const ParameterSet& parameters, std::optional<Point2>& beam) {
+MeasuredVectors measure_vectors(const Layer& polylines, std::span<const Point2> hatches,
+                                const ParameterSet& parameters, std::optional<Point2> beam) {
     ScanFigures figures;
     std::uint64_t marks = 0; // polylines: consecutive lines without a jump
     std::uint64_t jumps = 0;
@@ -59,7 +59,7 @@ ScanFigures measure_vectors(const Layer& polylines, std::span<const Point2> hatc
                             1e-6 * (static_cast<double>(marks) * parameters.mark_delay_us +
                                     static_cast<double>(jumps) * parameters.jump_delay_us);
     figures.energy_j = parameters.power_w * marking;
-    return figures;
+    return {figures, beam};
 }
 
 } // namespace lamella

@@ -1,7 +1,9 @@
 #pragma once
 
-// Accepts planes in any order and runs the sink's actions in ascending order. Workers can wait here, so that
+// Accepts planes in any order and calls their commits in ascending order. Workers can wait here, so that
 // they do not get too far ahead.
+
+#include "lamella/core/commit.hpp"
 
 #include "core/executor.hpp"
 
@@ -10,32 +12,30 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <mutex>
 
 namespace lamella {
 
-/// Runs the functions that a sink returns for planes, one at a time and in the order of planes. The thread
-/// that delivers the next plane in order runs the functions that are then due. No function is run once the
-/// executor is stopping.
+/// Calls the commits of planes one at a time and in the order of planes. The thread that delivers the next
+/// plane in order makes the calls that are then due. No commit is called once the executor is stopping.
 class OrderedStage {
   public:
     OrderedStage(const Executor& executor, ProgressMeter& progress)
         : executor_(executor), progress_(progress) {}
 
-    /// Delivers the plane at this position of the plan. Each plane must be delivered once. The action may be
+    /// Delivers the plane at this position of the plan. Each plane must be delivered once. The commit may be
     /// empty. Thread-safe.
-    void deliver(std::uint64_t plane, std::function<void()> action) {
+    void deliver(std::uint64_t plane, Commit commit) {
         std::unique_lock lock(mutex_);
         assert(plane >= next_ && !waiting_.contains(plane)); // no layer is delivered twice
-        waiting_.emplace(plane, std::move(action));
+        waiting_.emplace(plane, std::move(commit));
         if (draining_)
             return; // the draining thread will run it
         draining_ = true;
         try {
             while (!waiting_.empty() && waiting_.begin()->first == next_ && !executor_.stopping()) {
-                const std::function<void()> ready = std::move(waiting_.begin()->second);
+                const Commit ready = std::move(waiting_.begin()->second);
                 waiting_.erase(waiting_.begin());
                 lock.unlock();
                 if (ready)
@@ -66,7 +66,7 @@ class OrderedStage {
         return true;
     }
 
-    /// Returns the number of layers that the sink has finished. Must not be called during a delivery.
+    /// Returns the number of planes that are committed. Must not be called during a delivery.
     [[nodiscard]] std::uint64_t delivered() const noexcept { return next_; }
 
   private:
@@ -74,13 +74,13 @@ class OrderedStage {
     ProgressMeter& progress_;
     std::mutex mutex_;
     std::condition_variable moved_;
-    std::map<std::uint64_t, std::function<void()>> waiting_;
+    std::map<std::uint64_t, Commit> waiting_;
     std::uint64_t next_ = 0;
     bool draining_ = false;
     bool failed_ = false;
 };
 
-/// Calls prepare(i) for each i of [0, n) on all workers, and the actions that it returns in ascending order.
+/// Calls prepare(i) for each i of [0, n) on all workers, and the commits that it returns in ascending order.
 /// Each worker is at most one item ahead: no more than `workers` results wait. Throws the errors of both, and
 /// Error{cancelled}.
 template <class Prepare>

@@ -9,6 +9,7 @@
 #include "mesh/measures.hpp"
 #include "mesh/survey.hpp"
 #include "mesh/union_find.hpp"
+#include "mesh/valid_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -205,6 +206,7 @@ std::string_view shell_kind_name(ShellKind kind) noexcept {
 
 Diagnosis diagnose(const IndexedMesh& mesh, const DiagnosisOptions& options, const Execution& execution) {
     Executor executor(execution);
+    check(mesh, executor);
     Diagnosis found;
     const Survey all = survey(executor, mesh, true);
     found.counts = all.found;

@@ -4,6 +4,7 @@
 #include "mesh/edge_survey.hpp"
 #include "mesh/measures.hpp"
 #include "mesh/used_vertices.hpp"
+#include "mesh/valid_mesh.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -14,6 +15,7 @@ namespace lamella {
 
 DroppedDuplicates drop_duplicates(const IndexedMesh& mesh, const Execution& execution) {
     Executor executor(execution);
+    check(mesh, executor);
     std::vector<bool> dropped(mesh.triangles.size(), false);
     DroppedDuplicates result;
     for (const std::vector<TriangleOverEdge>& group : find_same_vertices(executor, mesh)) {

@@ -8,6 +8,7 @@
 #include "mesh/measures.hpp"
 #include "mesh/shells.hpp"
 #include "mesh/survey.hpp"
+#include "mesh/valid_mesh.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -96,6 +97,7 @@ std::string describe_defects(const Inspection& found) {
 
 Inspection inspect(const IndexedMesh& mesh, const Execution& execution) {
     Executor executor(execution);
+    check(mesh, executor);
     return survey(executor, mesh, false).found;
 }
 

@@ -21,6 +21,7 @@
 #include "mesh/shells.hpp"
 #include "mesh/triangle_contact.hpp"
 #include "mesh/union_find.hpp"
+#include "mesh/valid_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -497,6 +498,7 @@ OrientedMesh orient(const IndexedMesh& mesh, const Execution& execution) {
         throw Error(ErrorKind::limit,
                     fmt::format("cannot orient {} triangles: at most {} can be indexed", n, 0x7fffffff));
     Executor executor(execution);
+    check(mesh, executor);
     Patches patches = flood(mesh, find_neighbours(executor, mesh));
     const std::size_t count = patches.shells.size();
     const std::vector<std::uint32_t>& first = patches.shells.first;

@@ -8,6 +8,7 @@
 #include "mesh/edge_uses.hpp"
 #include "mesh/folds.hpp"
 #include "mesh/triangle_contact.hpp"
+#include "mesh/valid_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -78,6 +79,7 @@ SelfIntersections find_self_intersections(const IndexedMesh& mesh, const Interse
                 "IntersectionOptions::parts has {} numbers and the mesh {} triangles; it needs one for each",
                 options.parts.size(), n));
 
+    check(mesh, executor);
     const PageArray<std::uint8_t> without_area(n, Fill::zero);
     const auto piece = [&](std::size_t begin, std::size_t end) {
         std::uint64_t count = 0;

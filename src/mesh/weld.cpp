@@ -17,6 +17,7 @@
 #include "core/key_groups.hpp"
 #include "core/pages.hpp"
 #include "mesh/joined_vertices.hpp"
+#include "mesh/valid_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -218,6 +219,10 @@ IndexedMesh weld_corners(const TriangleSoup& soup, const Execution& execution) {
 } // namespace
 
 IndexedMesh weld(IndexedMesh mesh, const Execution& execution) {
+    {
+        Executor executor(execution);
+        check(mesh, executor);
+    }
     std::optional<IndexedMesh> joined = joined_vertices(mesh, execution);
     return joined ? *std::move(joined) : std::move(mesh);
 }

@@ -14,6 +14,7 @@
 #include "mesh/edge_uses.hpp"
 #include "mesh/measures.hpp"
 #include "mesh/union_find.hpp"
+#include "mesh/valid_mesh.hpp"
 
 #include <fmt/format.h>
 
@@ -158,6 +159,7 @@ ToleranceWeld weld_within(const IndexedMesh& mesh, double tolerance_mm, const Ex
         throw Error(ErrorKind::usage,
                     fmt::format("the weld tolerance is {} mm; it must be a number above 0", tolerance_mm));
     Executor executor(execution);
+    check(mesh, executor);
     std::vector<std::uint32_t> order(mesh.vertices.size());
     std::iota(order.begin(), order.end(), 0U);
     std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {

@@ -110,8 +110,8 @@ JobOutput::JobOutput(const OutputFiles& files, LayerFileInfo info, PlaneRange mi
 }
 
 template <class Plane, class Message>
-std::function<void()> JobOutput::prepared(const Plane& plane, const Message& message) {
-    std::function<void()> to_file;
+Commit JobOutput::prepared(const Plane& plane, const Message& message) {
+    Commit to_file;
     if (writer_)
         to_file = writer_->prepare(plane);
     else if (format_ != nullptr)
@@ -128,11 +128,11 @@ std::function<void()> JobOutput::prepared(const Plane& plane, const Message& mes
     };
 }
 
-std::function<void()> JobOutput::prepare(std::span<const Layer> parts) {
+Commit JobOutput::prepare(std::span<const Layer> parts) {
     return prepared(parts, [&] { return packed(parts, {}); });
 }
 
-std::function<void()> JobOutput::prepare(const ScanVectors& vectors) {
+Commit JobOutput::prepare(const ScanVectors& vectors) {
     return prepared(vectors, [&] { return packed(vectors.polylines, vectors.hatches); });
 }
 

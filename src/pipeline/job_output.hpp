@@ -13,7 +13,6 @@
 #include "system/atomic_file.hpp"
 
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -45,8 +44,8 @@ class JobOutput {
               Communicator& processes = alone(), std::uint64_t most_in_memory = 0);
 
     /// Works as LayerWriter::prepare, for all outputs.
-    [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts);
-    [[nodiscard]] std::function<void()> prepare(const ScanVectors& vectors);
+    [[nodiscard]] Commit prepare(std::span<const Layer> parts);
+    [[nodiscard]] Commit prepare(const ScanVectors& vectors);
 
     /// Ends the slice file, if there is one, after the layers of all processes are written. Sets `format`,
     /// `bytes` and `warnings` of the result.
@@ -58,7 +57,7 @@ class JobOutput {
   private:
     /// Calls `message` if another process writes the plane.
     template <class Plane, class Message>
-    [[nodiscard]] std::function<void()> prepared(const Plane& plane, const Message& message);
+    [[nodiscard]] Commit prepared(const Plane& plane, const Message& message);
     void gather_losses();
     [[nodiscard]] std::vector<std::string> warnings_of_file();
     void send_layers();

@@ -51,7 +51,7 @@ void LayerProcessor::set_times(FileResult::Seconds& seconds) const noexcept {
     seconds.write = write_seconds_;
 }
 
-std::function<void()> LayerProcessor::operator()(std::uint32_t plane, std::span<const Layer> parts) {
+Commit LayerProcessor::prepare(std::uint32_t plane, std::span<const Layer> parts) {
     std::vector<Layer> closed;
     std::vector<GapJoin> joins;
     if (job_.close_gaps_mm && std::any_of(parts.begin(), parts.end(), std::mem_fn(&Layer::open_chains))) {
@@ -68,23 +68,25 @@ std::function<void()> LayerProcessor::operator()(std::uint32_t plane, std::span<
         const Stopwatch stepping;
         LayerSteps first; // fills each body where it has material
         first.fill = std::exchange(steps.fill, FillRule::none);
-        filled = take_steps_on_plane(first, parts, changes, job_.limits, job_.names);
+        ChangedPlane stepped = take_steps_on_plane(first, parts, job_.limits, job_.names);
+        filled = std::move(stepped.parts);
+        changes = stepped.changes;
         material = without_negatives(filled, job_.negatives, job_.limits);
         parts = material;
         count(stepping, step_nanoseconds_);
     }
     if (steps.any()) {
         const Stopwatch stepping;
-        LayerChanges more;
-        made = take_steps_on_plane(steps, parts, more, job_.limits, job_.names);
-        changes += more;
+        ChangedPlane stepped = take_steps_on_plane(steps, parts, job_.limits, job_.names);
+        made = std::move(stepped.parts);
+        changes += stepped.changes;
         changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers);
         count(stepping, step_nanoseconds_);
         parts = made;
     }
     if (mine_.begin <= plane && plane < mine_.end)
         totals_.add(plane - mine_.begin, parts, std::move(joins), changes, inverted, filled);
-    std::function<void()> write = job_.scan ? window_(plane, parts) : output_.prepare(parts);
+    Commit write = job_.scan ? window_.prepare(plane, parts) : output_.prepare(parts);
     if (!write)
         return {};
     return [this, write = std::move(write)] {

@@ -3,6 +3,7 @@
 // Takes the layers of a plane from their source through all stages to the output.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/commit.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 #include "lamella/scan/scan.hpp"
@@ -15,7 +16,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -31,8 +31,8 @@ class LayerProcessor {
     LayerProcessor(LayerJob job, std::span<const PlannedLayer> planes, PlaneRange sliced, PlaneRange mine,
                    JobOutput& output);
 
-    /// Works as PlateSink, for the plane with this number among all planes.
-    [[nodiscard]] std::function<void()> operator()(std::uint32_t plane, std::span<const Layer> parts);
+    /// Like PlateSink::prepare, for the plane with this number among all planes.
+    [[nodiscard]] Commit prepare(std::uint32_t plane, std::span<const Layer> parts);
 
     [[nodiscard]] LayerTotals& totals() noexcept { return totals_; }
     /// Sets the seconds of layer steps and of scan vectors, each summed over all threads, and of the ordered

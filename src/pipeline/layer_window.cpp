@@ -30,7 +30,7 @@ PlaneRange LayerWindow::users(std::uint32_t plane) const noexcept {
     return {begin, std::max(begin, std::min(wanted_.end, all.end))};
 }
 
-std::function<void()> LayerWindow::operator()(std::uint32_t plane, std::span<const Layer> parts) {
+Commit LayerWindow::prepare(std::uint32_t plane, std::span<const Layer> parts) {
     assert(coming_.begin <= plane && plane < coming_.end);
     std::vector<ScanLayer> layers;
     for (std::size_t part = 0; part < parts.size(); ++part)
@@ -96,28 +96,28 @@ void LayerWindow::work_on(const Complete& complete) {
         plane.below.emplace_back(*complete.layers[i]);
     for (std::size_t i = own + 1; i < complete.layers.size(); ++i)
         plane.above.emplace_back(*complete.layers[i]);
-    std::function<void()> action = work_(plane);
+    Commit commit = work_(plane);
     const std::lock_guard lock(mutex_);
-    ready_.emplace(complete.plane, std::move(action));
+    ready_.emplace(complete.plane, std::move(commit));
 }
 
-// The ordered half of a plane runs after the parallel halves of all planes below, so the work on complete
-// planes has ended.
+// The commit of a plane is called after all planes below are prepared, so the work on complete planes has
+// ended.
 void LayerWindow::finish(std::uint32_t last) {
     const PlaneRange its_users = users(last);
     for (std::uint32_t plane = its_users.begin; plane < its_users.end; ++plane) {
         if (neighbours(plane).end != last + 1)
             continue;
-        std::function<void()> action;
+        Commit commit;
         {
             const std::lock_guard lock(mutex_);
             const auto found = ready_.find(plane);
             assert(found != ready_.end());
-            action = std::move(found->second);
+            commit = std::move(found->second);
             ready_.erase(found);
         }
-        if (action)
-            action();
+        if (commit)
+            commit();
     }
 }
 

@@ -3,6 +3,7 @@
 // Holds planes until their neighbours arrive.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/commit.hpp"
 #include "lamella/slicing/plan.hpp"
 
 #include "pipeline/plane_scan.hpp"
@@ -23,14 +24,14 @@ namespace lamella {
                                  PlaneRange all) noexcept;
 
 /// Passes planes on together with their neighbours below and above. Each plane arrives once, and is processed
-/// in two halves as by a PlateSink. The parallel half stores the layers of the plane, and works on the planes
-/// whose neighbours are then complete. The ordered half of plane i emits the planes whose last neighbour is
-/// i. So no thread waits for another, and the number of layers in memory is bounded. Equal layers of adjacent
-/// planes share their points.
+/// in two halves (see Commit). `prepare` stores the layers of the plane, and works on the planes whose
+/// neighbours are then complete. The commit of plane i commits the planes whose last neighbour is i. So no
+/// thread waits for another, and the number of layers in memory is bounded. Equal layers of adjacent planes
+/// share their points.
 class LayerWindow {
   public:
-    /// Like PlateSink, for a plane with its neighbours.
-    using Work = std::function<std::function<void()>(const PlaneLayers& plane)>;
+    /// Like PlateSink::prepare, for a plane with its neighbours.
+    using Work = std::function<Commit(const PlaneLayers& plane)>;
 
     /// Prepares a layer of a part.
     using Make = std::function<ScanLayer(std::size_t part, const Layer& layer)>;
@@ -41,7 +42,7 @@ class LayerWindow {
                 Work work);
 
     /// Adds the layers of all parts on a plane. May be called from any thread.
-    [[nodiscard]] std::function<void()> operator()(std::uint32_t plane, std::span<const Layer> parts);
+    [[nodiscard]] Commit prepare(std::uint32_t plane, std::span<const Layer> parts);
 
     /// Returns the number of planes whose layers are held. No other call may run at the same time.
     [[nodiscard]] std::size_t held() const noexcept { return held_.size(); }
@@ -74,7 +75,7 @@ class LayerWindow {
     std::mutex mutex_;
     std::map<std::uint32_t, Held> held_;
     std::map<std::uint32_t, std::uint32_t> missing_; ///< number of missing neighbours, if any
-    std::map<std::uint32_t, std::function<void()>> ready_;
+    std::map<std::uint32_t, Commit> ready_;
 };
 
 } // namespace lamella

@@ -478,9 +478,10 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
 } // namespace
 
 MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
-                              std::string_view format, const LayerWriteOptions& options,
-                              const LayerReadOptions& reading, const Execution& execution) {
-    const LayerFormat& to = layer_format(format, output);
+                              const MergeOptions& options, const Execution& execution) {
+    const LayerFormat& to = layer_format(options.format, output);
+    const LayerWriteOptions& writing = options.writing;
+    const LayerReadOptions& reading = options.reading;
     const std::vector<ShardFile> shards = look_at_all(paths, reading, execution);
     check_output(output, shards, reading, execution);
     MergeResult result{.format = shards.front().format,
@@ -492,12 +493,12 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
                        .warnings = {}};
     for (const ShardFile& shard : shards)
         result.layers += shard.layers;
-    const bool as_they_are = !options.short_form && (options.units_mm == LayerWriteOptions::usual_units_mm ||
-                                                     options.units_mm == shards.front().units_mm);
+    const bool as_they_are = !writing.short_form && (writing.units_mm == LayerWriteOptions::usual_units_mm ||
+                                                     writing.units_mm == shards.front().units_mm);
     if (to.joins && to.name == result.format && as_they_are)
-        result.bytes = join_common_layers(shards, result.layers, output, options, reading, execution);
+        result.bytes = join_common_layers(shards, result.layers, output, writing, reading, execution);
     else
-        write_anew(shards, output, to, options, reading, result, execution);
+        write_anew(shards, output, to, writing, reading, result, execution);
     for (const ShardFile& shard : shards)
         if (shard.inverted.rings > 0)
             result.file_warnings.push_back(

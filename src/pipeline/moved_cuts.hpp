@@ -65,10 +65,10 @@ inline std::vector<double> limits_of_mitres(double limit, const Rounding& roundi
 /// Returns the layers of the mesh, after these steps.
 inline LayerStack layers_of(const VerifyOptions& options, const Plan& plan, const LayerSteps& steps,
                             const Execution& execution) {
-    LayerStack layers =
-        options.subtracts() ? slice(*options.plate, plan, execution) : slice(*options.mesh, plan, execution);
-    LayerChanges changes;
-    return steps.any() ? take_steps(steps, std::move(layers), changes, execution) : layers;
+    std::vector<LayerStack> layers;
+    layers.push_back(options.subtracts() ? slice(*options.plate, plan, {.execution = execution})
+                                         : slice(*options.mesh, plan, {.execution = execution}));
+    return std::move(take_steps(steps, std::move(layers), {.execution = execution}).parts.front());
 }
 
 } // namespace lamella

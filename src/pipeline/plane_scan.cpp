@@ -66,7 +66,10 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
             const Layer& polylines = scanned.vectors.polylines[i];
             const PointArray& hatches = scanned.vectors.hatches[i];
             ScanFigures& figures = vectors.figures[first + i];
-            figures += measure_vectors(polylines, hatches.span(), each[first + i].parameters, beam);
+            const MeasuredVectors measured =
+                measure_vectors(polylines, hatches.span(), each[first + i].parameters, beam);
+            beam = measured.beam;
+            figures += measured.figures;
             figures.unreached_mm2 += scanned.unreached_mm2[i];
             left = left.without(vector_bytes(polylines, hatches));
         }

@@ -6,11 +6,13 @@
 #include "core/ordered_stage.hpp"
 #include "core/progress.hpp"
 #include "core/stopwatch.hpp"
+#include "slicing/layer_counter.hpp"
 #include "slicing/plane_ranges.hpp"
 #include "slicing/shrunken_contours.hpp"
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -114,7 +116,7 @@ std::vector<PlaneRange> windows(const Plate& plate, const Plan& plan, std::uint6
     std::uint64_t triangles = 0;
     for (const PlateShape& shape : plate.shapes)
         triangles += shape.mesh.size();
-    if (triangles <= most_points / planes)
+    if (planes == 0 || triangles <= most_points / planes)
         return {{0, planes}};
     PlaneCounts counts(planes);
     for (const PlateShape& shape : plate.shapes)
@@ -183,7 +185,7 @@ void emit(const PlateSink& sink, const Plate& plate, const Plan& plan, PlaneRang
         for (auto& [planes, layers] : shapes) // no other thread reads this plane
             if (planes.begin <= plane && plane < planes.end)
                 layers[plane - planes.begin] = {};
-        delivery.deliver(static_cast<std::uint32_t>(i), sink(parts));
+        delivery.deliver(static_cast<std::uint32_t>(i), sink.prepare(parts));
     });
     executor.check_cancelled();
 }
@@ -198,15 +200,16 @@ TriangleVisitor visitor_of(std::size_t shape, const ShapeVisitor& visitor) {
 }
 
 SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& plan,
-                        const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
-                        SinkCost cost, const ShapeVisitor& visitor) {
+                        const SliceOptions& options, SinkCost cost, const ShapeVisitor& visitor) {
+    const Execution& execution = options.execution;
+    const std::uint64_t points_in_flight = options.points_in_flight.value_or(0);
     SliceReport report;
     // The slicer visits all triangles for each range, so ranges should be few and large. An engine that welds
     // would weld again for each range, so it gets a single range.
     constexpr std::uint64_t windows_per_limit = 2;
     const auto all = static_cast<std::uint32_t>(plan.layers.size());
     const std::vector<PlaneRange> runs =
-        engine.welds || points_in_flight == 0
+        options.engine.welds || points_in_flight == 0
             ? std::vector<PlaneRange>{{0, all}}
             : windows(plate, plan, windows_per_limit * points_in_flight, execution);
     const std::vector<PlaneRange> planes = planes_of_shapes(plate, plan);
@@ -229,12 +232,15 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
         std::vector<ShapeLayers> shapes(planes.size());
         for (std::size_t shape = 0; shape < planes.size(); ++shape)
             if (const PlaneRange its = common(planes[shape], run); its.size() > 0) {
-                SliceReport ours;
-                shapes[shape] = {its, slice(plate.shapes[shape].mesh, part_of(plan, its),
-                                            progress.next(slicing), &ours, engine,
-                                            seen[shape] ? TriangleVisitor() : visitor_of(shape, visitor))};
+                shapes[shape].planes = its;
+                shapes[shape].layers.reserve(its.size());
+                report +=
+                    slice_to(appending_to(shapes[shape].layers), plate.shapes[shape].mesh, part_of(plan, its),
+                             {.execution = progress.next(slicing),
+                              .engine = options.engine,
+                              .points_in_flight = 0, // all layers are held
+                              .visitor = seen[shape] ? TriangleVisitor() : visitor_of(shape, visitor)});
                 seen[shape] = true;
-                report += ours;
             }
         if (!emitted)
             emitted.emplace(sink_counts ? execution : quiet, Stage::slice, all);
@@ -267,39 +273,46 @@ std::vector<Layer> without_negatives(std::span<const Layer> layers, std::span<co
     return parts;
 }
 
-void slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan, const Execution& execution,
-              const Engine& engine) {
-    constexpr std::uint64_t points_in_flight = std::uint64_t{1} << 22; // 64 MB
-    const PlateSink of_plate = [&](std::span<const Layer> layers) {
+SliceReport slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan,
+                     const SliceOptions& options) {
+    constexpr std::uint64_t usual_points = std::uint64_t{1} << 22; // 64 MB
+    SliceOptions bounded = options;
+    bounded.points_in_flight = options.points_in_flight.value_or(usual_points);
+    ShapeVisitor visitor;
+    if (options.visitor)
+        visitor = [&options](std::size_t, const Mesh& mesh, std::uint64_t begin, std::uint64_t end) {
+            options.visitor(mesh, begin, end);
+        };
+    if (plate.parts.empty())
+        return slice_to(sink, Mesh(), plan, bounded);
+    LayerCounter counter(sink);
+    const PlateSink of_plate{.prepare = [&](std::span<const Layer> layers) {
         std::vector<Layer> parts = without_negatives(layers, plate.negatives);
-        return sink(parts.size() == 1 ? std::move(parts.front()) : merged(parts));
-    };
-    static_cast<void>(slice_plate_to(of_plate, plate, plan, execution, engine, points_in_flight));
+        return counter.prepare(parts.size() == 1 ? std::move(parts.front()) : merged(parts));
+    }};
+    SliceReport report = slice_plate_to(of_plate, plate, plan, bounded, SinkCost::proportional, visitor);
+    counter.set_counts(report);
+    return report;
 }
 
-LayerStack slice(const Plate& plate, const Plan& plan, const Execution& execution, const Engine& engine) {
-    LayerStack stack;
-    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
-        return [&stack, kept = std::move(layer)]() mutable {
-            stack.push_back(std::move(kept));
-        };
-    };
-    slice_to(sink, plate, plan, execution, engine);
-    return stack;
+LayerStack slice(const Plate& plate, const Plan& plan, const SliceOptions& options) {
+    LayerStack layers;
+    slice_to(appending_to(layers), plate, plan, options);
+    return layers;
 }
 
 SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
-                           const Execution& execution, const Engine& engine, std::uint64_t points_in_flight,
-                           SinkCost cost, const ShapeVisitor& visitor) {
+                           const SliceOptions& options, SinkCost cost, const ShapeVisitor& visitor) {
+    assert(!plate.parts.empty());
+    check(plan);
     if (plate.parts.size() + plate.negatives.size() > 1 || cost == SinkCost::expanding)
-        return slice_parts(sink, plate, plan, execution, engine, points_in_flight, cost, visitor);
-    const LayerSink single = [&](Layer&& layer) {
-        return sink(std::span<const Layer>(&layer, 1));
-    };
-    SliceReport report;
-    slice_to(single, plate.shapes.front().mesh, plan, execution, &report, engine, points_in_flight,
-             visitor_of(0, visitor));
-    return report;
+        return slice_parts(sink, plate, plan, options, cost, visitor);
+    const LayerSink single{.prepare = [&sink](Layer&& layer) {
+        return sink.prepare(std::span<const Layer>(&layer, 1));
+    }};
+    SliceOptions visited = options;
+    visited.visitor = visitor_of(0, visitor);
+    return slice_to(single, plate.shapes.front().mesh, plan, visited);
 }
 
 } // namespace lamella

@@ -3,7 +3,7 @@
 // Slices each shape of a plate once, and passes on the layers of all parts plane by plane.
 
 #include "lamella/contour/layer.hpp"
-#include "lamella/core/execution.hpp"
+#include "lamella/core/commit.hpp"
 #include "lamella/core/layer_limits.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -17,9 +17,11 @@
 
 namespace lamella {
 
-/// Works as LayerSink, but takes all layers of one plane: one for each of Plate::parts, then one for each of
+/// Like LayerSink, but for all layers of one plane: one for each of Plate::parts, then one for each of
 /// Plate::negatives.
-using PlateSink = std::function<std::function<void()>(std::span<const Layer> parts)>;
+struct PlateSink {
+    std::function<Commit(std::span<const Layer> parts)> prepare;
+};
 
 /// Works as TriangleVisitor, for the mesh of one shape of the plate. Visits each triangle of each shape once.
 using ShapeVisitor =
@@ -30,7 +32,7 @@ using ShapeVisitor =
 enum class SinkCost { proportional, expanding };
 
 /// Returns the layers of the parts on one plane, with the negative volumes subtracted. `layers` are the
-/// argument of a PlateSink. Layers that no negative volume touches are unchanged, bit for bit.
+/// argument of PlateSink::prepare. Layers that no negative volume touches are unchanged, bit for bit.
 [[nodiscard]] std::vector<Layer> without_negatives(std::span<const Layer> layers,
                                                    std::span<const PlateNegative> negatives,
                                                    const LayerLimits& limits = {});
@@ -38,11 +40,11 @@ enum class SinkCost { proportional, expanding };
 /// Slices a plate into a sink. A plate of a single body is sliced while its layers go to the sink. Other
 /// plates, and plates for expanding sinks, are sliced range by range. All shapes together have at most twice
 /// `points_in_flight` points on the planes of a range, unless a single plane has more. All planes are one
-/// range if `points_in_flight` is 0, or if the engine welds. Sets only the times and the MatchingCounts of
-/// the report: the sink must count the content of layers, since parts may share a shape.
+/// range if `points_in_flight` is not set or 0, or if the engine welds. `visitor` replaces the visitor of the
+/// options. Sets only the times and the MatchingCounts of the report: the sink must count the content of
+/// layers, since parts may share a shape.
 [[nodiscard]] SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
-                                         const Execution& execution, const Engine& engine,
-                                         std::uint64_t points_in_flight,
+                                         const SliceOptions& options = {},
                                          SinkCost cost = SinkCost::proportional,
                                          const ShapeVisitor& visitor = {});
 

@@ -4,10 +4,10 @@
 
 namespace lamella {
 
-Mesh repaired(const Mesh& mesh, const RepairPolicies& policies, MeshRepairs& repairs,
-              const Execution& execution) {
+RepairedMesh repaired(const Mesh& mesh, const RepairPolicies& policies, const Execution& execution) {
     if (!policies.change_the_mesh())
-        return mesh;
+        return {mesh, {}};
+    MeshRepairs repairs;
     IndexedMesh changed = weld(mesh, execution);
     if (policies.weld_tolerance_mm) {
         repairs.welded = weld_within(changed, *policies.weld_tolerance_mm, execution);
@@ -21,7 +21,7 @@ Mesh repaired(const Mesh& mesh, const RepairPolicies& policies, MeshRepairs& rep
         repairs.oriented = orient(changed, execution);
         changed = std::exchange(repairs.oriented->mesh, {});
     }
-    return Mesh(std::move(changed));
+    return {Mesh(std::move(changed)), std::move(repairs)};
 }
 
 } // namespace lamella

@@ -76,7 +76,7 @@ FileResult scan_layers(const std::string& path, const LayerFormat& format, std::
         std::vector<Layer> layers;
         for (const LayerStack& part : parts)
             layers.push_back(part[plane]);
-        return processor(static_cast<std::uint32_t>(plane), layers);
+        return processor.prepare(static_cast<std::uint32_t>(plane), layers);
     });
     progress.finish();
 

@@ -155,7 +155,9 @@ Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const E
             PlateShape& shape = plate.shapes[i];
             FileResult::MeshRepair& repair = done.repairs.emplace_back();
             repair.file = shape.input;
-            shape.mesh = repaired(shape.mesh, job.repair, repair.repairs, execution);
+            RepairedMesh whole = repaired(shape.mesh, job.repair, execution);
+            shape.mesh = std::move(whole.mesh);
+            repair.repairs = std::move(whole.repairs);
             if (shape.mesh.empty())
                 throw Error(ErrorKind::input, fmt::format("{}: nothing of the mesh is left after its repair",
                                                           name_of_shape(plate, i)));
@@ -254,9 +256,9 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
                     const Execution& execution) {
     Sliced done;
     const std::uint64_t first = plan.layers.front().index;
-    const PlateSink sink = [&](std::span<const Layer> parts) {
-        return processor(static_cast<std::uint32_t>(parts.front().index - first), parts);
-    };
+    const PlateSink sink{.prepare = [&processor, first](std::span<const Layer> parts) {
+        return processor.prepare(static_cast<std::uint32_t>(parts.front().index - first), parts);
+    }};
     const ShapeVisitor visitor = near_face_visitor(feed, plan);
     const std::vector<PlaneRange> ranges = feed.bring(plan, sliced, execution);
     done.ranges = ranges.size();
@@ -265,10 +267,12 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
         const Stopwatch slicing;
         for (std::size_t s = 0; s < ranges.size(); ++s) {
             const bool whole = ranges.size() == 1 && feed.meshes() != nullptr;
-            done.report += slice_plate_to(sink, feed.take(s, execution), part_of(plan, ranges[s]),
-                                          whole ? execution
-                                                : in_range(ranges[s], sliced[processes.process()], execution),
-                                          engine, points_in_flight, cost, visitor);
+            done.report += slice_plate_to(
+                sink, feed.take(s, execution), part_of(plan, ranges[s]),
+                {.execution = whole ? execution : in_range(ranges[s], sliced[processes.process()], execution),
+                 .engine = engine,
+                 .points_in_flight = points_in_flight},
+                cost, visitor);
         }
         if (visitor && ranges.empty()) // all processes count near faces
             for (std::size_t shape = 0; shape < feed.plate().shapes.size(); ++shape) {

@@ -66,7 +66,8 @@ double length_of(std::span<const Point2> hatches) {
 } // namespace
 
 Layer moved_inwards(const Layer& section, double depth, const OffsetCorners& corners) {
-    return depth == 0 ? fill(section, FillRule::positive).layer : offset(section, -depth, corners);
+    return depth == 0 ? fill(section, FillRule::positive).layer
+                      : offset(section, -depth, {.corners = corners});
 }
 
 void check_cover(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,

@@ -173,7 +173,8 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
 Plan plan_of(std::span<const Layer> layers, const VerifyOptions& options) {
     Plan plan{.layers = {}, .rule = options.rule, .snap_mm = options.snap_mm};
     for (const Layer& layer : layers)
-        plan.layers.push_back({layer.index, layer.z, layer.bottom, layer.top});
+        plan.layers.push_back({layer.index, layer.z, std::min(layer.bottom, layer.z),
+                               std::max(layer.top, layer.z)}); // a file may round z out of its layer
     std::sort(plan.layers.begin(), plan.layers.end(),
               [](const PlannedLayer& a, const PlannedLayer& b) { return a.z < b.z; });
     const auto same = std::unique(plan.layers.begin(), plan.layers.end(),

@@ -40,18 +40,18 @@ LayerChanges& LayerChanges::operator+=(const LayerChanges& other) noexcept {
 void check_steps(const LayerSteps& steps) {
     const Layer none; // steps check their parameters before they examine a layer
     if (steps.offset_mm != 0)
-        static_cast<void>(offset(none, steps.offset_mm, steps.offset_corners));
+        static_cast<void>(offset(none, steps.offset_mm, {.corners = steps.offset_corners}));
     if (steps.min_area_mm2 != 0)
         static_cast<void>(without_small_rings(none, steps.min_area_mm2));
     if (steps.simplify_mm != 0)
         static_cast<void>(simplify(none, steps.simplify_mm));
 }
 
-Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes, const LayerLimits& limits) {
+ChangedLayer take_steps(const LayerSteps& steps, Layer layer, const LayerLimits& limits) {
     check_steps(steps);
-    changes = {};
+    LayerChanges changes;
     if (!steps.any())
-        return layer;
+        return {std::move(layer), changes};
     const Layer before = layer; // a copy that shares the points
     bool changed = false;
     if (steps.fill != FillRule::none) {
@@ -65,8 +65,11 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes, co
             layer = std::move(filled.layer);
     }
     if (steps.offset_mm != 0 && layer.rings > 0) {
-        layer = offset(layer, steps.offset_mm, steps.offset_corners, &changes.rings_vanished, limits);
+        CountedOffset moved =
+            counted_offset(layer, steps.offset_mm, {.corners = steps.offset_corners, .limits = limits});
+        changes.rings_vanished = moved.rings_vanished;
         changed = true;
+        layer = std::move(moved.layer);
     }
     const auto select = [&](Layer selected) {
         changes.rings_dropped += layer.rings - selected.rings;
@@ -88,59 +91,46 @@ Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes, co
         changes.area_before_mm2 = area(before);
         changes.area_after_mm2 = area(layer);
     }
-    return layer;
+    return {std::move(layer), changes};
 }
 
-std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
-                                       LayerChanges& changes, const LayerLimits& limits,
-                                       std::span<const std::string> names) {
-    changes = {};
-    std::vector<Layer> made;
+ChangedPlane take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
+                                 const LayerLimits& limits, std::span<const std::string> names) {
+    ChangedPlane plane;
     for (std::size_t i = 0; i < parts.size(); ++i) {
-        LayerChanges one;
-        made.push_back(naming(i < names.size() ? names[i] : std::string(),
-                              [&] { return take_steps(steps, parts[i], one, limits); }));
-        changes += one;
+        ChangedLayer one = naming(i < names.size() ? names[i] : std::string(),
+                                  [&] { return take_steps(steps, parts[i], limits); });
+        plane.parts.push_back(std::move(one.layer));
+        plane.changes += one.changes;
     }
-    changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers);
-    return made;
+    plane.changes.changed_layers = std::min<std::uint64_t>(1, plane.changes.changed_layers);
+    return plane;
 }
 
-std::vector<LayerStack> take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
-                                   std::vector<LayerChanges>& planes, const Execution& execution,
-                                   std::uint64_t max_memory, std::span<const std::string> names) {
+ChangedStacks take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
+                         const StackOptions& options) {
     check_steps(steps);
-    planes.assign(parts.empty() ? 0 : parts.front().size(), {});
+    ChangedStacks stacks{std::move(parts), {}};
+    stacks.planes.resize(stacks.parts.empty() ? 0 : stacks.parts.front().size());
     if (!steps.any())
-        return parts;
-    Executor executor(execution);
-    const LayerLimits limits = layer_limits(execution, max_memory, executor.workers());
-    ProgressMeter progress(execution, Stage::polygon, planes.size());
-    executor.for_chunks(planes.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        return stacks;
+    Executor executor(options.execution);
+    const LayerLimits limits = layer_limits(options.execution, options.max_memory, executor.workers());
+    ProgressMeter progress(options.execution, Stage::polygon, stacks.planes.size());
+    executor.for_chunks(stacks.planes.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i) {
-            std::vector<Layer> plane;
-            for (LayerStack& part : parts)
-                plane.push_back(std::move(part[i]));
-            plane = take_steps_on_plane(steps, plane, planes[i], limits, names);
-            for (std::size_t part = 0; part < parts.size(); ++part)
-                parts[part][i] = std::move(plane[part]);
+            std::vector<Layer> layers;
+            for (LayerStack& part : stacks.parts)
+                layers.push_back(std::move(part[i]));
+            ChangedPlane plane = take_steps_on_plane(steps, layers, limits, options.names);
+            stacks.planes[i] = plane.changes;
+            for (std::size_t part = 0; part < stacks.parts.size(); ++part)
+                stacks.parts[part][i] = std::move(plane.parts[part]);
             progress.add(1);
         }
     });
     progress.finish();
-    return parts;
-}
-
-LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,
-                      const Execution& execution) {
-    std::vector<LayerStack> parts;
-    parts.push_back(std::move(layers));
-    std::vector<LayerChanges> planes;
-    parts = take_steps(steps, std::move(parts), planes, execution);
-    changes = {};
-    for (const LayerChanges& plane : planes)
-        changes += plane;
-    return std::move(parts.front());
+    return stacks;
 }
 
 } // namespace lamella

@@ -81,9 +81,8 @@ class Boundaries {
     }
 
     [[nodiscard]] const Layer& layer() const noexcept { return layer_; }
-    /// `vanished`, if given, is the number for the first distance.
-    [[nodiscard]] std::vector<Layer> moved(std::span<const double> distances, const OffsetCorners& corners,
-                                           std::uint64_t* vanished = nullptr) const {
+    [[nodiscard]] std::vector<Layer> moved(std::span<const double> distances,
+                                           const OffsetCorners& corners) const {
         std::vector<std::vector<bool>> gone;
         for (const double distance : distances)
             gone.push_back(surely_gone(distance, corners));
@@ -91,12 +90,18 @@ class Boundaries {
         std::vector<Layer> result;
         for (std::size_t k = 0; k < all.size(); ++k) {
             const Layer rings = std::move(all[k]);
-            Overlaid overlaid = material_of(rings, distances[k]);
-            if (vanished != nullptr && k == 0)
-                *vanished = vanished_rings(rings, overlaid.fates, gone[k], distances[k]);
-            result.push_back(with_chains(std::move(overlaid.filled.layer)));
+            result.push_back(with_chains(material_of(rings, distances[k]).filled.layer));
         }
         return result;
+    }
+
+    [[nodiscard]] CountedOffset moved_and_counted(double distance, const OffsetCorners& corners) const {
+        const std::vector<bool> gone = surely_gone(distance, corners);
+        const Layer rings =
+            std::move(moved_rings(layer_, {&distance, 1}, corners, {&gone, 1}, budget_).front());
+        Overlaid overlaid = material_of(rings, distance);
+        const std::uint64_t vanished = vanished_rings(rings, overlaid.fates, gone, distance);
+        return {with_chains(std::move(overlaid.filled.layer)), vanished};
     }
 
   private:
@@ -207,32 +212,31 @@ std::string_view offset_corner_name(OffsetCorner corner) noexcept {
     return names[static_cast<std::size_t>(corner)];
 }
 
-Layer offset(const Layer& layer, double distance, const OffsetCorners& corners, std::uint64_t* vanished,
-             const LayerLimits& limits) {
-    check({&distance, 1}, corners);
-    if (vanished != nullptr)
-        *vanished = 0;
-    if (distance == 0 || layer.rings == 0)
-        return layer;
-    return Boundaries(layer, limits).moved({&distance, 1}, corners, vanished).front();
+Layer offset(const Layer& layer, double distance, const OffsetOptions& options) {
+    return std::move(offsets(layer, {&distance, 1}, options).front());
 }
 
 std::vector<Layer> offsets(const Layer& layer, std::span<const double> distances,
-                           const OffsetCorners& corners, std::uint64_t* vanished, const LayerLimits& limits) {
-    check(distances, corners);
-    if (vanished != nullptr)
-        *vanished = 0;
+                           const OffsetOptions& options) {
+    check(distances, options.corners);
     std::vector<double> others;
     std::copy_if(distances.begin(), distances.end(), std::back_inserter(others),
                  [](double distance) { return distance != 0; });
     std::vector<Layer> moved;
     if (layer.rings > 0 && !others.empty())
-        moved = Boundaries(layer, limits).moved(others, corners, distances.front() == 0 ? nullptr : vanished);
+        moved = Boundaries(layer, options.limits).moved(others, options.corners);
     std::vector<Layer> result;
     std::size_t next = 0;
     for (const double distance : distances)
         result.push_back(distance == 0 || layer.rings == 0 ? layer : std::move(moved[next++]));
     return result;
+}
+
+CountedOffset counted_offset(const Layer& layer, double distance, const OffsetOptions& options) {
+    check({&distance, 1}, options.corners);
+    if (distance == 0 || layer.rings == 0)
+        return {layer, 0};
+    return Boundaries(layer, options.limits).moved_and_counted(distance, options.corners);
 }
 
 } // namespace lamella

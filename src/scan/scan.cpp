@@ -64,7 +64,7 @@ struct InsetCache::Insets {
     Insets(Layer of, const ScanStrategy& strategy, std::vector<double> by, const LayerLimits& limits)
         : layer(std::move(of)), distances(std::move(by)), contours(strategy.contours),
           filled(hatch_depth(contours, strategy.hatch)),
-          moved(offsets(layer, distances, {}, nullptr, limits)) {
+          moved(offsets(layer, distances, {.limits = limits})) {
         for (std::size_t i = 0; i < distances.size(); ++i)
             if (distances[i] == 0) // offsets() skips 0, and rings without collinear points may touch again
                 moved[i] = united(layer, limits);
@@ -285,7 +285,7 @@ ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
             const HatchRule& rule = hatch_of(strategy, exposure.region);
             const Layer& within = insets->at(hatch_depth(strategy.contours, rule));
             const double half = surely_hatched(rule) / 2;
-            const Layer narrow = narrow_points(within, offset(within, -half, {}, nullptr, budget.limits()),
+            const Layer narrow = narrow_points(within, offset(within, -half, {.limits = budget.limits()}),
                                                half, budget.limits());
             positions = combine(positions, narrow, BooleanOperation::unite, budget.limits());
         }

@@ -110,7 +110,7 @@ Layer uncovered_area(const Layer& layer, std::span<const ScanLayer> neighbours, 
             chosen[i] = chosen[i] || counts[i];
     }
     const Layer own = offset(rings_of(layer, [&](std::size_t i) { return chosen[i]; }),
-                             -narrowest / 2 * (1 - spread), {}, nullptr, limits);
+                             -narrowest / 2 * (1 - spread), {.limits = limits});
     if (own.rings == 0)
         return {};
     Layer open;
@@ -124,7 +124,7 @@ Layer uncovered_area(const Layer& layer, std::span<const ScanLayer> neighbours, 
                 left_out[neighbour.partners[i]] = true;
         others.push_back(offset(rings_of(other, [&](std::size_t j) { return !left_out[j]; }),
                                 narrowest / 2 * (1 + spread * static_cast<double>(neighbour.number) / count),
-                                {}, nullptr, limits));
+                                {.limits = limits}));
         if (others.size() < most_at_once && d + 1 < different.size())
             continue;
         const Layer more = subtract_common(own, others, limits);
@@ -163,7 +163,7 @@ Skin::Skin(const ScanLayer& layer, std::span<const ScanLayer> neighbours, const 
     if (open.rings == 0)
         return;
     std::vector<Layer> moved =
-        offsets(open, std::array{rule.narrowest / 2, rule.narrowest / 2 + rule.overlap}, {}, nullptr, limits);
+        offsets(open, std::array{rule.narrowest / 2, rule.narrowest / 2 + rule.overlap}, {.limits = limits});
     area_ = std::move(moved[0]);
     with_overlap_ = std::move(moved[1]);
 }

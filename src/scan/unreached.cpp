@@ -178,7 +178,7 @@ Layer narrow_points(const Layer& material, const Layer& inset, double by, const 
     if (lost <= next_to_nothing * by * by || lost - tips_area(material, by) <= next_to_nothing * by * by)
         return {};
     const Layer positions =
-        combine(material, offset(inset, by * more, {}, nullptr, limits), BooleanOperation::subtract, limits);
+        combine(material, offset(inset, by * more, {.limits = limits}), BooleanOperation::subtract, limits);
     return measure(positions).area_mm2 > next_to_nothing * by * by ? positions : Layer{};
 }
 

@@ -47,9 +47,7 @@ struct Planner {
         return selected(layering, plan_listed(planes.z, layering.at, planes.single_height), box);
     }
     Plan operator()(const HeightRanges& heights) const {
-        return selected(
-            layering, plan_by_ranges(box.min.z, box.max.z, heights.ranges, heights.layer_height, layering.at),
-            box);
+        return selected(layering, plan_by_ranges(box.min.z, box.max.z, heights, layering.at), box);
     }
     Plan operator()(const AdaptiveLayers& layers) const {
         return selected(layering, plan_adaptive(mesh(), layers, layering.at, execution), box);

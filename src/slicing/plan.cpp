@@ -186,6 +186,11 @@ void check(const Plan& plan) {
                         fmt::format("layer {} of the plan is cut at z = {} mm, which is not above the one "
                                     "before it, {}; the cuts must ascend",
                                     i, layer.z, layers[i - 1].z));
+        if (!(layer.bottom <= layer.z && layer.z <= layer.top))
+            throw Error(ErrorKind::usage,
+                        fmt::format("layer {} of the plan is cut at z = {} mm, which is not between its "
+                                    "bottom, {}, and its top, {}",
+                                    i, layer.z, layer.bottom, layer.top));
     }
 }
 

@@ -2,11 +2,14 @@
 
 #include "core/executor.hpp"
 #include "core/stopwatch.hpp"
+#include "slicing/layer_counter.hpp"
 #include "slicing/plane_ranges.hpp"
+#include "slicing/slice_job.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cassert>
+#include <cstdint>
+#include <utility>
 
 namespace lamella {
 
@@ -47,61 +50,48 @@ SliceReport& SliceReport::operator+=(const SliceReport& other) noexcept {
 
 namespace {
 
-/// Slices with the engine, and fills in the fields of the report that are common to all engines.
-void slice_and_count(const Engine& engine, const LayerSink& sink, const Mesh& mesh, const Plan& plan,
-                     const Execution& execution, std::uint64_t points_in_flight, SliceReport* report,
-                     const TriangleVisitor& visitor) {
-    SliceReport ours;
-    std::atomic<std::uint64_t> layers{0};
-    std::atomic<std::uint64_t> contours{0};
-    std::atomic<std::uint64_t> open_chains{0};
-    std::atomic<std::uint64_t> points{0};
-    const LayerSink counting = [&](Layer&& layer) {
-        assert(layer.offsets.back() == layer.points.size());
-        layers.fetch_add(1, std::memory_order_relaxed);
-        contours.fetch_add(layer.contours(), std::memory_order_relaxed);
-        open_chains.fetch_add(layer.open_chains(), std::memory_order_relaxed);
-        points.fetch_add(layer.points.size(), std::memory_order_relaxed);
-        return sink(std::move(layer));
-    };
+SliceReport slice_and_count(const LayerSink& sink, const Mesh& mesh, const Plan& plan,
+                            const SliceOptions& options, std::uint64_t points_in_flight) {
+    SliceReport report;
+    LayerCounter counter(sink);
+    const LayerSink counting{.prepare = [&counter](Layer&& layer) {
+        return counter.prepare(std::move(layer));
+    }};
     const Stopwatch joining;
-    const Mesh joined = mesh.with_joined_vertices(execution);
+    const Mesh joined = mesh.with_joined_vertices(options.execution);
     const double join_seconds = mesh.indexed() != nullptr ? joining.seconds() : 0;
-    if (visitor && engine.welds)
-        visitor(joined, 0, joined.size());
-    engine.slice({joined, plan, counting, execution, points_in_flight, ours, visitor ? &visitor : nullptr});
-    ours.weld_seconds += join_seconds;
-    assert(layers == plan.layers.size());
-    ours.layers = layers;
-    ours.contours = contours;
-    ours.open_chains = open_chains;
-    ours.points = points;
-    if (report != nullptr)
-        *report = ours;
+    const bool visits = static_cast<bool>(options.visitor);
+    if (visits && options.engine.welds)
+        options.visitor(joined, 0, joined.size());
+    options.engine.slice({joined, plan, counting, options.execution, points_in_flight, report,
+                          visits ? &options.visitor : nullptr});
+    report.weld_seconds += join_seconds;
+    counter.set_counts(report);
+    assert(report.layers == plan.layers.size());
+    return report;
 }
 
 } // namespace
 
-LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution, SliceReport* report,
-                 const Engine& engine, const TriangleVisitor& visitor) {
-    LayerStack stack;
-    stack.reserve(plan.layers.size());
-    const LayerSink keep = [&](Layer&& layer) -> std::function<void()> {
-        return [&stack, kept = std::move(layer)]() mutable {
-            stack.push_back(std::move(kept));
+LayerSink appending_to(LayerStack& layers) {
+    return {.prepare = [&layers](Layer&& layer) -> Commit {
+        return [&layers, kept = std::move(layer)]() mutable {
+            layers.push_back(std::move(kept));
         };
-    };
-    slice_and_count(engine, keep, mesh, plan, execution, 0, report, visitor);
-    return stack;
+    }};
 }
 
-void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution,
-              SliceReport* report, const Engine& engine, std::uint64_t points_in_flight,
-              const TriangleVisitor& visitor) {
-    assert(sink);
-    if (points_in_flight == 0)
-        points_in_flight = usual_points_in_flight(thread_count(execution));
-    slice_and_count(engine, sink, mesh, plan, execution, points_in_flight, report, visitor);
+LayerStack slice(const Mesh& mesh, const Plan& plan, const SliceOptions& options) {
+    LayerStack layers;
+    layers.reserve(plan.layers.size());
+    slice_and_count(appending_to(layers), mesh, plan, options, 0);
+    return layers;
+}
+
+SliceReport slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const SliceOptions& options) {
+    return slice_and_count(
+        sink, mesh, plan, options,
+        options.points_in_flight.value_or(usual_points_in_flight(thread_count(options.execution))));
 }
 
 } // namespace lamella

@@ -130,8 +130,9 @@ float steepness(const Triangle3& t) noexcept {
 
 } // namespace
 
-Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& ranges, double layer_height,
-                    SliceAt slice_at) {
+Plan plan_by_ranges(double z_min, double z_max, const HeightRanges& heights, SliceAt slice_at) {
+    const std::vector<HeightRange>& ranges = heights.ranges;
+    const double layer_height = heights.layer_height;
     require_height(layer_height, "the layer height");
     double lowest = layer_height;
     double count = 0;

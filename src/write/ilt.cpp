@@ -157,17 +157,17 @@ class IltWriter final : public OrderedWriter {
     };
 
     Write formatted(const PlaneView& plane) override {
-        std::vector<std::function<void()>> writes;
+        std::vector<Commit> commits;
         for (std::size_t i = 0; i < sections_.size(); ++i) {
             ScanVectors vectors;
             for (const std::size_t part : sections_[i].parts)
                 vectors.add(plane.layers[part], plane.hatches.empty() ? PointArray() : plane.hatches[part]);
-            writes.push_back(entries_[i].writer->prepare(vectors));
+            commits.push_back(entries_[i].writer->prepare(vectors));
         }
-        return [this, writes = std::move(writes)](const PlanePosition& offset) {
+        return [this, commits = std::move(commits)](const PlanePosition& offset) {
             check_apart(offset);
-            for (const std::function<void()>& write : writes)
-                write();
+            for (const Commit& commit : commits)
+                commit();
         };
     }
 

@@ -72,7 +72,10 @@ void look_at(const PlaneView& plane, std::span<const PartInfo> parts, PlaneFacts
         if (parts[i].exposure) {
             look_for_crossings(layer);
             // Vectors do not bound material, so their area, nesting and open chains are not examined.
-            facts.scan += measure_vectors(layer, hatches, parts[i].exposure->parameters, beam);
+            const MeasuredVectors measured =
+                measure_vectors(layer, hatches, parts[i].exposure->parameters, beam);
+            beam = measured.beam;
+            facts.scan += measured.figures;
             facts.measure.contours += layer.contours();
             facts.measure.points += layer.points.size();
             continue;
@@ -318,12 +321,12 @@ class PageWriter final : public LayerPageWriter {
         file_.append(json_element("head", header(info, options)));
     }
 
-    [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) override {
+    [[nodiscard]] Commit prepare(std::span<const Layer> parts) override {
         order_.check_parts(parts);
         return prepare_view({parts});
     }
 
-    [[nodiscard]] std::function<void()> prepare(const ScanVectors& vectors) override {
+    [[nodiscard]] Commit prepare(const ScanVectors& vectors) override {
         order_.check_parts(vectors);
         return prepare_view({vectors.polylines, vectors.hatches});
     }
@@ -360,7 +363,7 @@ class PageWriter final : public LayerPageWriter {
     }
 
   private:
-    [[nodiscard]] std::function<void()> prepare_view(const PlaneView& plane) {
+    [[nodiscard]] Commit prepare_view(const PlaneView& plane) {
         PlaneFacts facts{.position = plane_position(plane.layers)};
         std::vector<Point2> positions;
         look_at(plane, parts_, facts, positions);

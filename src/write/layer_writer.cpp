@@ -220,13 +220,9 @@ class LimitedWriter final : public LayerWriter {
         : writer_(std::move(writer)), path_(std::move(path)), keeps_cuts_(format.cuts),
           most_bytes_(options.most_bytes), strict_(options.strict) {}
 
-    std::function<void()> prepare(std::span<const Layer> parts) override {
-        return limited(writer_->prepare(parts));
-    }
+    Commit prepare(std::span<const Layer> parts) override { return limited(writer_->prepare(parts)); }
 
-    std::function<void()> prepare(const ScanVectors& vectors) override {
-        return limited(writer_->prepare(vectors));
-    }
+    Commit prepare(const ScanVectors& vectors) override { return limited(writer_->prepare(vectors)); }
 
     void finish() override {
         if (strict_)
@@ -247,9 +243,9 @@ class LimitedWriter final : public LayerWriter {
     void add_losses(const WriteLosses& above) override { writer_->add_losses(above); }
 
   private:
-    std::function<void()> limited(std::function<void()> write) {
-        return [this, write = std::move(write)] {
-            write();
+    Commit limited(Commit commit) {
+        return [this, commit = std::move(commit)] {
+            commit();
             check_bytes(path_, bytes(), most_bytes_);
         };
     }
@@ -343,7 +339,7 @@ std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const La
 
 namespace {
 
-/// Calls `prepare(plane)` on all threads, and calls the returned functions in ascending order of planes.
+/// Calls `prepare(plane)` on all threads, and calls the commits in ascending order of planes.
 template <class Prepare>
 void write_in_order(std::size_t planes, const Prepare& prepare, const Execution& execution) {
     Executor executor(execution);

@@ -87,17 +87,17 @@ void PlaneOrder::end() const {
                     fmt::format("{} layers were announced and {} were written", announced_, count_));
 }
 
-std::function<void()> OrderedWriter::prepare(std::span<const Layer> parts) {
+Commit OrderedWriter::prepare(std::span<const Layer> parts) {
     order_.check_parts(parts);
     return prepare_view({parts});
 }
 
-std::function<void()> OrderedWriter::prepare(const ScanVectors& vectors) {
+Commit OrderedWriter::prepare(const ScanVectors& vectors) {
     order_.check_parts(vectors);
     return prepare_view({vectors.polylines, vectors.hatches});
 }
 
-std::function<void()> OrderedWriter::prepare_view(const PlaneView& plane) {
+Commit OrderedWriter::prepare_view(const PlaneView& plane) {
     return [this, write = formatted(plane), losses = losses_of_plane(plane),
             offset = plane_position(plane.layers)]() mutable {
         order_.next(offset);

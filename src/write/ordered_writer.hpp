@@ -72,8 +72,8 @@ class PlaneOrder {
 /// Base of writers that check the order of planes and report what they leave out.
 class OrderedWriter : public LayerWriter {
   public:
-    [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) final;
-    [[nodiscard]] std::function<void()> prepare(const ScanVectors& vectors) final;
+    [[nodiscard]] Commit prepare(std::span<const Layer> parts) final;
+    [[nodiscard]] Commit prepare(const ScanVectors& vectors) final;
     void finish() final;
     [[nodiscard]] std::vector<std::string> warnings() const override { return left_out_.warnings(); }
     [[nodiscard]] WriteLosses losses() const final { return left_out_.losses(); }
@@ -97,7 +97,7 @@ class OrderedWriter : public LayerWriter {
     [[nodiscard]] std::shared_ptr<ByteBuffer> buffer() { return buffers_->take(); }
 
   private:
-    [[nodiscard]] std::function<void()> prepare_view(const PlaneView& plane);
+    [[nodiscard]] Commit prepare_view(const PlaneView& plane);
 
     /// Returns whether this writer warns about parts: among the ranges of a file, only the first one does.
     static bool names_parts(const LayerFileInfo& info) noexcept {

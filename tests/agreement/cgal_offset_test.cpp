@@ -145,7 +145,7 @@ TEST(CgalOffset, WithRoundCornersLiesBetweenSumsWithPolygons) {
         for (const double distance : {-0.3, 0.3}) {
             const double reach = std::abs(distance);
             const OffsetCorners corners{.shape = OffsetCorner::round, .arc_tolerance_mm = 0.001};
-            const Material found = material_of(bodies_of(offset(layer, distance, corners)));
+            const Material found = material_of(bodies_of(offset(layer, distance, {.corners = corners})));
             // Chords stay within the tolerance of the circle: between these two, less and more.
             const Material less = moved(material, distance, outline_of_circle(reach - 0.002));
             const Material more = moved(material, distance,

@@ -38,8 +38,8 @@ TEST_P(EverySolid, ClosesInEveryPlacementOnEveryPlane) {
         const TriangleSoup mesh = made.transformed(placement.map);
         for (const NamedPlan& plan : test::plans_for(mesh, 40)) {
             SCOPED_TRACE(placement.name + ", planes " + plan.name);
-            SliceReport report;
-            const LayerStack layers = slice(mesh, plan.plan, {}, &report);
+            LayerStack layers;
+            const SliceReport report = slice_to(appending_to(layers), mesh, plan.plan);
             ASSERT_NO_FATAL_FAILURE(expect_well_formed(layers, plan.plan));
             EXPECT_EQ(report.open_chains, 0U);
 
@@ -71,7 +71,7 @@ TEST_P(EverySolid, HasTheSameLayersWithEveryEngine) {
             const LayerStack expected = slice(mesh, plan.plan);
             for (const Engine& one : engines()) {
                 SCOPED_TRACE(std::string(one.name) + ", " + placement.name + ", planes " + plan.name);
-                const LayerStack layers = slice(mesh, plan.plan, {}, nullptr, one);
+                const LayerStack layers = slice(mesh, plan.plan, {.engine = one});
                 ASSERT_NO_FATAL_FAILURE(expect_well_formed(layers, plan.plan));
                 for (std::size_t i = 0; i < layers.size(); ++i)
                     EXPECT_TRUE(same_contours(layers[i], expected[i]) ||

@@ -104,7 +104,7 @@ TEST(NonManifold, AWallWithoutThicknessOverTwoDiagonalsBoundsNothing) {
                 EXPECT_EQ(layer.contours(), 0U) << layer.z;
         for (const Engine& engine : engines())
             for (const Layer& layer :
-                 slice(TriangleSoup(both), plan_listed({0.5, 1, 1.7, 2}), {}, nullptr, engine))
+                 slice(TriangleSoup(both), plan_listed({0.5, 1, 1.7, 2}), {.engine = engine}))
                 EXPECT_EQ(layer.contours(), 0U) << engine.name << ' ' << layer.z;
     }
 }
@@ -326,9 +326,9 @@ TEST(Broken, NothingIsLostOrAddedWhateverIsDropped) {
             for (const test::NamedPlan& plan : test::plans_for(mesh, 12)) {
                 SCOPED_TRACE(std::string(solid.name) + " seed " + std::to_string(seed) + ", planes " +
                              plan.name);
-                const LayerStack layers = slice(mesh, plan.plan, {.threads = 1});
+                const LayerStack layers = slice(mesh, plan.plan, {.execution = {.threads = 1}});
                 ASSERT_NO_FATAL_FAILURE(expect_well_formed(layers, plan.plan));
-                EXPECT_EQ(test::hashes(slice(shuffled(mesh, seed), plan.plan, {.threads = 7})),
+                EXPECT_EQ(test::hashes(slice(shuffled(mesh, seed), plan.plan, {.execution = {.threads = 7}})),
                           test::hashes(layers));
                 if (plan.plan.rule == PlaneRule::section_above) {
                     for (const Layer& layer : layers) {

@@ -85,9 +85,9 @@ void for_all(const Solid& solid, const Check& check) {
 
 TEST_P(SameBytes, ForAnyNumberOfThreads) {
     for_all(GetParam(), [](const TriangleSoup& mesh, const Plan& plan) {
-        const std::vector<std::uint64_t> one = hashes(slice(mesh, plan, {.threads = 1}));
-        EXPECT_EQ(hashes(slice(mesh, plan, {.threads = 2})), one);
-        EXPECT_EQ(hashes(slice(mesh, plan, {.threads = 7})), one);
+        const std::vector<std::uint64_t> one = hashes(slice(mesh, plan, {.execution = {.threads = 1}}));
+        EXPECT_EQ(hashes(slice(mesh, plan, {.execution = {.threads = 2}})), one);
+        EXPECT_EQ(hashes(slice(mesh, plan, {.execution = {.threads = 7}})), one);
     });
 }
 
@@ -115,21 +115,21 @@ TEST_P(SameBytes, ForAnyFirstCornerOfTheTriangles) {
 
 TEST_P(SameBytes, WhetherStreamedOrNot) {
     for_all(GetParam(), [](const TriangleSoup& mesh, const Plan& plan) {
-        SliceReport report;
-        const LayerStack at_once = slice(mesh, plan, {}, &report);
+        LayerStack at_once;
+        const SliceReport report = slice_to(appending_to(at_once), mesh, plan);
         for (const unsigned threads : {1U, 2U, 7U}) {
             LayerStack streamed;
             std::atomic<int> writing{0};
-            const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+            const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
                 auto kept = std::make_shared<Layer>(std::move(layer));
                 return [&, kept] {
                     EXPECT_EQ(writing.fetch_add(1), 0); // one at a time
                     streamed.push_back(std::move(*kept));
                     writing.fetch_sub(1);
                 };
-            };
-            SliceReport streamed_report;
-            slice_to(sink, mesh, plan, {.threads = threads}, &streamed_report);
+            }};
+            const SliceReport streamed_report =
+                slice_to(sink, mesh, plan, {.execution = {.threads = threads}});
             ASSERT_NO_FATAL_FAILURE(test::expect_well_formed(streamed, plan)); // also: in ascending z
             EXPECT_EQ(hashes(streamed), hashes(at_once));
             EXPECT_EQ(streamed_report.contours, report.contours);
@@ -208,8 +208,8 @@ TEST_P(SameBytes, FromFilesThatRepeatTheirVertices) {
         ASSERT_EQ(part.mesh().indexed()->vertices.size(), 3 * mesh.size()) << "as the file lists them";
         for (const NamedPlan& plan : test::plans_for(mesh, 20))
             for (const Engine& engine : engines())
-                EXPECT_EQ(hashes(slice(part.mesh(), plan.plan, {}, nullptr, engine)),
-                          hashes(slice(mesh, plan.plan, {}, nullptr, engine)))
+                EXPECT_EQ(hashes(slice(part.mesh(), plan.plan, {.engine = engine})),
+                          hashes(slice(mesh, plan.plan, {.engine = engine})))
                     << engine.name << ", planes " << plan.name;
     }
 }

@@ -51,8 +51,10 @@ TEST_P(EverySharedMesh, SlicesClosedWhereItIsClosed) {
             EXPECT_EQ(found.open_chains, 0U);
             EXPECT_TRUE(found.areas_agree) << testing::PrintToString(found.findings);
         }
-        EXPECT_EQ(test::hashes(slice(shuffled(*mesh, 1), plan.plan, {.threads = 7})), test::hashes(layers));
-        EXPECT_EQ(test::hashes(slice(weld(*mesh), plan.plan, {.threads = 1})), test::hashes(layers));
+        EXPECT_EQ(test::hashes(slice(shuffled(*mesh, 1), plan.plan, {.execution = {.threads = 7}})),
+                  test::hashes(layers));
+        EXPECT_EQ(test::hashes(slice(weld(*mesh), plan.plan, {.execution = {.threads = 1}})),
+                  test::hashes(layers));
     }
 }
 

@@ -108,12 +108,34 @@ TEST(Layer, PassesTheCheckWhereAllLengthsAreFiniteAndWithinReach) {
     }
 }
 
-TEST(Layer, ThatWasMovedFromHasNoContours) {
+TEST(Layer, PassesTheCheckOnlyIfItsOffsetsDivideItsPoints) {
+    const Layer layer = test::layer_of({test::rectangle(0, 0, 1, 1)}, {{{2, 2}, {3, 3}}});
+    EXPECT_NO_THROW(check(layer));
+    const auto expect_refused = [&](auto&& change) {
+        Layer changed = layer;
+        changed.index = 7;
+        change(changed);
+        test::expect_error(ErrorKind::usage, {"layer 7", "do not divide"}, [&] { check(changed); });
+    };
+    expect_refused([](Layer& changed) { changed.offsets = {0, 4, 7}; });
+    expect_refused([](Layer& changed) { changed.offsets = {0, 4}; });
+    expect_refused([](Layer& changed) { changed.offsets = {1, 4, 6}; });
+    expect_refused([](Layer& changed) { changed.offsets = {0, 7, 6}; });
+    expect_refused([](Layer& changed) { changed.offsets.clear(); });
+    expect_refused([](Layer& changed) { changed.points = {}; });
+    expect_refused([](Layer& changed) { changed.rings = 3; });
+}
+
+TEST(Layer, ThatWasMovedFromHasNoContoursAndNoPoints) {
     Layer layer = test::layer_of({test::rectangle(0, 0, 1, 1)}, {{{2, 2}, {3, 3}}});
-    const Layer taken = std::move(layer);
+    Layer taken = std::move(layer);
     EXPECT_EQ(taken.contours(), 2U);
     EXPECT_EQ(layer.contours(), 0U);    // NOLINT(bugprone-use-after-move): that is what is tested
     EXPECT_EQ(layer.open_chains(), 0U); // NOLINT(bugprone-use-after-move)
+    EXPECT_TRUE(layer.points.empty());  // NOLINT(bugprone-use-after-move)
+    layer = std::move(taken);
+    EXPECT_EQ(layer.points.size(), 6U);
+    EXPECT_TRUE(taken.points.empty()); // NOLINT(bugprone-use-after-move)
 }
 
 TEST(MergedLayers, OfNoneAreAnEmptyLayer) {

@@ -24,8 +24,7 @@ TEST(MeasureVectors, AddsUpWhatTheBeamDoes) {
                                   .jump_speed_mm_s = 5000,
                                   .mark_delay_us = 200,
                                   .jump_delay_us = 300};
-    std::optional<Point2> beam;
-    const ScanFigures figures = measure_vectors(vectors, hatches, parameters, beam);
+    const auto [figures, beam] = measure_vectors(vectors, hatches, parameters);
     EXPECT_EQ(figures.vectors, 4U + 1U + 2U);
     EXPECT_DOUBLE_EQ(figures.marked_mm, 40 + 5 + 20);
     EXPECT_DOUBLE_EQ(figures.jumped_mm, 20 + 10); // the first hatch begins where the chain ends
@@ -33,17 +32,17 @@ TEST(MeasureVectors, AddsUpWhatTheBeamDoes) {
     EXPECT_DOUBLE_EQ(figures.energy_j, 100 * 65.0 / 500);
     EXPECT_EQ(beam, (Point2{33, 4}));
     EXPECT_DOUBLE_EQ(
-        measure_vectors(test::layer_of({}, {{{33, 14}, {33, 15}}}), {}, parameters, beam).jumped_mm, 10);
+        measure_vectors(test::layer_of({}, {{{33, 14}, {33, 15}}}), {}, parameters, beam).figures.jumped_mm,
+        10);
 }
 
 TEST(MeasureVectors, CountsNoTimeForSpeedsThatNobodyReported) {
     const Layer vectors = test::layer_of({rectangle(0, 0, 10, 10), rectangle(20, 0, 30, 10)});
-    std::optional<Point2> beam;
     ParameterSet parameters{
         .power_w = 100, .speed_mm_s = 500, .jump_speed_mm_s = 0, .mark_delay_us = 0, .jump_delay_us = 0};
-    EXPECT_DOUBLE_EQ(measure_vectors(vectors, {}, parameters, beam).build_seconds, 80.0 / 500);
+    EXPECT_DOUBLE_EQ(measure_vectors(vectors, {}, parameters).figures.build_seconds, 80.0 / 500);
     parameters.speed_mm_s = 0;
-    const ScanFigures figures = measure_vectors(vectors, {}, parameters, beam);
+    const ScanFigures figures = measure_vectors(vectors, {}, parameters).figures;
     EXPECT_EQ(figures.build_seconds, 0);
     EXPECT_EQ(figures.energy_j, 0);
     EXPECT_DOUBLE_EQ(figures.marked_mm, 80);
@@ -79,6 +78,10 @@ TEST(ScanVectors, HaveAHashThatDependsOnTheirOrder) {
 
 TEST(ScanVectors, AreCheckedWithTheirHatchLines) {
     check(two_exposures());
+    ScanVectors without = two_exposures();
+    without.hatches.pop_back();
+    test::expect_error(ErrorKind::usage, {"polylines of 2 exposures and hatch lines of 1"},
+                       [&] { check(without); });
     ScanVectors odd = two_exposures();
     odd.hatches[0] = PointArray({{1, 1}, {2, 2}, {3, 3}});
     test::expect_error(ErrorKind::usage, {"3 points of hatch lines"}, [&] { check(odd); });

@@ -42,7 +42,7 @@ struct Delivery {
         : execution(by), executor(execution), sink(std::move(to)), progress(execution, Stage::slice, planes) {
     }
 
-    void deliver(std::uint32_t plane) { delivery.deliver(plane, sink(layer_number(plane))); }
+    void deliver(std::uint32_t plane) { delivery.deliver(plane, sink.prepare(layer_number(plane))); }
 
     Execution execution;
     Executor executor;
@@ -51,20 +51,20 @@ struct Delivery {
     OrderedStage delivery{executor, progress};
 };
 
-constexpr auto nothing_in_order = [](Layer&&) {
-    return std::function<void()>();
-};
+const LayerSink nothing_in_order{.prepare = [](Layer&&) {
+    return Commit();
+}};
 
 TEST(OrderedStage, RunsTheOrderedPartsInOrderWhateverTheOrderOfDelivery) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
         std::vector<std::uint64_t> arrived;
         std::vector<std::uint64_t> ordered;
-        const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+        const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
             arrived.push_back(layer.index);
             return [&ordered, index = layer.index] {
                 ordered.push_back(index);
             };
-        };
+        }};
         Delivery delivery(50, sink);
         const std::vector<std::uint32_t> order = mixed(50, seed);
         for (const std::uint32_t plane : order)
@@ -81,14 +81,14 @@ TEST(OrderedStage, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
     std::atomic<int> inside{0};
     std::atomic<int> parallel{0};
     std::vector<std::uint64_t> ordered; // not guarded: the promise is that it need not be
-    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+    const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
         ++parallel;
         return [&, index = layer.index] {
             EXPECT_EQ(++inside, 1);
             ordered.push_back(index);
             --inside;
         };
-    };
+    }};
     Delivery delivery(planes, sink, {.threads = 7});
     const std::vector<std::uint32_t> order = mixed(planes, 1);
     delivery.executor.for_chunks(
@@ -108,10 +108,10 @@ TEST(OrderedStage, CountsLayersWithoutAnOrderedPart) {
 
 TEST(OrderedStage, LetsGoOfAnOrderedPartOnceItHasRun) {
     const auto token = std::make_shared<int>(0);
-    const LayerSink sink = [&](Layer&&) -> std::function<void()> {
+    const LayerSink sink{.prepare = [&](Layer&&) -> Commit {
         return [kept = token] {
         };
-    };
+    }};
     Delivery delivery(3, sink);
     delivery.deliver(1);
     EXPECT_EQ(token.use_count(), 2);
@@ -120,11 +120,11 @@ TEST(OrderedStage, LetsGoOfAnOrderedPartOnceItHasRun) {
 }
 
 TEST(OrderedStage, PassesAnExceptionOfTheParallelPartToWhoDelivered) {
-    const LayerSink sink = [](Layer&& layer) -> std::function<void()> {
+    const LayerSink sink{.prepare = [](Layer&& layer) -> Commit {
         if (layer.index == 1)
             throw std::runtime_error("no room for layer 1");
         return {};
-    };
+    }};
     Delivery delivery(3, sink);
     EXPECT_NO_THROW(delivery.deliver(0));
     EXPECT_THROW(delivery.deliver(1), std::runtime_error);
@@ -132,13 +132,13 @@ TEST(OrderedStage, PassesAnExceptionOfTheParallelPartToWhoDelivered) {
 
 TEST(OrderedStage, StopsForGoodWhenAnOrderedPartThrows) {
     std::vector<std::uint64_t> ordered;
-    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+    const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
         return [&, index = layer.index] {
             if (index == 1)
                 throw std::runtime_error("disk full");
             ordered.push_back(index);
         };
-    };
+    }};
     Delivery delivery(4, sink);
     delivery.deliver(2);
     delivery.deliver(1);
@@ -181,9 +181,9 @@ TEST(OrderedStage, LetsWaitersGoWhenTheCallerCancels) {
 }
 
 TEST(OrderedStage, LetsWaitersGoWhenAnotherWorkerFails) {
-    const LayerSink sink = [](Layer&&) -> std::function<void()> {
+    const LayerSink sink{.prepare = [](Layer&&) -> Commit {
         throw std::runtime_error("parallel");
-    };
+    }};
     Delivery delivery(10, sink, {.threads = 2});
     EXPECT_THROW(delivery.executor.run([&](unsigned worker) {
         if (worker == 0)

@@ -15,9 +15,9 @@ void slice_and_check(const lamella::Mesh& mesh) {
     if (!(box.min.z < box.max.z))
         return;
     const Plan plan = plan_uniform(box.min.z, box.max.z, {.layer_height = (box.max.z - box.min.z) / 7});
-    const LayerStack as_it_is = slice(mesh, plan, {.threads = 1});
+    const LayerStack as_it_is = slice(mesh, plan, {.execution = {.threads = 1}});
     const IndexedMesh welded = weld(mesh, {.threads = 2});
-    const LayerStack by_mesh = slice(welded, plan, {.threads = 2});
+    const LayerStack by_mesh = slice(welded, plan, {.execution = {.threads = 2}});
     const Inspection inspection = inspect(welded, {.threads = 1});
     require(as_it_is.size() == plan.layers.size() && by_mesh.size() == as_it_is.size());
     for (std::size_t i = 0; i < as_it_is.size(); ++i) {

@@ -1,13 +1,22 @@
 #include "lamella/core/error.hpp"
+#include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/inspect.hpp"
+#include "lamella/mesh/mesh.hpp"
+#include "lamella/mesh/repair.hpp"
+#include "lamella/mesh/self_intersections.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "mesh/naive.hpp"
 #include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cstddef>
+#include <functional>
 #include <string>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -48,6 +57,30 @@ TEST(IndexedMesh, CheckNamesTheFirstVertexThatIsSoFarAwayThatSumsOverflow) {
     EXPECT_EQ(complaint(mesh).find("vertex 5 "), 0U);
     EXPECT_NE(complaint(mesh).find("1.7e+308"), std::string::npos);
     EXPECT_NE(complaint(mesh).find("within 1e+100 mm"), std::string::npos);
+}
+
+TEST(IndexedMesh, IsCheckedByAllFunctionsThatFollowItsIndices) {
+    IndexedMesh mesh = naive_weld(make_box(1, 2, 3));
+    mesh.triangles[7][2] = 8;
+    const Execution execution{.threads = 2};
+    const std::vector<std::function<void()>> uses{
+        [&] { static_cast<void>(Mesh(mesh)); },
+        [&] { static_cast<void>(weld(mesh, execution)); },
+        [&] { static_cast<void>(volume(mesh, execution)); },
+        [&] { static_cast<void>(inspect(mesh, execution)); },
+        [&] { static_cast<void>(diagnose(mesh, {}, execution)); },
+        [&] { static_cast<void>(weld_within(mesh, 0.1, execution)); },
+        [&] { static_cast<void>(drop_duplicates(mesh, execution)); },
+        [&] { static_cast<void>(orient(mesh, execution)); },
+        [&] { static_cast<void>(find_self_intersections(mesh, {}, execution)); },
+        [&] {
+            IndexedMesh changed = mesh;
+            drop_unused_vertices(changed, execution);
+        }};
+    for (std::size_t i = 0; i < uses.size(); ++i) {
+        SCOPED_TRACE(i);
+        test::expect_error(ErrorKind::input, {"triangle 7 names vertex 8"}, uses[i]);
+    }
 }
 
 TEST(IndexedMesh, HasTheBoxAndTheBitsOfTheVolumeOfItsSoup) {

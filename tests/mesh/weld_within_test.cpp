@@ -126,7 +126,7 @@ IndexedMesh crumbs(int cubes) {
 TEST(WeldWithin, OneVertexFarAwayChangesNothing) {
     const IndexedMesh mesh = crumbs(900);
     const ToleranceWeld alone = weld_within(mesh, 1e-4);
-    for (const double far : {1e6, -1e9, 1e30, 1e300}) {
+    for (const double far : {1e6, -1e9, 1e30, 1e100}) {
         IndexedMesh stray = mesh;
         stray.vertices.push_back({far, far, far});
         const ToleranceWeld welded = weld_within(stray, 1e-4);

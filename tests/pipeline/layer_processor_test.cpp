@@ -95,9 +95,9 @@ Written process(const LayerJob& job, const Planes& planes, std::optional<Ranges>
     test::Random random(seed);
     for (std::size_t i = order.size(); i > 1; --i)
         std::swap(order[i - 1], order[random.bits() % i]);
-    std::vector<std::function<void()>> commits(planes.size());
+    std::vector<Commit> commits(planes.size());
     for (const std::uint32_t plane : order)
-        commits[plane] = processor(plane, planes[plane]);
+        commits[plane] = processor.prepare(plane, planes[plane]);
     for (std::uint32_t plane = sliced.begin; plane < sliced.end; ++plane)
         if (commits[plane])
             commits[plane]();

@@ -38,7 +38,7 @@ struct Record {
     Indices written;
 
     [[nodiscard]] LayerWindow::Work work() {
-        return [this](const PlaneLayers& plane) -> std::function<void()> {
+        return [this](const PlaneLayers& plane) -> Commit {
             const auto index = [](const std::span<const ScanLayer>& parts) {
                 EXPECT_EQ(parts.size(), 2U);
                 EXPECT_EQ(parts[0].layer().index, parts[1].layer().index);
@@ -105,10 +105,10 @@ TEST(LayerWindow, GivesEachPlaneItsNeighboursInWhateverOrderPlanesCome) {
             std::vector<std::uint32_t> order;
             for (std::uint32_t p = at; p < end; ++p)
                 order.insert(order.begin() + number(static_cast<std::int64_t>(order.size())), p);
-            std::vector<std::function<void()>> in_order(end - at);
+            std::vector<Commit> in_order(end - at);
             for (const std::uint32_t p : order)
-                in_order[p - at] = window(p, plane(p));
-            for (const std::function<void()>& action : in_order)
+                in_order[p - at] = window.prepare(p, plane(p));
+            for (const Commit& action : in_order)
                 action();
             at = end;
         }
@@ -124,7 +124,7 @@ TEST(LayerWindow, HoldsNoMoreThanTheNeighbours) {
     Record record;
     LayerWindow window({0, planes}, {0, planes}, 3, 2, as_it_is, record.work());
     for (std::uint32_t p = 0; p < planes; ++p) {
-        window(p, plane(p))();
+        window.prepare(p, plane(p))();
         EXPECT_LE(window.held(), 5U);
         EXPECT_EQ(record.written.size(), p + 1 == planes ? planes : p - std::min(p, 1U));
     }
@@ -135,7 +135,7 @@ TEST(LayerWindow, WaitsForNothingWithoutNeighbours) {
     Record record;
     LayerWindow window({4, 10}, {4, 10}, 0, 0, as_it_is, record.work());
     for (std::uint32_t p = 4; p < 10; ++p) {
-        const std::function<void()> write = window(p, plane(p));
+        const Commit write = window.prepare(p, plane(p));
         EXPECT_EQ(record.worked_on.size(), p - 3);
         EXPECT_EQ(window.held(), 0U);
         write();
@@ -147,12 +147,12 @@ TEST(LayerWindow, SharesThePointsOfLayersThatAreTheSame) {
     std::set<const Point2*> points;
     LayerWindow window({0, 9}, {0, 9}, 1, 1, as_it_is, [&](const PlaneLayers& plane) {
         points.insert(plane.parts[0].layer().points.data());
-        return std::function<void()>();
+        return Commit();
     });
     for (std::uint32_t i = 0; i < 9; ++i) {
         const double size = i < 5 ? 4 : 3; // two blocks, one on the other
         const std::array<Layer, 1> parts{test::layer_of({test::rectangle(0, 0, size, size)})};
-        static_cast<void>(window(i, parts));
+        static_cast<void>(window.prepare(i, parts));
     }
     EXPECT_EQ(points.size(), 2U);
 }
@@ -161,17 +161,17 @@ TEST(LayerWindow, TakesPlanesFromManyThreads) {
     constexpr std::uint32_t planes = 400;
     Record record;
     LayerWindow window({0, planes}, {10, planes - 10}, 4, 4, as_it_is, record.work());
-    std::vector<std::function<void()>> in_order(planes);
+    std::vector<Commit> in_order(planes);
     std::atomic<std::uint32_t> next{0};
     std::vector<std::thread> threads;
     for (int t = 0; t < 4; ++t)
         threads.emplace_back([&] {
             for (std::uint32_t p = next++; p < planes; p = next++)
-                in_order[p] = window(p, plane(p));
+                in_order[p] = window.prepare(p, plane(p));
         });
     for (std::thread& thread : threads)
         thread.join();
-    for (const std::function<void()>& action : in_order)
+    for (const Commit& action : in_order)
         action();
     expect_complete(record, {0, planes}, {10, planes - 10}, 4, 4);
     EXPECT_EQ(window.held(), 0U);

@@ -46,7 +46,7 @@ class Merge : public testing::Test {
     [[nodiscard]] std::string refusal(const std::string& format) const {
         const std::vector<std::string> shards{path("low"), path("high")};
         try {
-            static_cast<void>(merge_layer_files(shards, path("merged"), format));
+            static_cast<void>(merge_layer_files(shards, path("merged"), {.format = format}));
         } catch (const Error& error) {
             return error.what();
         }
@@ -105,7 +105,7 @@ TEST_F(Merge, PutsPartsInTheOrderOfEachFile) {
             write(names[i], format, static_cast<double>(i), parts, std::vector<bool>(parts.size(), true));
             shards.push_back(path(names[i]));
         }
-        static_cast<void>(merge_layer_files(shards, path("merged"), format));
+        static_cast<void>(merge_layer_files(shards, path("merged"), {.format = format}));
         const LayerFile merged = read_layers(path("merged"));
         std::string order;
         for (const LayerPart& part : merged.parts)

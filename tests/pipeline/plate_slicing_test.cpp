@@ -48,12 +48,13 @@ struct Delivered {
 Delivered deliver(const Plate& plate, const Plan& plan, std::uint64_t points_in_flight,
                   const Execution& execution = {.threads = 3}, const Engine& engine = engines().front()) {
     Delivered delivered;
-    const PlateSink sink = [&](std::span<const Layer> parts) {
+    const PlateSink sink{.prepare = [&](std::span<const Layer> parts) {
         return [&delivered, kept = std::vector<Layer>(parts.begin(), parts.end())] {
             delivered.written.push_back(kept);
         };
-    };
-    delivered.report = slice_plate_to(sink, plate, plan, execution, engine, points_in_flight);
+    }};
+    delivered.report = slice_plate_to(
+        sink, plate, plan, {.execution = execution, .engine = engine, .points_in_flight = points_in_flight});
     return delivered;
 }
 
@@ -235,7 +236,7 @@ TEST(PlateSlicing, HandsAFewPlanesAtATimeToASinkThatMakesMuchOfThem) {
     std::atomic<std::int64_t> on_their_way{0};
     std::atomic<std::int64_t> most{0};
     std::vector<std::uint64_t> written;
-    const PlateSink sink = [&](std::span<const Layer> parts) -> std::function<void()> {
+    const PlateSink sink{.prepare = [&](std::span<const Layer> parts) -> Commit {
         const std::int64_t now = ++on_their_way;
         for (std::int64_t before = most; before < now && !most.compare_exchange_weak(before, now);) {
         }
@@ -243,14 +244,14 @@ TEST(PlateSlicing, HandsAFewPlanesAtATimeToASinkThatMakesMuchOfThem) {
             --on_their_way;
             written.push_back(index);
         };
-    };
+    }};
     std::vector<Progress> told;
     const Execution execution{.threads = 2, .progress = [&](const Progress& progress) {
                                   if (progress.stage == Stage::slice)
                                       told.push_back(progress);
                               }};
-    static_cast<void>(
-        slice_plate_to(sink, plate, plan, execution, engines().front(), 1'000'000, SinkCost::expanding));
+    static_cast<void>(slice_plate_to(
+        sink, plate, plan, {.execution = execution, .points_in_flight = 1'000'000}, SinkCost::expanding));
     EXPECT_EQ(written.size(), plan.layers.size());
     EXPECT_TRUE(std::is_sorted(written.begin(), written.end()));
     EXPECT_LE(most, 8);
@@ -264,12 +265,54 @@ TEST(PlateSlicing, HandsAFewPlanesAtATimeToASinkThatMakesMuchOfThem) {
     EXPECT_EQ(told.back().done, plan.layers.size());
 }
 
+TEST(PlateSlicing, RefusesAPlanThatDoesNotAscendEvenBesideAllParts) {
+    for (const std::uint64_t copies : {1U, 2U}) {
+        const Plate plate = plate_of({{make_box(1, 1, 1), copies}});
+        EXPECT_TRUE(slice(plate, Plan()).empty());
+        Plan plan = plan_uniform(5, 6, {.layer_height = 0.5});
+        std::swap(plan.layers.front(), plan.layers.back());
+        test::expect_error(ErrorKind::usage, {"must ascend"}, [&] { (void)slice(plate, plan); });
+    }
+}
+
+TEST(PlateSlicing, MakesEmptyLayersOfAPlateWithoutParts) {
+    const Plan plan = plan_uniform(0, 1, {.layer_height = 0.5});
+    const LayerStack layers = slice(Plate(), plan);
+    ASSERT_EQ(layers.size(), 2U);
+    EXPECT_EQ(layers[1].z, plan.layers[1].z);
+    EXPECT_EQ(layers[1].contours(), 0U);
+}
+
+TEST(PlateSlicing, ReportsTheContentOfTheLayersAndVisitsEachTriangleOfEachShape) {
+    for (const std::uint64_t copies : {1U, 3U}) {
+        const Plate plate = plate_of({{make_torus(6, 2, 48, 24), copies}, {make_sphere(3, 3), 1}});
+        const Plan plan = plan_of(plate, 0.1);
+        std::atomic<std::uint64_t> visited{0};
+        LayerStack layers;
+        const SliceReport report = slice_to(
+            appending_to(layers), plate, plan,
+            {.points_in_flight = 5000, .visitor = [&](const Mesh&, std::uint64_t begin, std::uint64_t end) {
+                 visited += end - begin;
+             }});
+        std::uint64_t contours = 0;
+        std::uint64_t points = 0;
+        for (const Layer& layer : layers) {
+            contours += layer.contours();
+            points += layer.points.size();
+        }
+        EXPECT_EQ(report.layers, plan.layers.size());
+        EXPECT_EQ(report.contours, contours);
+        EXPECT_EQ(report.points, points);
+        EXPECT_EQ(visited, plate.shapes[0].mesh.size() + plate.shapes[1].mesh.size());
+    }
+}
+
 TEST(PlateSlicing, StopsWithWhatTheSinkThrows) {
     const Plate plate = plate_of({{make_torus(6, 2, 24, 16), 2}});
     const Plan plan = plan_of(plate, 0.1);
     std::size_t written = 0;
     const auto slice_until = [&](bool in_order) {
-        const PlateSink sink = [&, in_order](std::span<const Layer> parts) -> std::function<void()> {
+        const PlateSink sink{.prepare = [&, in_order](std::span<const Layer> parts) -> Commit {
             const bool now = parts.front().index == 20;
             if (now && !in_order)
                 throw Error(ErrorKind::output, "no room");
@@ -278,9 +321,10 @@ TEST(PlateSlicing, StopsWithWhatTheSinkThrows) {
                     throw Error(ErrorKind::output, "no room");
                 ++written;
             };
-        };
+        }};
         test::expect_error(ErrorKind::output, {"no room"}, [&] {
-            static_cast<void>(slice_plate_to(sink, plate, plan, {.threads = 2}, engines().front(), 500));
+            static_cast<void>(
+                slice_plate_to(sink, plate, plan, {.execution = {.threads = 2}, .points_in_flight = 500}));
         });
     };
     slice_until(true);

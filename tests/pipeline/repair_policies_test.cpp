@@ -20,11 +20,10 @@ Mesh broken() {
 }
 
 TEST(RepairPolicies, AreOffByDefault) {
-    MeshRepairs repairs;
     const Mesh mesh = broken();
     RepairPolicies policies;
     policies.close_gaps_mm = 1; // changes layers, not the mesh
-    const Mesh same = repaired(mesh, policies, repairs);
+    const auto [same, repairs] = repaired(mesh, policies);
     EXPECT_EQ(same.soup()->size(), mesh.size());
     EXPECT_FALSE(repairs.welded || repairs.dropped || repairs.oriented);
 }
@@ -36,8 +35,7 @@ TEST(RepairPolicies, ApplyEachInTheirOrderAndReportIt) {
             policies.weld_tolerance_mm = 0.01;
         policies.drop_duplicates = (which & 2U) != 0;
         policies.orient = (which & 4U) != 0;
-        MeshRepairs repairs;
-        const Mesh mesh = repaired(broken(), policies, repairs);
+        const auto [mesh, repairs] = repaired(broken(), policies);
         EXPECT_EQ(repairs.welded.has_value(), policies.weld_tolerance_mm.has_value());
         EXPECT_EQ(repairs.dropped.has_value(), policies.drop_duplicates);
         EXPECT_EQ(repairs.oriented.has_value(), policies.orient);

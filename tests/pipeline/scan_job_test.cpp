@@ -119,8 +119,10 @@ TEST_F(ScanJob, WritesWhatScanMakesOfEachLayerAndItsNeighbours) {
         std::optional<Point2> beam;
         for (std::size_t e = 0; e < each.size(); ++e) {
             SCOPED_TRACE(testing::Message() << "layer " << i << ", " << each[e].name());
-            const ScanFigures figures =
+            const MeasuredVectors measured =
                 measure_vectors(vectors.polylines[e], vectors.hatches[e].span(), each[e].parameters, beam);
+            beam = measured.beam;
+            const ScanFigures& figures = measured.figures;
             EXPECT_EQ(result.layers[i].scan[e].vectors, figures.vectors);
             EXPECT_EQ(result.layers[i].scan[e].jumped_mm, figures.jumped_mm);
             sums[e] += figures;

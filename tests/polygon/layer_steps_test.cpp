@@ -17,9 +17,9 @@ using test::reversed;
 
 TEST(LayerSteps, NoneChangesNothing) {
     const Layer layer = layer_of({rectangle(0, 0, 4, 4), rectangle(2, 2, 6, 6)});
-    LayerChanges changes;
-    EXPECT_EQ(take_steps({}, layer, changes).points.data(), layer.points.data());
-    EXPECT_EQ(changes.changed_layers, 0U);
+    const ChangedLayer same = take_steps({}, layer);
+    EXPECT_EQ(same.layer.points.data(), layer.points.data());
+    EXPECT_EQ(same.changes.changed_layers, 0U);
 }
 
 TEST(LayerSteps, ThatAreImpossibleAreRefusedWhateverTheLayer) {
@@ -28,12 +28,11 @@ TEST(LayerSteps, ThatAreImpossibleAreRefusedWhateverTheLayer) {
          {LayerSteps{.offset_mm = nan}, LayerSteps{.offset_mm = -1, .offset_corners = {.mitre_limit = 0}},
           LayerSteps{.min_area_mm2 = nan}, LayerSteps{.min_area_mm2 = -1}, LayerSteps{.simplify_mm = nan},
           LayerSteps{.simplify_mm = -1}}) {
-        LayerChanges changes;
         EXPECT_TRUE(steps.any());
         test::error_of(ErrorKind::usage, [&] { check_steps(steps); });
-        test::error_of(ErrorKind::usage, [&] { static_cast<void>(take_steps(steps, Layer{}, changes)); });
+        test::error_of(ErrorKind::usage, [&] { static_cast<void>(take_steps(steps, Layer{})); });
         test::error_of(ErrorKind::usage,
-                       [&] { static_cast<void>(take_steps(steps, LayerStack{}, changes)); });
+                       [&] { static_cast<void>(take_steps(steps, std::vector<LayerStack>{})); });
     }
     check_steps({.offset_mm = -1, .min_area_mm2 = 1, .simplify_mm = 0.1});
 }
@@ -46,8 +45,7 @@ TEST(LayerSteps, AreTakenInOrderAndReportedAbout) {
     steps.offset_mm = 1;
     steps.largest_only = true;
     steps.simplify_mm = 0.01;
-    LayerChanges changes;
-    const Layer result = take_steps(steps, layer, changes);
+    const auto [result, changes] = take_steps(steps, layer);
     EXPECT_TRUE(same_contours(result, layer_of({rectangle(-1, -1, 7, 5)})));
     EXPECT_EQ(changes.changed_layers, 1U);
     EXPECT_EQ(changes.groups_united, 1U);
@@ -65,9 +63,7 @@ TEST(LayerSteps, ReportHowManyRingsAnOffsetLeavesNothingOf) {
     const Layer frame = normal_form(
         layer_of({rectangle(0, 0, 10, 10), reversed(rectangle(1, 1, 9, 9)), rectangle(20, 0, 30, 10)}));
     const auto vanished = [&](double distance) {
-        LayerChanges changes;
-        static_cast<void>(take_steps({.offset_mm = distance}, frame, changes));
-        return changes.rings_vanished;
+        return take_steps({.offset_mm = distance}, frame).changes.rings_vanished;
     };
     EXPECT_EQ(vanished(0.4), 0U);
     EXPECT_EQ(vanished(-0.4), 0U);
@@ -80,16 +76,15 @@ TEST(LayerSteps, APlaneCountsOnceHoweverManyPartsChangeOnIt) {
     const Layer small = normal_form(layer_of({rectangle(0, 0, 1, 1), rectangle(5, 0, 9, 4)}));
     const Layer large = normal_form(layer_of({rectangle(0, 0, 4, 4)}));
     const LayerSteps steps{.min_area_mm2 = 2};
-    LayerChanges plane;
-    const std::vector<Layer> made = take_steps_on_plane(steps, std::vector{small, small, large}, plane);
-    ASSERT_EQ(made.size(), 3U);
-    EXPECT_EQ(made[1].rings, 1U);
-    EXPECT_EQ(plane.changed_layers, 1U);
-    EXPECT_EQ(plane.rings_dropped, 2U);
+    const ChangedPlane plane = take_steps_on_plane(steps, std::vector{small, small, large});
+    ASSERT_EQ(plane.parts.size(), 3U);
+    EXPECT_EQ(plane.parts[1].rings, 1U);
+    EXPECT_EQ(plane.changes.changed_layers, 1U);
+    EXPECT_EQ(plane.changes.rings_dropped, 2U);
 
-    std::vector<LayerChanges> planes;
-    const std::vector<LayerStack> parts = take_steps(
-        steps, std::vector<LayerStack>{{small, large, small}, {small, large, large}}, planes, {.threads = 2});
+    const auto [parts, planes] =
+        take_steps(steps, std::vector<LayerStack>{{small, large, small}, {small, large, large}},
+                   {.execution = {.threads = 2}});
     ASSERT_EQ(planes.size(), 3U);
     const std::uint64_t changed[] = {1, 0, 1};
     const std::uint64_t dropped[] = {2, 0, 1};
@@ -105,8 +100,8 @@ TEST(LayerSteps, SmallRingsAreDroppedWhenAskedFor) {
     const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4), reversed(rectangle(1, 1, 2, 2))}));
     LayerSteps steps;
     steps.min_area_mm2 = 2;
-    LayerChanges changes;
-    EXPECT_TRUE(same_contours(take_steps(steps, layer, changes), layer_of({rectangle(0, 0, 4, 4)})));
+    const auto [result, changes] = take_steps(steps, layer);
+    EXPECT_TRUE(same_contours(result, layer_of({rectangle(0, 0, 4, 4)})));
     EXPECT_EQ(changes.rings_dropped, 1U);
     EXPECT_DOUBLE_EQ(changes.area_after_mm2 - changes.area_before_mm2, 1);
 }

@@ -101,7 +101,7 @@ TEST(Offset, CutsSharpCornersOff) {
     const Layer needle = normal_form(layer_of({{{0, 0}, {100, -1}, {100, 1}}}));
     for (const Point2& p : offset(needle, 1).points)
         EXPECT_GE(p.x, -1.000000001);
-    const double farther = offset(needle, 1, {.mitre_limit = 1000}).points[0].x;
+    const double farther = offset(needle, 1, {.corners = {.mitre_limit = 1000}}).points[0].x;
     EXPECT_NEAR(farther, -std::sqrt(10001), 1e-6);
 }
 
@@ -122,7 +122,8 @@ TEST(Offset, MitresCornersAtTheLimitWhateverTheirRounding) {
             for (const Contour& ring : {triangle, in_single_precision}) {
                 SCOPED_TRACE(angle);
                 EXPECT_EQ(offset(normal_form(layer_of({ring})), 0.5).points.size(), 3U);
-                EXPECT_EQ(offset(normal_form(layer_of({ring})), 0.5, {.mitre_limit = 1.99}).points.size(),
+                EXPECT_EQ(offset(normal_form(layer_of({ring})), 0.5, {.corners = {.mitre_limit = 1.99}})
+                              .points.size(),
                           6U);
             }
         }
@@ -131,7 +132,7 @@ TEST(Offset, MitresCornersAtTheLimitWhateverTheirRounding) {
 TEST(Offset, KeepsChordsOfRoundCornersWithinTheirToleranceAtAnyDistance) {
     const Layer square = normal_form(layer_of({rectangle(0, 0, 10, 10)}));
     for (const double distance : {0.5, 3.0, 100.0, 1e4, 1e6}) {
-        const Layer grown = offset(square, distance, rounded);
+        const Layer grown = offset(square, distance, {.corners = rounded});
         ASSERT_EQ(grown.rings, 1U);
         const auto ring = grown.contour(0);
         for (std::size_t i = 0; i < ring.size(); ++i) {
@@ -146,23 +147,24 @@ TEST(Offset, KeepsChordsOfRoundCornersWithinTheirToleranceAtAnyDistance) {
 TEST(Offset, IsRefusedWhereItsPointsWouldTakeMoreMemoryThanThereIsForThem) {
     const Layer square = normal_form(layer_of({rectangle(0, 0, 10, 10)}));
     test::expect_error(ErrorKind::limit, {"points of an offset", "`max_memory`"}, [&] {
-        static_cast<void>(offset(square, 1e6, rounded, nullptr, {.memory = 1 << 20}));
+        static_cast<void>(offset(square, 1e6, {.corners = rounded, .limits = {.memory = 1 << 20}}));
     });
 }
 
 TEST(Offset, JoinsSidesAsWished) {
     const Layer square = normal_form(layer_of({rectangle(0, 0, 10, 10)}));
-    EXPECT_NEAR(area(offset(square, 1, bevelled)), 100 + 40 + 4 * 0.5, 1e-12);
-    EXPECT_EQ(offset(square, 1, bevelled).points.size(), 8U);
+    EXPECT_NEAR(area(offset(square, 1, {.corners = bevelled})), 100 + 40 + 4 * 0.5, 1e-12);
+    EXPECT_EQ(offset(square, 1, {.corners = bevelled}).points.size(), 8U);
     const double circle = std::numbers::pi;
-    EXPECT_NEAR(area(offset(square, 1, rounded)), 140 + circle, 0.005);
-    EXPECT_LT(area(offset(square, 1, rounded)), 140 + circle);
-    EXPECT_NEAR(area(offset(square, 1, {.shape = OffsetCorner::round, .arc_tolerance_mm = 1e-6})),
-                140 + circle, 1e-3);
+    EXPECT_NEAR(area(offset(square, 1, {.corners = rounded})), 140 + circle, 0.005);
+    EXPECT_LT(area(offset(square, 1, {.corners = rounded})), 140 + circle);
+    EXPECT_NEAR(
+        area(offset(square, 1, {.corners = {.shape = OffsetCorner::round, .arc_tolerance_mm = 1e-6}})),
+        140 + circle, 1e-3);
     for (const OffsetCorners& corners : {mitred, bevelled, rounded})
-        EXPECT_NEAR(area(offset(square, -1, corners)), 64, 1e-12); // nothing parts
+        EXPECT_NEAR(area(offset(square, -1, {.corners = corners})), 64, 1e-12); // nothing parts
     const Layer hole = normal_form(layer_of({rectangle(-9, -9, 19, 19), reversed(rectangle(0, 0, 10, 10))}));
-    EXPECT_NEAR(area(offset(hole, -1, rounded)), 26 * 26 - 140 - circle, 0.005);
+    EXPECT_NEAR(area(offset(hole, -1, {.corners = rounded})), 26 * 26 - 140 - circle, 0.005);
 }
 
 TEST(Offset, HasNoPointTwiceInARow) {
@@ -170,7 +172,7 @@ TEST(Offset, HasNoPointTwiceInARow) {
     const Layer notched = normal_form(layer_of({{{0, 1}, {1, 1}, {1, 0}, {2, 0}, {2, 3}, {0, 3}}}));
     for (const OffsetCorners& corners : {mitred, bevelled, rounded})
         for (const double distance : {1.0, -1.0, 0.5}) {
-            const Layer moved = offset(notched, distance, corners);
+            const Layer moved = offset(notched, distance, {.corners = corners});
             for (std::size_t i = 0; i < moved.contours(); ++i) {
                 const auto ring = moved.contour(i);
                 for (std::size_t k = 0; k < ring.size(); ++k)
@@ -216,7 +218,9 @@ TEST(Offset, OfNeedlesAsWideAsRoundingIsThatOfALine) {
             const Layer needle = normal_form(layer_of({ring}));
             EXPECT_EQ(offset(needle, -0.05).rings, 0U) << round;
             if (orientation(ring[0], ring[1], ring[2]) > 0) {
-                EXPECT_NEAR(area(offset(needle, 1, rounded)), 2 * length + std::numbers::pi, 0.01) << round;
+                EXPECT_NEAR(area(offset(needle, 1, {.corners = rounded})), 2 * length + std::numbers::pi,
+                            0.01)
+                    << round;
             }
         }
     }
@@ -262,8 +266,9 @@ TEST(Offset, ByWhatIsNoDistanceIsRefused) {
     const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4)}));
     EXPECT_THROW(static_cast<void>(offset(layer, std::numeric_limits<double>::infinity())), Error);
     EXPECT_THROW(static_cast<void>(offset(layer, std::nan(""))), Error);
-    EXPECT_THROW(static_cast<void>(offset(layer, 1, {.mitre_limit = 0.5})), Error);
-    EXPECT_THROW(static_cast<void>(offset(layer, 1, {.shape = OffsetCorner::round, .arc_tolerance_mm = 0})),
+    EXPECT_THROW(static_cast<void>(offset(layer, 1, {.corners = {.mitre_limit = 0.5}})), Error);
+    EXPECT_THROW(static_cast<void>(
+                     offset(layer, 1, {.corners = {.shape = OffsetCorner::round, .arc_tolerance_mm = 0}})),
                  Error);
 }
 
@@ -272,11 +277,12 @@ TEST(Offset, OfManySidesByFarMoreThanTheirBodyWithoutLookingAtAllPairs) {
     const Layer pierced =
         normal_form(layer_of({rectangle(-20, -20, 20, 20), reversed(regular_polygon(100000, 10))}));
     for (const OffsetCorners& corners : {mitred, rounded}) {
-        std::uint64_t vanished = 0;
-        EXPECT_EQ(offset(disc, -100, corners, &vanished).contours(), 0U);
-        EXPECT_EQ(vanished, 1U);
-        EXPECT_EQ(offset(pierced, 100, corners, &vanished).rings, 1U);
-        EXPECT_EQ(vanished, 1U);
+        const CountedOffset gone = counted_offset(disc, -100, {.corners = corners});
+        EXPECT_EQ(gone.layer.contours(), 0U);
+        EXPECT_EQ(gone.rings_vanished, 1U);
+        const CountedOffset closed = counted_offset(pierced, 100, {.corners = corners});
+        EXPECT_EQ(closed.layer.rings, 1U);
+        EXPECT_EQ(closed.rings_vanished, 1U);
     }
 }
 
@@ -284,10 +290,10 @@ TEST(Offset, CountsRingsThatNothingIsLeftOf) {
     const Layer layer =
         layer_of({rectangle(0, 0, 10, 10), reversed(rectangle(1, 1, 2, 2)), reversed(rectangle(4, 4, 8, 8)),
                   rectangle(5, 5, 6, 6), rectangle(20, 0, 30, 1)});
-    std::uint64_t vanished = 0;
     const auto gone = [&](double distance) {
-        static_cast<void>(offset(layer, distance, mitred, &vanished));
-        return vanished;
+        const CountedOffset moved = counted_offset(layer, distance, {.corners = mitred});
+        EXPECT_TRUE(same_contours(moved.layer, offset(layer, distance, {.corners = mitred})));
+        return moved.rings_vanished;
     };
     EXPECT_EQ(gone(-0.1), 0U);
     EXPECT_EQ(gone(-0.6), 2U); // the small body and the flat one
@@ -309,7 +315,7 @@ TEST(Offset, IsTheMaterialWithOrWithoutStripsAndWedges) {
             continue;
         const OffsetCorners corners = round % 3 == 0 ? mitred : round % 3 == 1 ? bevelled : rounded;
         const double distance = random.real(0.05, 3) * (random.integer(0, 1) == 0 ? 1 : -1);
-        const Layer moved = offset(layer, distance, corners);
+        const Layer moved = offset(layer, distance, {.corners = corners});
         const double expected =
             test::winding_area(layer, test::swept(layer, distance, corners), [&](int material, int strips) {
                 return distance > 0 ? material > 0 || strips > 0 : material > 0 && strips == 0;
@@ -353,7 +359,7 @@ TEST(Offset, OfStrutsWithAShortSideAtEachCorner) {
         if (ring_area(layer.contour(0)) < 0) // a hole
             layer = normal_form(layer_of({test::contours(layer).front(), rectangle(0, 0, 10, 10)}));
         const double distance = random.real(0.01, 0.6) * (random.integer(0, 1) == 0 ? 1 : -1);
-        const Layer moved = offset(layer, distance, mitred);
+        const Layer moved = offset(layer, distance, {.corners = mitred});
         const double expected =
             test::winding_area(layer, test::swept(layer, distance, mitred), [&](int material, int strips) {
                 return distance > 0 ? material > 0 || strips > 0 : material > 0 && strips == 0;
@@ -380,27 +386,14 @@ TEST(Offset, GrowsWithItsDistance) {
         const Layer layer = test::random_material(random, round % 2 == 0);
         const OffsetCorners corners = random_corners(random);
         const std::array<double, 5> distances{-1.1, -0.3, 0, 0.2, random.real(0.3, 4)};
-        const std::vector<Layer> moved = offsets(layer, distances, corners);
+        const std::vector<Layer> moved = offsets(layer, distances, {.corners = corners});
         for (std::size_t i = 0; i < moved.size(); ++i) {
-            EXPECT_TRUE(same_contours(moved[i], offset(layer, distances[i], corners)));
+            EXPECT_TRUE(same_contours(moved[i], offset(layer, distances[i], {.corners = corners})));
             if (i > 0 && corners.shape != OffsetCorner::bevel) { // a wider strip has a longer bevel
                 EXPECT_NEAR(excess(moved[i - 1], moved[i]), 0, 1e-5);
             }
         }
     }
-}
-
-TEST(Offset, CountsWhatVanishesByTheFirstOfSeveralDistances) {
-    const Layer layer = normal_form(layer_of({rectangle(0, 0, 4, 4), rectangle(6, 0, 6.5, 4)}));
-    std::uint64_t vanished = 9;
-    static_cast<void>(offsets(layer, std::array{-0.3, -0.1}, mitred, &vanished));
-    EXPECT_EQ(vanished, 1U);
-    static_cast<void>(offsets(layer, std::array{-0.1, -3.0}, mitred, &vanished));
-    EXPECT_EQ(vanished, 0U);
-    static_cast<void>(offsets(layer, std::array{0.0, -3.0}, mitred, &vanished));
-    EXPECT_EQ(vanished, 0U);
-    static_cast<void>(offsets(Layer{}, std::array{-3.0}, mitred, &vanished));
-    EXPECT_EQ(vanished, 0U);
 }
 
 TEST(Offset, ShrunkThenGrownIsContained) {
@@ -411,10 +404,12 @@ TEST(Offset, ShrunkThenGrownIsContained) {
         const double distance = random.real(0.1, 2);
         const OffsetCorners fine{.shape = OffsetCorner::round, .arc_tolerance_mm = 1e-3};
         const double perimeter = measure(layer).perimeter_mm;
-        EXPECT_NEAR(excess(offset(offset(layer, -distance, fine), distance, fine), layer), 0,
-                    1e-3 * perimeter);
-        EXPECT_NEAR(excess(layer, offset(offset(layer, distance, fine), -distance, fine)), 0,
-                    1e-3 * perimeter);
+        EXPECT_NEAR(
+            excess(offset(offset(layer, -distance, {.corners = fine}), distance, {.corners = fine}), layer),
+            0, 1e-3 * perimeter);
+        EXPECT_NEAR(
+            excess(layer, offset(offset(layer, distance, {.corners = fine}), -distance, {.corners = fine})),
+            0, 1e-3 * perimeter);
     }
 }
 
@@ -426,7 +421,7 @@ TEST(Offset, WithRoundCornersHasItsContoursAtTheDistance) {
         if (test::has_walls(layer))
             continue;
         const double distance = random.real(0.1, 2) * (round % 3 == 0 ? 1 : -1);
-        for (const Point2& p : offset(layer, distance, rounded).points)
+        for (const Point2& p : offset(layer, distance, {.corners = rounded}).points)
             ASSERT_NEAR(distance_to(layer, p), std::abs(distance), 0.0011);
         for (const Point2& p : offset(layer, distance).points) { // mitred: up to twice that
             ASSERT_GE(distance_to(layer, p), std::abs(distance) - 1e-6);
@@ -450,7 +445,7 @@ TEST(Offset, TakesAnyLayerThatFillTakes) {
         for (const double distance : {-0.3, 0.4, 1.0, 1e-9, -1e-9, 1e6}) {
             const OffsetCorners corners = random_corners(random);
             const bool many_chords = corners.shape == OffsetCorner::round && distance == 1e6;
-            const Layer moved = offset(layer, many_chords ? 1e3 : distance, corners);
+            const Layer moved = offset(layer, many_chords ? 1e3 : distance, {.corners = corners});
             ASSERT_TRUE(in_normal_form(moved));
             ASSERT_EQ(find_crossings(moved).count, 0U);
             ASSERT_FALSE(fill(moved, FillRule::positive).changed());
@@ -473,7 +468,7 @@ std::vector<Contour> petals(int count) {
 TEST(Offset, OfThousandsOfRingsThatMeetInAPointTakesNoMemoryForTheirCrossings) {
     // Their moved rings cross six million times.
     std::vector<Contour> rings = petals(1600);
-    const Layer grown = offset(layer_of(rings), 0.1, mitred, nullptr, {.memory = 16 << 20});
+    const Layer grown = offset(layer_of(rings), 0.1, {.corners = mitred, .limits = {.memory = 16 << 20}});
     EXPECT_EQ(grown.rings, 1U);
     EXPECT_FALSE(fill(grown, FillRule::positive).changed());
     const Layer petal = layer_of({rings.front()});

@@ -54,8 +54,8 @@ double distance_to(const Layer& outline, const Point2& p) {
 }
 
 double marked(const ScanVectors& vectors, std::size_t exposure) {
-    std::optional<Point2> beam;
-    return measure_vectors(vectors.polylines[exposure], vectors.hatches[exposure].span(), {}, beam).marked_mm;
+    return measure_vectors(vectors.polylines[exposure], vectors.hatches[exposure].span(), {})
+        .figures.marked_mm;
 }
 
 ScanVectors vectors_of(const ScanLayer& layer, const ScanStrategy& strategy = {},

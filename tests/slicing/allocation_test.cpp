@@ -96,7 +96,7 @@ TEST(Allocation, ThatFailsAtAnyMomentOfSlicingIsAnError) {
             const Mesh mesh = bodies(indexed);
             LayerStack stack;
             const std::int64_t failures =
-                failures_of([&] { stack = slice(mesh, plan, {.threads = threads}); });
+                failures_of([&] { stack = slice(mesh, plan, {.execution = {.threads = threads}}); });
             EXPECT_GT(failures, 50);
             test::expect_same(stack, slice(mesh, plan));
         }
@@ -106,13 +106,13 @@ TEST(Allocation, ThatFailsAtAnyMomentOfSlicingIsAnError) {
 TEST(Allocation, ThatFailsWhileLayersAreLetGoOfIsAnError) {
     const Mesh mesh = bodies(false);
     const Plan plan = test::even_planes(24);
-    const LayerSink sink = [](Layer&& layer) {
+    const LayerSink sink{.prepare = [](Layer&& layer) {
         const Layer here = std::move(layer);
-        return std::function<void()>();
-    };
+        return Commit();
+    }};
     for (const unsigned threads : {1U, 3U})
         EXPECT_GT(failures_of([&] {
-                      slice_to(sink, mesh, plan, {.threads = threads}, nullptr, engines().front(), 1);
+                      slice_to(sink, mesh, plan, {.execution = {.threads = threads}, .points_in_flight = 1});
                   }),
                   50);
 }

@@ -44,7 +44,7 @@ TEST(Engines, GiveTheSameLayersWhereverAPartStands) {
                 const LayerStack expected = slice(mesh, plan.plan);
                 for (const Engine& one : engines()) {
                     SCOPED_TRACE(std::string(solid.name) + ", " + placement.name + ", planes " + plan.name);
-                    test::expect_same_where_it_can(one.name, slice(mesh, plan.plan, {}, nullptr, one),
+                    test::expect_same_where_it_can(one.name, slice(mesh, plan.plan, {.engine = one}),
                                                    expected);
                 }
             }

@@ -16,15 +16,6 @@
 
 namespace lamella::test {
 
-/// Returns a sink that keeps its layers in order.
-inline LayerSink keeping(LayerStack& stack) {
-    return [&stack](Layer&& layer) {
-        return [&stack, kept = std::move(layer)]() mutable {
-            stack.push_back(std::move(kept));
-        };
-    };
-}
-
 /// Checks the properties of every layer that an engine makes.
 inline void expect_sound(const Layer& layer) {
     ASSERT_FALSE(layer.offsets.empty());

@@ -57,7 +57,7 @@ TEST(Layering, CutsEachWayWhereItsPlanDoes) {
         expect_same_plan(
             plan_of({.cut = HeightRanges{.ranges = {{0, 5, 0.25}}, .layer_height = 1}, .at = at, .only = {}},
                     ten_high, nobody_asks),
-            plan_by_ranges(0, 10, {{0, 5, 0.25}}, 1, at));
+            plan_by_ranges(0, 10, {.ranges = {{0, 5, 0.25}}, .layer_height = 1}, at));
         const AdaptiveLayers adaptive{.min_height = 0.2, .max_height = 0.7};
         expect_same_plan(plan_of({.cut = adaptive, .at = at, .only = {}}, ten_high, ten_high_mesh),
                          plan_adaptive(ten_high_mesh(), adaptive, at));

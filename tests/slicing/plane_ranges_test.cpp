@@ -45,8 +45,10 @@ Triangles litter(std::size_t count) {
 Plan crossing_plan(PlaneRule rule) {
     Plan plan;
     plan.rule = rule;
-    for (int i = 0; i < 40; ++i)
-        plan.layers.push_back({static_cast<std::uint64_t>(i), i * 0.125 - 2.5, 0, 0});
+    for (int i = 0; i < 40; ++i) {
+        const double z = i * 0.125 - 2.5;
+        plan.layers.push_back({static_cast<std::uint64_t>(i), z, z, z});
+    }
     return plan;
 }
 
@@ -255,8 +257,8 @@ void expect_same_layers(const Triangles& triangles, const Transform& placement) 
             LayerStack stack;
             for (std::uint32_t s = 0; s < n; ++s) {
                 EXPECT_EQ(parts[s].size(), survey.triangles(ranges[s]));
-                slice_to(test::keeping(stack), TriangleSoup(parts[s]).transformed(placement),
-                         part_of(plan, ranges[s]), {.threads = 2});
+                slice_to(appending_to(stack), TriangleSoup(parts[s]).transformed(placement),
+                         part_of(plan, ranges[s]), {.execution = {.threads = 2}});
             }
             expect_same(stack, whole);
         }

@@ -116,6 +116,15 @@ TEST(Ranks, RefuseWhatIsNoPlan) {
     expect_refused("layer 2 of the plan is cut at z = 2 mm, which is not above the one before it, 2",
                    [](Plan& plan) { plan.layers[2].z = 2; });
     expect_refused("layer 1 of the plan", [](Plan& plan) { std::swap(plan.layers[0], plan.layers[1]); });
+    expect_refused(
+        "layer 1 of the plan is cut at z = 2 mm, which is not between its bottom, 2.5, and its top, 3",
+        [](Plan& plan) {
+            plan.layers[1].bottom = 2.5;
+            plan.layers[1].top = 3;
+        });
+    expect_refused(
+        "layer 0 of the plan is cut at z = 1 mm, which is not between its bottom, 0, and its top, 0",
+        [](Plan& plan) { plan.layers[0] = {.index = 0, .z = 1}; });
     expect_refused("layer 1 of the plan: found a height of nan mm",
                    [](Plan& plan) { plan.layers[1].z = std::nan(""); });
     expect_refused("layer 2 of the plan: found a height of inf mm",

@@ -74,7 +74,7 @@ TEST(Slice, CutsFacesThatAreLevelButForRoundingAsFacesOnThePlaneWhereItSnaps) {
         EXPECT_GT(differing, 3U);
         plan.snap_mm = 1e-5;
         for (const Engine& engine : engines()) {
-            const LayerStack layers = slice(bent, plan, {}, nullptr, engine);
+            const LayerStack layers = slice(bent, plan, {.engine = engine});
             const std::vector<double> areas = section_areas(bent, plan);
             ASSERT_EQ(layers.size(), expected.size());
             for (std::size_t i = 0; i < layers.size(); ++i) {
@@ -103,8 +103,9 @@ TEST(Slice, ClosesAllContoursOfClosedMeshesWhateverTheSnapDistance) {
         for (const double snap : {1e-9, 1e-3, 0.05, 0.2, 3.0}) {
             Plan plan = even_planes(-10, 10, 100, at); // 0.2 apart
             plan.snap_mm = snap;
-            const LayerStack layers = slice(drum, plan, {.threads = 3});
-            expect_same(slice(test::soup(test::rugged_drum(200, 7)), plan, {.threads = 1}), layers);
+            const LayerStack layers = slice(drum, plan, {.execution = {.threads = 3}});
+            expect_same(slice(test::soup(test::rugged_drum(200, 7)), plan, {.execution = {.threads = 1}}),
+                        layers);
             for (const Layer& layer : layers) {
                 test::expect_sound(layer);
                 EXPECT_EQ(layer.open_chains(), 0U);
@@ -113,7 +114,7 @@ TEST(Slice, ClosesAllContoursOfClosedMeshesWhateverTheSnapDistance) {
             }
             for (const Engine& engine : engines())
                 if (engine.name != "conventional") // which goes by points
-                    expect_same(slice(drum, plan, {}, nullptr, engine), layers);
+                    expect_same(slice(drum, plan, {.engine = engine}), layers);
         }
 }
 
@@ -122,7 +123,7 @@ TEST(Slice, RefusesAPlanThatDoesNotAscend) {
     std::swap(plan.layers[3], plan.layers[4]);
     for (const Engine& engine : engines())
         expect_error(ErrorKind::usage, {"layer 4 of the plan", "must ascend"},
-                     [&] { (void)slice(make_box(1, 1, 1), plan, {}, nullptr, engine); });
+                     [&] { (void)slice(make_box(1, 1, 1), plan, {.engine = engine}); });
     expect_error(ErrorKind::usage, {"must ascend"}, [&] { (void)section_areas(make_box(1, 1, 1), plan); });
 }
 
@@ -130,8 +131,9 @@ TEST(Slice, ReportsWhatItDid) {
     const TriangleSoup soup = body();
     const Plan plan = even_planes(100);
     for (const unsigned threads : {1U, 7U}) {
-        SliceReport report;
-        const LayerStack stack = slice(soup, plan, {.threads = threads}, &report);
+        LayerStack stack;
+        const SliceReport report =
+            slice_to(appending_to(stack), soup, plan, {.execution = {.threads = threads}});
         std::uint64_t contours = 0;
         std::uint64_t chains = 0;
         std::uint64_t points = 0;
@@ -149,24 +151,14 @@ TEST(Slice, ReportsWhatItDid) {
     }
 }
 
-TEST(Slice, LeavesTheReportOfAFailedRunAlone) {
-    SliceReport report;
-    report.layers = 4711;
-    const LayerSink failing = [](Layer&&) -> std::function<void()> {
-        throw std::runtime_error("sink");
-    };
-    EXPECT_THROW(slice_to(failing, body(), even_planes(10), {}, &report), std::runtime_error);
-    EXPECT_EQ(report.layers, 4711U);
-}
-
 TEST(SliceTo, HandsOverTheLayersOfSliceInOrder) {
     const TriangleSoup soup = body();
     const Plan plan = even_planes(300);
     const LayerStack expected = slice(soup, plan);
     for (const unsigned threads : {1U, 2U, 7U}) {
         LayerStack stack;
-        SliceReport report;
-        slice_to(test::keeping(stack), soup, plan, {.threads = threads}, &report);
+        const SliceReport report =
+            slice_to(appending_to(stack), soup, plan, {.execution = {.threads = threads}});
         expect_same(stack, expected);
         EXPECT_EQ(report.layers, 300U);
     }
@@ -175,12 +167,12 @@ TEST(SliceTo, HandsOverTheLayersOfSliceInOrder) {
 TEST(SliceTo, CallsTheSinkOnceForEveryLayerThatHasNoOrderedPartToo) {
     std::mutex mutex;
     std::vector<std::uint64_t> seen;
-    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+    const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
         const std::lock_guard lock(mutex);
         seen.push_back(layer.index);
         return {};
-    };
-    slice_to(sink, body(), even_planes(200), {.threads = 7});
+    }};
+    slice_to(sink, body(), even_planes(200), {.execution = {.threads = 7}});
     std::sort(seen.begin(), seen.end());
     ASSERT_EQ(seen.size(), 200U);
     for (std::uint64_t i = 0; i < 200; ++i)
@@ -192,7 +184,7 @@ TEST(SliceTo, CallsTheSinkOnceForEveryLayerThatHasNoOrderedPartToo) {
 class InFlight {
   public:
     [[nodiscard]] LayerSink sink() {
-        return [this](Layer&& layer) -> std::function<void()> {
+        return {.prepare = [this](Layer&& layer) -> Commit {
             const std::lock_guard lock(mutex_);
             now_ += layer.points.size();
             most_ = std::max(most_, now_);
@@ -202,7 +194,7 @@ class InFlight {
                 const std::lock_guard inner(mutex_);
                 now_ -= kept.points.size();
             };
-        };
+        }};
     }
     [[nodiscard]] std::uint64_t most_points() const { return most_; }
     [[nodiscard]] std::uint64_t points_left() const { return now_; }
@@ -221,17 +213,17 @@ class InFlight {
 TEST(SliceTo, BoundsThePointsInFlight) {
     const TriangleSoup soup = body();
     const Plan plan = even_planes(test::slowed ? 100 : 2000);
-    SliceReport whole;
+    std::uint64_t all = 0;
     std::uint64_t largest = 0;
-    for (const Layer& layer : slice(soup, plan, {}, &whole))
+    for (const Layer& layer : slice(soup, plan)) {
+        all += layer.points.size();
         largest = std::max<std::uint64_t>(largest, layer.points.size());
+    }
     for (const unsigned threads : {1U, 2U, 7U}) {
-        for (const std::uint64_t bound : {std::uint64_t{1}, whole.points / 100, whole.points / 10}) {
+        for (const std::uint64_t bound : {std::uint64_t{1}, all / 100, all / 10}) {
             InFlight flight;
-            const LayerSink sink = flight.sink();
-            SliceReport report;
-            const Execution execution{.threads = threads};
-            engines().front().slice({soup, plan, sink, execution, bound, report});
+            slice_to(flight.sink(), soup, plan,
+                     {.execution = {.threads = threads}, .points_in_flight = bound});
             EXPECT_LE(flight.most_points(), bound + 2 * threads * largest) << threads << " threads";
             EXPECT_EQ(flight.points_left(), 0U);
             EXPECT_EQ(flight.layers_left(), 0U) << "someone still holds a layer";
@@ -246,10 +238,8 @@ TEST(SliceTo, GivesTheSameLayersHoweverFewPointsMayBeInFlight) {
     for (const std::uint64_t bound : {1U, 20000U, 100000U}) {
         for (const unsigned threads : {1U, 3U}) {
             LayerStack stack;
-            const LayerSink sink = test::keeping(stack);
-            SliceReport report;
-            const Execution execution{.threads = threads};
-            engines().front().slice({soup, plan, sink, execution, bound, report});
+            slice_to(appending_to(stack), soup, plan,
+                     {.execution = {.threads = threads}, .points_in_flight = bound});
             expect_same(stack, expected);
         }
     }
@@ -261,7 +251,7 @@ TEST(SliceTo, PassesOnWhatTheSinkThrows) {
     for (const unsigned threads : {1U, 2U, 7U}) {
         std::vector<std::uint64_t> written;
         const auto throws_in = [&](bool ordered) -> LayerSink {
-            return [&written, ordered](Layer&& layer) -> std::function<void()> {
+            return {.prepare = [&written, ordered](Layer&& layer) -> Commit {
                 if (!ordered && layer.index == 250)
                     throw std::runtime_error("disk full");
                 return [&written, ordered, index = layer.index] {
@@ -269,11 +259,12 @@ TEST(SliceTo, PassesOnWhatTheSinkThrows) {
                         throw std::runtime_error("disk full");
                     written.push_back(index);
                 };
-            };
+            }};
         };
         for (const bool ordered : {false, true}) {
             written.clear();
-            EXPECT_THROW(slice_to(throws_in(ordered), soup, plan, {.threads = threads}), std::runtime_error);
+            EXPECT_THROW(slice_to(throws_in(ordered), soup, plan, {.execution = {.threads = threads}}),
+                         std::runtime_error);
             EXPECT_LE(written.size(), 250U) << "nothing may be written after the gap";
             for (std::size_t i = 0; i < written.size(); ++i)
                 EXPECT_EQ(written[i], i);
@@ -289,7 +280,7 @@ TEST(Slice, CountsProgressUpToTheWholeInBothStages) {
         const Execution execution{.threads = threads, .progress = [&](const Progress& p) {
                                       seen.push_back(p);
                                   }};
-        (void)slice(soup, plan, execution);
+        (void)slice(soup, plan, {.execution = execution});
         ASSERT_GE(seen.size(), 4U);
         EXPECT_LE(seen.size(), 220U);
         std::size_t i = 0;
@@ -316,9 +307,10 @@ TEST(Slice, EndsWhenItWasCancelledBeforeItBegan) {
     stop.request();
     for (const unsigned threads : {1U, 2U, 7U}) {
         const Execution execution{.threads = threads, .cancel = &stop};
-        expect_error(ErrorKind::cancelled, {}, [&] { (void)slice(body(), even_planes(10), execution); });
         expect_error(ErrorKind::cancelled, {},
-                     [&] { (void)slice(TriangleSoup(), even_planes(10), execution); });
+                     [&] { (void)slice(body(), even_planes(10), {.execution = execution}); });
+        expect_error(ErrorKind::cancelled, {},
+                     [&] { (void)slice(TriangleSoup(), even_planes(10), {.execution = execution}); });
     }
 }
 
@@ -334,16 +326,18 @@ TEST(Slice, EndsWhenItIsCancelledOnTheWay) {
                                                   stop.request();
                                           },
                                       .cancel = &stop};
-            expect_error(ErrorKind::cancelled, {}, [&] { (void)slice(soup, even_planes(300), execution); });
+            expect_error(ErrorKind::cancelled, {},
+                         [&] { (void)slice(soup, even_planes(300), {.execution = execution}); });
         }
         CancelFlag stop;
-        const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+        const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
             if (layer.index == 100)
                 stop.request();
             return {};
-        };
-        expect_error(ErrorKind::cancelled, {},
-                     [&] { slice_to(sink, soup, even_planes(2000), {.threads = threads, .cancel = &stop}); });
+        }};
+        expect_error(ErrorKind::cancelled, {}, [&] {
+            slice_to(sink, soup, even_planes(2000), {.execution = {.threads = threads, .cancel = &stop}});
+        });
     }
 }
 
@@ -352,14 +346,15 @@ TEST(Slice, HandsOverNoMoreThanOneLayerAThreadAfterItIsCancelled) {
     for (const unsigned threads : {1U, 2U, 7U}) {
         CancelFlag stop;
         std::atomic<unsigned> after{0};
-        const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+        const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
             after += stop.requested() ? 1 : 0;
             if (layer.index % 100 == 50)
                 stop.request();
             return {};
-        };
-        expect_error(ErrorKind::cancelled, {},
-                     [&] { slice_to(sink, soup, even_planes(2000), {.threads = threads, .cancel = &stop}); });
+        }};
+        expect_error(ErrorKind::cancelled, {}, [&] {
+            slice_to(sink, soup, even_planes(2000), {.execution = {.threads = threads, .cancel = &stop}});
+        });
         EXPECT_LE(after, threads);
     }
 }
@@ -415,7 +410,7 @@ TEST(Slice, WritesNextToNothingAfterItIsCancelled) {
                 at_wish = resident_bytes();
             });
             try {
-                (void)slice(soup, plan, {.threads = threads, .cancel = &stop});
+                (void)slice(soup, plan, {.execution = {.threads = threads, .cancel = &stop}});
             } catch (const Error& error) {
                 ASSERT_EQ(error.kind(), ErrorKind::cancelled);
                 stopped = true;
@@ -438,7 +433,8 @@ TEST(Slice, PassesOnWhatTheProgressFunctionThrows) {
                                               if (p.stage == stage && p.done >= (at_end ? p.total : 0))
                                                   throw std::runtime_error("enough");
                                           }};
-                EXPECT_THROW((void)slice(soup, even_planes(300), execution), std::runtime_error);
+                EXPECT_THROW((void)slice(soup, even_planes(300), {.execution = execution}),
+                             std::runtime_error);
             }
         }
     }

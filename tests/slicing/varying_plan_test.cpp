@@ -33,7 +33,7 @@ TEST(PlanByRanges, WithoutRangesIsUniform) {
     for (const SliceAt at : {SliceAt::bottom, SliceAt::middle, SliceAt::top})
         for (const double height : {0.1, 0.3, 1.0}) {
             const Plan uniform = plan_uniform(2, 5, {.layer_height = height}, at);
-            const Plan ranged = plan_by_ranges(2, 5, {}, height, at);
+            const Plan ranged = plan_by_ranges(2, 5, {.layer_height = height}, at);
             ASSERT_EQ(ranged.layers.size(), uniform.layers.size()) << height;
             EXPECT_EQ(ranged.rule, uniform.rule);
             for (std::size_t i = 0; i < uniform.layers.size(); ++i)
@@ -42,7 +42,7 @@ TEST(PlanByRanges, WithoutRangesIsUniform) {
 }
 
 TEST(PlanByRanges, EveryLayerHasTheHeightOfTheRangeThatItsBottomLiesIn) {
-    const Plan plan = plan_by_ranges(10, 40, {{0, 5, 0.1}, {5, 20, 0.2}}, 0.5);
+    const Plan plan = plan_by_ranges(10, 40, {.ranges = {{0, 5, 0.1}, {5, 20, 0.2}}, .layer_height = 0.5});
     expect_a_stack(plan, 10);
     ASSERT_EQ(plan.layers.size(), 50 + 75 + 20U);
     for (const PlannedLayer& layer : plan.layers) {
@@ -54,7 +54,7 @@ TEST(PlanByRanges, EveryLayerHasTheHeightOfTheRangeThatItsBottomLiesIn) {
     EXPECT_NEAR(plan.layers[50].bottom, 15, 1e-12);
     EXPECT_NEAR(plan.layers.back().top, 40, 1e-9);
     // No layer is cut short where a range ends, and between ranges the layer height holds.
-    const Plan odd = plan_by_ranges(0, 3, {{0, 1, 0.3}, {2, 3, 0.1}}, 0.5);
+    const Plan odd = plan_by_ranges(0, 3, {.ranges = {{0, 1, 0.3}, {2, 3, 0.1}}, .layer_height = 0.5});
     expect_a_stack(odd, 0);
     EXPECT_NEAR(odd.layers[3].top, 1.2, 1e-12);
     EXPECT_NEAR(odd.layers[4].top, 1.7, 1e-12);
@@ -72,28 +72,30 @@ TEST(PlanByRanges, RefusesRangesThatMakeNoSense) {
                                  {{0, 5, 0}},
                                  {{0, 5, -1}},
                                  {{0, std::nan(""), 0.1}}})
-        EXPECT_THROW((void)plan_by_ranges(0, 10, ranges, 0.2), Error);
-    EXPECT_THROW((void)plan_by_ranges(0, 10, {}, 0), Error);
-    EXPECT_THROW((void)plan_by_ranges(0, 0, {}, 0.1), Error);
-    EXPECT_THROW((void)plan_by_ranges(0, 1e9, {{0, 1, 1e-3}}, 0.1), Error);
-    EXPECT_THROW((void)plan_by_ranges(0, 1, {}, 5, SliceAt::top), Error);
+        EXPECT_THROW((void)plan_by_ranges(0, 10, {.ranges = ranges, .layer_height = 0.2}), Error);
+    EXPECT_THROW((void)plan_by_ranges(0, 10, {.layer_height = 0}), Error);
+    EXPECT_THROW((void)plan_by_ranges(0, 0, {.layer_height = 0.1}), Error);
+    EXPECT_THROW((void)plan_by_ranges(0, 1e9, {.ranges = {{0, 1, 1e-3}}, .layer_height = 0.1}), Error);
+    EXPECT_THROW((void)plan_by_ranges(0, 1, {.layer_height = 5}, SliceAt::top), Error);
 }
 
 TEST(PlanByRanges, AFineRangeCountsOnlyAsFarAsItReachesIntoThePart) {
-    EXPECT_EQ(plan_by_ranges(0, 1000, {{0, 0.001, 1e-7}}, 0.1).layers.size(), 20'000U);
-    EXPECT_EQ(plan_by_ranges(0, 10, {{500, 600, 1e-9}}, 0.1).layers.size(), 100U);
+    EXPECT_EQ(plan_by_ranges(0, 1000, {.ranges = {{0, 0.001, 1e-7}}, .layer_height = 0.1}).layers.size(),
+              20'000U);
+    EXPECT_EQ(plan_by_ranges(0, 10, {.ranges = {{500, 600, 1e-9}}, .layer_height = 0.1}).layers.size(), 100U);
     test::expect_error(ErrorKind::usage, {"1e-09 mm", "5e+09 layers", "10 mm high"}, [] {
-        (void)plan_by_ranges(0, 10, {{5, 600, 1e-9}}, 0.1);
+        (void)plan_by_ranges(0, 10, {.ranges = {{5, 600, 1e-9}}, .layer_height = 0.1});
     });
 }
 
 TEST(PlanByRanges, OnlyTheLastCutIsMovedToTheTopFace) {
     // After a layer of 1 mm just half a thousandth is left, where layers are finer.
-    const Plan plan = plan_by_ranges(0, 1.0005, {{1, 2, 0.0003}}, 1, SliceAt::top);
+    const Plan plan =
+        plan_by_ranges(0, 1.0005, {.ranges = {{1, 2, 0.0003}}, .layer_height = 1}, SliceAt::top);
     ASSERT_EQ(plan.layers.size(), 2U);
     EXPECT_EQ(plan.layers[0].z, 1);
     EXPECT_EQ(plan.layers[1].z, 1.0003);
-    const Plan uniform = plan_by_ranges(0, 1.0005, {}, 1, SliceAt::top);
+    const Plan uniform = plan_by_ranges(0, 1.0005, {.layer_height = 1}, SliceAt::top);
     ASSERT_EQ(uniform.layers.size(), 1U);
     EXPECT_EQ(uniform.layers[0].z, 1.0005);
     EXPECT_EQ(uniform.layers[0].top, 1.0005);
@@ -103,7 +105,7 @@ TEST(PlanByRanges, OfManyRangesEachIsFound) {
     std::vector<HeightRange> ranges;
     for (int i = 0; i < 1000; ++i)
         ranges.push_back({2.0 * i, 2.0 * i + 1, i % 2 == 0 ? 0.5 : 0.25});
-    const Plan plan = plan_by_ranges(7, 2007, ranges, 1);
+    const Plan plan = plan_by_ranges(7, 2007, {.ranges = ranges, .layer_height = 1});
     EXPECT_EQ(plan.layers.size(), 500 * (2 + 1 + 4 + 1));
     for (const PlannedLayer& layer : plan.layers) {
         const double above = layer.bottom - 7;
@@ -113,10 +115,10 @@ TEST(PlanByRanges, OfManyRangesEachIsFound) {
 }
 
 TEST(PlanByRanges, NamesAHeightThatIsTooSmallForTheCoordinates) {
-    test::expect_error(ErrorKind::usage, {"a layer height of 1e-09 mm is too small", "around 1000000000"},
-                       [] {
-                           (void)plan_by_ranges(1e9, 1e9 + 1e-6, {{0, 1e-7, 1e-9}}, 1e-8);
-                       });
+    test::expect_error(
+        ErrorKind::usage, {"a layer height of 1e-09 mm is too small", "around 1000000000"}, [] {
+            (void)plan_by_ranges(1e9, 1e9 + 1e-6, {.ranges = {{0, 1e-7, 1e-9}}, .layer_height = 1e-8});
+        });
 }
 
 /// The largest |n.z| of the triangles that reach into a layer.

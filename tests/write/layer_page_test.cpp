@@ -362,9 +362,13 @@ TEST(LayerPage, HoldsScanVectorsAsTheyAreExecuted) {
     for (std::size_t i = 0; i < 3; ++i) {
         ScanFigures expected;
         std::optional<Point2> beam;
-        for (std::size_t part = 0; part < 2; ++part)
-            expected += measure_vectors(file.parts[part].layers[i], file.parts[part].hatches_of(i),
-                                        info.parts[part].exposure->parameters, beam);
+        for (std::size_t part = 0; part < 2; ++part) {
+            const MeasuredVectors measured =
+                measure_vectors(file.parts[part].layers[i], file.parts[part].hatches_of(i),
+                                info.parts[part].exposure->parameters, beam);
+            beam = measured.beam;
+            expected += measured.figures;
+        }
         EXPECT_EQ(table["vectors"][i], static_cast<double>(expected.vectors));
         EXPECT_EQ(table["marked_mm"][i], expected.marked_mm);
         EXPECT_EQ(table["jumped_mm"][i], expected.jumped_mm);

@@ -51,10 +51,8 @@ class NotingWriter final : public LayerWriter {
     explicit NotingWriter(std::uint64_t fails_at = ~std::uint64_t{0}) : fails_at_(fails_at) {}
 
     using LayerWriter::prepare;
-    [[nodiscard]] std::function<void()> prepare(const ScanVectors& vectors) override {
-        return prepare(vectors.polylines);
-    }
-    [[nodiscard]] std::function<void()> prepare(std::span<const Layer> parts) override {
+    [[nodiscard]] Commit prepare(const ScanVectors& vectors) override { return prepare(vectors.polylines); }
+    [[nodiscard]] Commit prepare(std::span<const Layer> parts) override {
         ++prepared;
         return [this, index = parts.front().index] {
             if (index == fails_at_)

@@ -29,7 +29,7 @@ TEST(LayerWriter, GivesTheSameBytesWhateverOrderLayersArePreparedIn) {
 
         const auto writer =
             open_layer_writer(folder.file("parallel"), format, info_of(layers), options_for_any());
-        std::vector<std::function<void()>> writes(layers.size());
+        std::vector<Commit> writes(layers.size());
         std::vector<std::thread> threads;
         for (std::size_t t = 0; t < 3; ++t) {
             threads.emplace_back([&, t] {

@@ -38,7 +38,7 @@ const std::string expected = "(header 0:0 1:1 2:2 3:3 4:4 5:5 tail)";
 TEST(SequentialWriter, WritesHeaderLayersAndTailInOrder) {
     const TemporaryFolder folder;
     Sample writer(folder.file("x"), info_of(layers));
-    std::vector<std::function<void()>> prepared(layers.size());
+    std::vector<Commit> prepared(layers.size());
     for (std::size_t i = layers.size(); i-- > 0;) // prepared in any order
         prepared[i] = writer.prepare({&layers[i], 1});
     for (const auto& write : prepared)

@@ -126,7 +126,7 @@ TEST(Sl1, HasTheSameBytesInWhateverOrderLayersAreMade) {
     std::filesystem::create_directory(folder.path() / "other"); // the pictures are named after the file
     const std::string other = (folder.path() / "other" / "a.sl1").string();
     const auto writer = open_layer_writer(other, layer_format("", other), info_of(layers));
-    std::vector<std::function<void()>> ready(layers.size());
+    std::vector<Commit> ready(layers.size());
     for (std::size_t i = layers.size(); i-- > 0;)
         ready[i] = writer->prepare(layers[i]);
     for (const auto& write : ready)

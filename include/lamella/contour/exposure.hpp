@@ -68,7 +68,8 @@ struct ScanVectors {
     void append(ScanVectors other);
 };
 
-/// Throws as `check(const Layer&)` does, and Error{usage} if an end of a hatch line is missing. O(points).
+/// Throws as `check(const Layer&)` does, and Error{usage} if an end of a hatch line is missing, or the hatch
+/// lines of an exposure. O(points).
 void check(const ScanVectors& vectors);
 
 /// Returns a 64-bit hash of the vectors in their order. It is the `stack_hash` of the hashes of the
@@ -108,11 +109,17 @@ struct ScanFigures {
     ScanFigures& operator+=(const ScanFigures& other) noexcept;
 };
 
+struct MeasuredVectors {
+    ScanFigures figures;
+    std::optional<Point2> beam; ///< position of the beam after the last vector
+};
+
 /// Measures vectors executed one after the other with one parameter set: polylines, then hatch lines. `beam`
-/// is the position before the first vector and is set to the position after the last one. A speed of 0 means
-/// that the file does not specify it; such moves take no time. O(vectors).
-[[nodiscard]] ScanFigures measure_vectors(const Layer& polylines, std::span<const Point2> hatches,
-                                          const ParameterSet& parameters, std::optional<Point2>& beam);
+/// is the position before the first vector. A speed of 0 means that the file does not specify it; such moves
+/// take no time. O(vectors).
+[[nodiscard]] MeasuredVectors measure_vectors(const Layer& polylines, std::span<const Point2> hatches,
+                                              const ParameterSet& parameters,
+                                              std::optional<Point2> beam = {});
 
 } // namespace lamella
 LAMELLA_API_END

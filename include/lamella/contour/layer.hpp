@@ -6,10 +6,12 @@
 #include "lamella/core/point.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 LAMELLA_API_BEGIN
@@ -23,6 +25,17 @@ class PointArray {
     explicit PointArray(std::vector<Point2> points);
     PointArray(std::shared_ptr<const void> owner, const Point2* first, std::size_t count)
         : owner_(std::move(owner)), points_(first, count) {}
+    PointArray(const PointArray&) = default;
+    PointArray& operator=(const PointArray&) = default;
+    /// An array that was moved from is empty.
+    PointArray(PointArray&& other) noexcept
+        : owner_(std::move(other.owner_)), points_(std::exchange(other.points_, {})) {}
+    PointArray& operator=(PointArray&& other) noexcept {
+        owner_ = std::move(other.owner_);
+        points_ = std::exchange(other.points_, {});
+        return *this;
+    }
+    ~PointArray() = default;
 
     [[nodiscard]] std::span<const Point2> span() const noexcept { return points_; }
     [[nodiscard]] const Point2* data() const noexcept { return points_.data(); }
@@ -49,9 +62,10 @@ class PointArray {
 /// A layer without contours has offsets == {0}.
 ///
 /// Material lies to the left of the direction of a contour: outer rings run counter-clockwise, holes
-/// clockwise. Coordinates are finite (see `check`), and zero is +0 (-0 would hash differently).
+/// clockwise. Coordinates are finite, and zero is +0 (-0 would hash differently).
 ///
-/// The members may be filled directly. Layers may then share one allocation of points.
+/// The members may be filled directly; `check` reports what does not fit together. Layers may then share one
+/// allocation of points.
 struct Layer {
     std::uint64_t index = 0; ///< position in the whole plan, even if only a part of it was sliced
     double z = 0;            ///< height of the plane
@@ -69,12 +83,15 @@ struct Layer {
     [[nodiscard]] bool closed(std::size_t i) const noexcept { return i < rings; }
     [[nodiscard]] double thickness() const noexcept { return top - bottom; }
     [[nodiscard]] std::span<const Point2> contour(std::size_t i) const noexcept {
+        assert(i < contours());
         return points.span().subspan(offsets[i], offsets[i + 1] - offsets[i]);
     }
 };
 
-/// Throws Error{usage} that names the layer and the contour if a coordinate or height is NaN, infinite, or so
-/// large that sums overflow. Writers of slice files require a layer that passes this check. O(points).
+/// Throws Error{usage} that names the layer if `offsets` and `rings` do not divide its points into contours,
+/// and that names the contour, too, if a coordinate or height is NaN, infinite, or so large that sums
+/// overflow. All other functions of this library require a layer that passes this check; writers of slice
+/// files run it. O(points).
 void check(const Layer& layer);
 
 /// Layers in ascending z.

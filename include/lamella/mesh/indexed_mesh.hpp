@@ -43,8 +43,8 @@ struct IndexedMesh {
 [[nodiscard]] IndexedMesh weld(IndexedMesh mesh, const Execution& execution = {});
 
 /// Throws Error{input} that names the first triangle with an index out of range, or the first vertex that is
-/// not finite or has a coordinate beyond 1e100 mm, for which sums overflow. All other functions of this
-/// library require a mesh that passes this check.
+/// not finite or has a coordinate beyond 1e100 mm, for which sums overflow. All functions that follow indices
+/// throw these errors, except `corners`, which requires a mesh that passes this check.
 void check(const IndexedMesh& mesh);
 
 /// Drops vertices that no triangle uses; the others keep their order. Works in place. Throws

@@ -15,6 +15,12 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
+struct MergeOptions {
+    std::string_view format = {}; ///< name of the output format; if "", the extension selects the format
+    LayerWriteOptions writing = {};
+    LayerReadOptions reading = {};
+};
+
 struct MergeResult {
     std::string format; ///< of the files that were read
     std::uint64_t layers = 0;
@@ -28,11 +34,10 @@ struct MergeResult {
 };
 
 /// Merges slice files of one format with adjoining layers, such as the shards of one job, in any order. If
-/// input and output have the format Common Layer Interface, layers are copied unchanged, and `options` have
-/// no effect. The result is then, byte for byte, the file that a job without shards writes. Layers of other
-/// formats are read and rewritten. One file at a time is held in memory.
+/// input and output have the format Common Layer Interface, layers are copied unchanged, and
+/// `options.writing` has no effect. The result is then, byte for byte, the file that a job without shards
+/// writes. Layers of other formats are read and rewritten. One file at a time is held in memory.
 ///
-/// `format` is the name of the output format; if it is "", the extension of `output` selects the format.
 /// Throws
 ///
 /// - Error{input} that names two files if they differ in the parameters of a part, in units or header, or in
@@ -43,8 +48,7 @@ struct MergeResult {
 ///   adjoin the layers of the inputs, because `output` then counts as an input;
 /// - the errors of read_layers and of the writer.
 MergeResult merge_layer_files(std::span<const std::string> paths, const std::string& output,
-                              std::string_view format = {}, const LayerWriteOptions& options = {},
-                              const LayerReadOptions& reading = {}, const Execution& execution = {});
+                              const MergeOptions& options = {}, const Execution& execution = {});
 
 } // namespace lamella
 LAMELLA_API_END

@@ -101,11 +101,11 @@ struct Plate {
 void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uint64_t max_memory,
                   std::uint64_t held = 0);
 
-/// Slices all parts together, and subtracts negative volumes, as `slice` and `slice_to` do for a mesh.
-[[nodiscard]] LayerStack slice(const Plate& plate, const Plan& plan, const Execution& execution = {},
-                               const Engine& engine = engines().front());
-void slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan, const Execution& execution = {},
-              const Engine& engine = engines().front());
+/// Slices all parts together, and subtracts negative volumes, as `slice` and `slice_to` do for a mesh. A
+/// visitor receives the meshes of all shapes.
+[[nodiscard]] LayerStack slice(const Plate& plate, const Plan& plan, const SliceOptions& options = {});
+SliceReport slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan,
+                     const SliceOptions& options = {});
 
 /// Throws Error{usage} that names the first part that is not inside the box from (0, 0, 0) to `size`.
 void check_build_volume(const Plate& plate, const Point3& size);

@@ -32,10 +32,15 @@ struct MeshRepairs {
     std::optional<OrientedMesh> oriented;
 };
 
+struct RepairedMesh {
+    Mesh mesh;
+    MeshRepairs repairs;
+};
+
 /// Returns the mesh, welded exactly, after the policies that change meshes: first the tolerance, then
 /// duplicates, then orientation. Returns it unchanged if there are none. Throws the errors of the policies.
-[[nodiscard]] Mesh repaired(const Mesh& mesh, const RepairPolicies& policies, MeshRepairs& repairs,
-                            const Execution& execution = {});
+[[nodiscard]] RepairedMesh repaired(const Mesh& mesh, const RepairPolicies& policies,
+                                    const Execution& execution = {});
 
 } // namespace lamella
 LAMELLA_API_END

@@ -52,29 +52,41 @@ struct LayerChanges {
 /// Throws Error{usage} for invalid parameters, as the functions of the steps do.
 void check_steps(const LayerSteps& steps);
 
-/// Applies the steps, and adds the changes to `changes`. A layer that no step changes is returned bit for
-/// bit. The result is in normal form if the layer was. Throws the errors of the steps.
-[[nodiscard]] Layer take_steps(const LayerSteps& steps, Layer layer, LayerChanges& changes,
-                               const LayerLimits& limits = {});
+struct ChangedLayer {
+    Layer layer;
+    LayerChanges changes;
+};
 
-/// Applies the steps to the layers of all parts on one plane. All changes on a plane count as one changed
-/// layer. `names` are the names of the parts for error messages, or empty. Throws the errors of the steps.
-[[nodiscard]] std::vector<Layer> take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
-                                                     LayerChanges& changes, const LayerLimits& limits = {},
-                                                     std::span<const std::string> names = {});
+/// Applies the steps. A layer that no step changes is returned bit for bit. The result is in normal form if
+/// the layer was. Throws the errors of the steps.
+[[nodiscard]] ChangedLayer take_steps(const LayerSteps& steps, Layer layer, const LayerLimits& limits = {});
+
+struct ChangedPlane {
+    std::vector<Layer> parts;
+    LayerChanges changes; ///< all changes on the plane count as one changed layer
+};
+
+/// Applies the steps to the layers of all parts on one plane. `names` are the names of the parts for error
+/// messages, or empty. Throws the errors of the steps.
+[[nodiscard]] ChangedPlane take_steps_on_plane(const LayerSteps& steps, std::span<const Layer> parts,
+                                               const LayerLimits& limits = {},
+                                               std::span<const std::string> names = {});
+
+struct ChangedStacks {
+    std::vector<LayerStack> parts;
+    std::vector<LayerChanges> planes; ///< changes of each plane
+};
+
+struct StackOptions {
+    Execution execution = {};
+    std::uint64_t max_memory = 0;            ///< see layer_limits
+    std::span<const std::string> names = {}; ///< of the parts, for error messages; or empty
+};
 
 /// Applies the steps to parts on the same planes, in parallel. Each part must have as many layers as the
-/// first. `planes` receives the changes of every plane. `max_memory`: see layer_limits. Throws the errors of
-/// the steps, and Error{cancelled}.
-[[nodiscard]] std::vector<LayerStack> take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
-                                                 std::vector<LayerChanges>& planes,
-                                                 const Execution& execution = {},
-                                                 std::uint64_t max_memory = 0,
-                                                 std::span<const std::string> names = {});
-
-/// Applies the steps to one part; `changes` receives the changes of all layers together.
-[[nodiscard]] LayerStack take_steps(const LayerSteps& steps, LayerStack layers, LayerChanges& changes,
-                                    const Execution& execution = {});
+/// first. Throws the errors of the steps, and Error{cancelled}.
+[[nodiscard]] ChangedStacks take_steps(const LayerSteps& steps, std::vector<LayerStack> parts,
+                                       const StackOptions& options = {});
 
 } // namespace lamella
 LAMELLA_API_END

@@ -43,34 +43,45 @@ struct OffsetCorners {
     friend bool operator==(const OffsetCorners&, const OffsetCorners&) = default;
 };
 
+struct OffsetOptions {
+    OffsetCorners corners = {};
+    LayerLimits limits = {};
+};
+
 /// Returns the layer with its material grown by `distance` mm on all sides, or shrunk if `distance` is
 /// negative. If it grows, outer rings move outwards, holes get smaller, and overlapping material is united.
 /// Material is where the winding number is above 0.
 ///
-/// Each edge is moved parallel to itself. Edges that separate are joined according to `corners`. By default,
-/// edges that separate are extended to their intersection, so that parts keep their corners; a corner that
-/// would move by more than twice the distance (sharper than 60 degrees) is cut off. Edges that run into one
-/// another end at their intersection. Growing adds to the material a strip along each edge, and a wedge at
-/// each corner where edges separate; shrinking removes them. The result is exact, with two exceptions. New
-/// points are rounded to doubles. Rings that touch or cross themselves or others, before or after the move,
-/// and rings whose collinear points are removed, may have errors of a few units of the grid to which `fill`
-/// rounds.
+/// Each edge is moved parallel to itself. Edges that separate are joined according to `options.corners`. By
+/// default, edges that separate are extended to their intersection, so that parts keep their corners; a
+/// corner that would move by more than twice the distance (sharper than 60 degrees) is cut off. Edges that
+/// run into one another end at their intersection. Growing adds to the material a strip along each edge, and
+/// a wedge at each corner where edges separate; shrinking removes them. The result is exact, with two
+/// exceptions. New points are rounded to doubles. Rings that touch or cross themselves or others, before or
+/// after the move, and rings whose collinear points are removed, may have errors of a few units of the grid
+/// to which `fill` rounds.
 ///
-/// Open chains stay as they are. A distance of 0 returns the layer itself, bit for bit; other results have no
-/// hatches. `vanished`, if given, is set to the number of rings that vanish: rings of bodies that are too
-/// thin for a shrinking offset, and holes that a growing offset closes.
+/// Open chains stay as they are. A distance of 0 returns the layer itself, bit for bit.
 ///
 /// Throws Error{usage} for a distance that is not finite and for invalid corners, Error{limit} as `fill` does
-/// and for more points than `limits.memory` allows, and Error{cancelled}. Expected O(n) for n points in rings
-/// that touch no ring before and after the move; otherwise O((n + k) log n) for k crossings of moved rings.
-[[nodiscard]] Layer offset(const Layer& layer, double distance, const OffsetCorners& corners = {},
-                           std::uint64_t* vanished = nullptr, const LayerLimits& limits = {});
+/// and for more points than the limits allow, and Error{cancelled}. Expected O(n) for n points in rings that
+/// touch no ring before and after the move; otherwise O((n + k) log n) for k crossings of moved rings.
+[[nodiscard]] Layer offset(const Layer& layer, double distance, const OffsetOptions& options = {});
 
-/// Returns the offsets by several distances, but examines the layer only once. `vanished` refers to the first
-/// distance.
+/// Returns the offsets by several distances, but examines the layer only once.
 [[nodiscard]] std::vector<Layer> offsets(const Layer& layer, std::span<const double> distances,
-                                         const OffsetCorners& corners = {}, std::uint64_t* vanished = nullptr,
-                                         const LayerLimits& limits = {});
+                                         const OffsetOptions& options = {});
+
+struct CountedOffset {
+    Layer layer;
+    /// Number of rings that vanish: rings of bodies that are too thin for a shrinking offset, and holes that
+    /// a growing offset closes.
+    std::uint64_t rings_vanished = 0;
+};
+
+/// Returns the offset, and counts the rings that vanish. This takes longer if rings nearly vanish.
+[[nodiscard]] CountedOffset counted_offset(const Layer& layer, double distance,
+                                           const OffsetOptions& options = {});
 
 } // namespace lamella
 LAMELLA_API_END

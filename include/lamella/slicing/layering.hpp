@@ -21,12 +21,6 @@ struct ListedPlanes {
     double single_height = UniformLayers{}.layer_height; ///< height of the layer if there is a single cut
 };
 
-/// Layers with the heights of these ranges, and of `layer_height` outside them; see plan_by_ranges.
-struct HeightRanges {
-    std::vector<HeightRange> ranges = {};
-    double layer_height = UniformLayers{}.layer_height;
-};
-
 /// The methods of cutting; a job uses one of them.
 using Cut = std::variant<UniformLayers, ListedPlanes, HeightRanges, AdaptiveLayers>;
 

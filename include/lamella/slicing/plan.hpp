@@ -26,8 +26,8 @@ struct PlannedLayer {
     double top = 0;
 };
 
-/// The planes of one job: z ascends strictly and all heights are finite. Functions that take a plan require
-/// that `check` accepts it.
+/// The planes of one job: z ascends strictly and all heights are finite. Functions that take a plan throw the
+/// errors of `check`.
 struct Plan {
     std::vector<PlannedLayer> layers;
     PlaneRule rule = PlaneRule::section_above;
@@ -36,9 +36,9 @@ struct Plan {
     double snap_mm = 0;
 };
 
-/// Throws Error{usage} that names the first layer whose heights are not finite or whose z is not above the
-/// previous z. Also throws it for a snap distance that is negative or not finite, and for more than 2^31 - 2
-/// layers. O(layers).
+/// Throws Error{usage} that names the first layer whose heights are not finite, whose z is outside its bottom
+/// and top, or whose z is not above the previous z. Also throws it for a snap distance that is negative or
+/// not finite, and for more than 2^31 - 2 layers. O(layers).
 void check(const Plan& plan);
 
 /// The planes [begin, end) of a plan, by position.

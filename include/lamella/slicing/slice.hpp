@@ -3,6 +3,7 @@
 // Slicing: from a mesh and a plan to layers.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/commit.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -65,31 +66,22 @@ struct SliceReport {
     SliceReport& operator+=(const SliceReport& other) noexcept;
 };
 
-/// Receives each layer as soon as it is sliced. A sink is called once for every layer, from several threads
-/// at once and in any order, and does the work that can run in parallel, such as formatting. It returns a
-/// function, which may be empty, for the work that must be done in order, such as writing. The returned
-/// functions are called later, one at a time and in ascending z. If the sink or a returned function throws,
-/// slicing stops and the exception reaches the caller.
-using LayerSink = std::function<std::function<void()>(Layer&&)>;
+/// Receives each layer as soon as it is sliced. If `prepare` or a commit throws, slicing stops and the
+/// exception reaches the caller.
+struct LayerSink {
+    /// Called once for every layer; see Commit.
+    std::function<Commit(Layer&& layer)> prepare;
+};
+
+/// Returns a sink that appends the layers to a stack in ascending z. The stack must outlive the sink.
+[[nodiscard]] LayerSink appending_to(LayerStack& layers);
 
 /// Called with ranges of triangles, [begin, end), while slicing reads them; each triangle of the mesh is
 /// visited once. It is called from several threads at once. Since the triangles are then in the cache, a
 /// visit costs less than a separate pass.
 using TriangleVisitor = std::function<void(const Mesh& mesh, std::uint64_t begin, std::uint64_t end)>;
 
-/// Input and output of an engine.
-struct SliceJob {
-    const Mesh& mesh;
-    const Plan& plan;
-    const LayerSink& sink;
-    const Execution& execution;
-    /// Upper bound on the points handed to the sink and not yet released by its ordered function; 0:
-    /// unbounded here, unlike in slice_to.
-    std::uint64_t points_in_flight;
-    SliceReport& report;
-    /// Null if no visitor is wanted. Only the sweep calls it; for engines that weld, slice() does.
-    const TriangleVisitor* visitor = nullptr;
-};
+struct SliceJob; // input and output of an engine, which only engines know
 
 /// One algorithm from mesh and plan to layers.
 struct Engine {
@@ -107,26 +99,31 @@ struct Engine {
 /// Returns the engine of this name. Throws Error{usage} that lists the known names.
 [[nodiscard]] const Engine& engine(std::string_view name);
 
+/// Options of `slice` and `slice_to`. Only the engine may change results.
+struct SliceOptions {
+    Execution execution = {};
+    Engine engine = engines().front();
+    /// Largest number of points handed to a sink and not yet released by its commits; 0: no bound. By
+    /// default, 56 MB of points per thread, and at least 112 MB; for a plate, 64 MB. A single larger layer is
+    /// always permitted. `slice` holds all layers anyway and ignores it.
+    std::optional<std::uint64_t> points_in_flight = {};
+    TriangleVisitor visitor = {}; ///< receives the mesh; if it is indexed, with equal vertices joined
+};
+
 /// Returns one layer per plane of the plan, in order, each in normal form, empty where the plane misses the
 /// mesh. On a closed, consistently oriented mesh every contour is a ring, for any coordinates. On other
-/// meshes, contours that do not close are kept as open chains. `visitor`, if given, receives the mesh; if it
-/// is indexed, with equal vertices joined.
+/// meshes, contours that do not close are kept as open chains.
 ///
-/// Throws Error{limit} for about 2^32 / 3 triangles or more, Error{cancelled}, and the exceptions of the
-/// progress function. The default engine takes O(triangles + points + c log c) for c contours in a layer, and
-/// uses all threads; its result is, byte for byte, the same for any number of threads and any order of the
-/// triangles.
-[[nodiscard]] LayerStack slice(const Mesh& mesh, const Plan& plan, const Execution& execution = {},
-                               SliceReport* report = nullptr, const Engine& engine = engines().front(),
-                               const TriangleVisitor& visitor = {});
+/// Throws Error{limit} for about 2^32 / 3 triangles or more, Error{cancelled}, the error of `check` for a
+/// plan, and the exceptions of the progress function. The default engine takes O(triangles + points + c log
+/// c) for c contours in a layer, and uses all threads; its result is, byte for byte, the same for any number
+/// of threads and any order of the triangles.
+[[nodiscard]] LayerStack slice(const Mesh& mesh, const Plan& plan, const SliceOptions& options = {});
 
 /// Slices into a sink, which receives the layers that `slice` would return, each as soon as it is complete.
-/// `points_in_flight` is the largest number of points handed to the sink and not yet released by its ordered
-/// function; 0 means 56 MB of points per thread, and at least 112 MB. A single larger layer is always
-/// permitted. Layers that the sink has released take no memory.
-void slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const Execution& execution = {},
-              SliceReport* report = nullptr, const Engine& engine = engines().front(),
-              std::uint64_t points_in_flight = 0, const TriangleVisitor& visitor = {});
+/// Layers that the sink has released take no memory.
+SliceReport slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan,
+                     const SliceOptions& options = {});
 
 /// Returns the area of the section at each plane of the plan, mm^2, computed directly from the triangles,
 /// without contours. For closed, consistently oriented meshes this area equals the area of the layers of

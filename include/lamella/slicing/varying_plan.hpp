@@ -20,6 +20,12 @@ struct HeightRange {
     friend bool operator==(const HeightRange&, const HeightRange&) = default;
 };
 
+/// Layers with the heights of these ranges, and of `layer_height` outside them.
+struct HeightRanges {
+    std::vector<HeightRange> ranges = {};
+    double layer_height = UniformLayers{}.layer_height;
+};
+
 /// Returns layers stacked from z_min. Each has the height of the range that contains its bottom, or
 /// `layer_height` if no range does. A layer may reach beyond the end of its range. A bottom less than a
 /// thousandth of a layer below the beginning or the end of a range counts as being at that height. The last
@@ -27,8 +33,8 @@ struct HeightRange {
 ///
 /// Throws Error{usage} if a range is empty, begins below 0, overlaps another one or does not ascend, naming
 /// the first such range; and in the cases of `plan_uniform`.
-[[nodiscard]] Plan plan_by_ranges(double z_min, double z_max, const std::vector<HeightRange>& ranges,
-                                  double layer_height, SliceAt slice_at = SliceAt::middle);
+[[nodiscard]] Plan plan_by_ranges(double z_min, double z_max, const HeightRanges& heights,
+                                  SliceAt slice_at = SliceAt::middle);
 
 /// Layers as high as the slopes of the surface allow. Lengths in mm.
 struct AdaptiveLayers {

@@ -6,6 +6,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/plane_rule.hpp"
 #include "lamella/contour/rounding.hpp"
+#include "lamella/core/commit.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/write/image_options.hpp"
@@ -190,17 +191,15 @@ class LayerWriter {
 
     /// Formats one plane. `parts` has one layer for each of LayerFileInfo::parts, in this order. All layers
     /// must have the same index, z, bottom and top; a layer is empty if the plane misses the part. Formats
-    /// that cannot distinguish parts merge them. Returns a function that writes the result. `prepare` may be
-    /// called for several planes at once, from any threads, in any order; the returned functions must be
-    /// called one at a time in ascending z (see LayerSink).
-    [[nodiscard]] virtual std::function<void()> prepare(std::span<const Layer> parts) = 0;
+    /// that cannot distinguish parts merge them. The commit writes the result.
+    [[nodiscard]] virtual Commit prepare(std::span<const Layer> parts) = 0;
 
     /// Formats one plane of scan vectors, or of contours and hatch lines. `vectors` has one exposure for each
     /// of LayerFileInfo::parts.
-    [[nodiscard]] virtual std::function<void()> prepare(const ScanVectors& vectors) = 0;
+    [[nodiscard]] virtual Commit prepare(const ScanVectors& vectors) = 0;
 
     /// Formats one plane of a file with a single part.
-    [[nodiscard]] std::function<void()> prepare(const Layer& layer) { return prepare(std::span(&layer, 1)); }
+    [[nodiscard]] Commit prepare(const Layer& layer) { return prepare(std::span(&layer, 1)); }
 
     /// Ends the file and gives it its name. Must be called once, after the last layer. Throws Error{output}
     /// if anything could not be written; in this case no file is left behind.

@@ -4,6 +4,7 @@
 // indexed mesh, and hand layers over in order.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/commit.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
@@ -13,13 +14,13 @@
 #include "core/stopwatch.hpp"
 #include "slicing/edge_cut.hpp"
 #include "slicing/ranks.hpp"
+#include "slicing/slice_job.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <utility>
 #include <vector>
 
@@ -129,10 +130,10 @@ class SerialEngine {
             executor_.check_cancelled();
             fill(plane, layer);
             const PlannedLayer& planned = job_.plan.layers[plane];
-            const std::function<void()> action =
-                job_.sink(layer.finish(planned.index, planned.z, planned.bottom, planned.top));
-            if (action)
-                action();
+            const Commit commit =
+                job_.sink.prepare(layer.finish(planned.index, planned.z, planned.bottom, planned.top));
+            if (commit)
+                commit();
             progress.add(1);
         }
         executor_.check_cancelled();

@@ -199,7 +199,7 @@ void emit(PlaneRange planes, const Plan& plan, const Ranks& ranks, Runs& runs, E
         layer.top = planned.top;
         if (layer.offsets.back() != 0)
             layer.points = PointArray(piece.owner, piece.points + outgoing[i].begin, layer.offsets.back());
-        delivery.deliver(plane, sink(std::move(layer)));
+        delivery.deliver(plane, sink.prepare(std::move(layer)));
     });
 }
 

@@ -3,6 +3,7 @@
 #include "core/executor.hpp"
 #include "core/ordered_stage.hpp"
 #include "core/stopwatch.hpp"
+#include "slicing/slice_job.hpp"
 #include "slicing/sweep/crew.hpp"
 #include "slicing/sweep/cut_graph.hpp"
 #include "slicing/sweep/emit.hpp"

@@ -5,6 +5,7 @@
 #include "lamella/slicing/slice.hpp"
 
 #include "slicing/expect_layers.hpp"
+#include "slicing/slice_job.hpp"
 
 #include <gtest/gtest.h>
 
@@ -36,14 +37,18 @@ inline std::string engine_test_name(const testing::TestParamInfo<std::string>& i
 
 inline LayerStack slice_with(std::string_view name, const Mesh& mesh, const Plan& plan,
                              SliceReport* report = nullptr) {
-    return slice(mesh, plan, {}, report, engine(name));
+    LayerStack stack;
+    const SliceReport ours = slice_to(appending_to(stack), mesh, plan, {.engine = engine(name)});
+    if (report != nullptr)
+        *report = ours;
+    return stack;
 }
 
 /// Slices with the engine alone: equal vertices stay distinct if the mesh lists them twice.
 inline LayerStack slice_as_listed(std::string_view name, const Mesh& mesh, const Plan& plan,
                                   SliceReport* report = nullptr) {
     LayerStack stack;
-    const LayerSink keep = keeping(stack);
+    const LayerSink keep = appending_to(stack);
     const Execution execution;
     SliceReport ours;
     engine(name).slice({mesh, plan, keep, execution, 0, ours});

@@ -90,21 +90,21 @@ TEST_P(PaperEngine, HandsLayersOverInOrderAndLetsGoOfThem) {
     const Plan plan = even_planes(100);
     std::uint64_t in_hand = 0;
     LayerStack stack;
-    const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+    const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
         EXPECT_EQ(in_hand++, 0U) << "the one before was not written yet";
         return [&, kept = std::move(layer)]() mutable {
             --in_hand;
             stack.push_back(std::move(kept));
         };
-    };
-    slice_to(sink, body(), plan, {.threads = 7}, nullptr, tested());
+    }};
+    slice_to(sink, body(), plan, {.execution = {.threads = 7}, .engine = tested()});
     expect_same(stack, slice(body(), plan));
     std::uint64_t calls = 0;
-    const LayerSink without_ordered_part = [&](Layer&&) -> std::function<void()> {
+    const LayerSink without_ordered_part{.prepare = [&](Layer&&) -> Commit {
         ++calls;
         return {};
-    };
-    slice_to(without_ordered_part, body(), plan, {}, nullptr, tested());
+    }};
+    slice_to(without_ordered_part, body(), plan, {.engine = tested()});
     EXPECT_EQ(calls, 100U);
 }
 
@@ -113,7 +113,7 @@ TEST_P(PaperEngine, CountsProgressOfEachStageUpToTheWhole) {
     const Execution execution{.progress = [&](const Progress& p) {
         seen.push_back(p);
     }};
-    (void)slice(body(), even_planes(50), execution, nullptr, tested());
+    (void)slice(body(), even_planes(50), {.execution = execution, .engine = tested()});
     EXPECT_LE(seen.size(), 320U);
     for (std::size_t i = 0; i < seen.size(); ++i) {
         EXPECT_LE(seen[i].done, seen[i].total);
@@ -139,9 +139,9 @@ TEST_P(PaperEngine, EndsWhenItIsCancelled) {
     stopped.request();
     const Execution before{.cancel = &stopped};
     expect_error(ErrorKind::cancelled, {},
-                 [&] { (void)slice(body(), even_planes(10), before, nullptr, tested()); });
+                 [&] { (void)slice(body(), even_planes(10), {.execution = before, .engine = tested()}); });
     expect_error(ErrorKind::cancelled, {},
-                 [&] { (void)slice(TriangleSoup(), Plan(), before, nullptr, tested()); });
+                 [&] { (void)slice(TriangleSoup(), Plan(), {.execution = before, .engine = tested()}); });
     for (const Stage stage : {Stage::weld, Stage::link, Stage::slice}) {
         if (stage == Stage::link && GetParam() == "conventional")
             continue; // it has nothing to link
@@ -153,12 +153,13 @@ TEST_P(PaperEngine, EndsWhenItIsCancelled) {
                                               stop.request();
                                       },
                                   .cancel = &stop};
-        const LayerSink sink = [&](Layer&&) -> std::function<void()> {
+        const LayerSink sink{.prepare = [&](Layer&&) -> Commit {
             ++delivered;
             return {};
-        };
-        expect_error(ErrorKind::cancelled, {},
-                     [&] { slice_to(sink, body(), even_planes(90), execution, nullptr, tested()); });
+        }};
+        expect_error(ErrorKind::cancelled, {}, [&] {
+            slice_to(sink, body(), even_planes(90), {.execution = execution, .engine = tested()});
+        });
         EXPECT_LE(delivered, stage == Stage::slice ? 40U : 0U);
     }
 }
@@ -166,7 +167,7 @@ TEST_P(PaperEngine, EndsWhenItIsCancelled) {
 TEST_P(PaperEngine, PassesOnWhatTheSinkAndTheProgressFunctionThrow) {
     for (const bool ordered : {false, true}) {
         std::uint64_t delivered = 0;
-        const LayerSink sink = [&](Layer&& layer) -> std::function<void()> {
+        const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
             if (!ordered && layer.index == 25)
                 throw std::runtime_error("disk full");
             return [&delivered, ordered, index = layer.index] {
@@ -174,15 +175,16 @@ TEST_P(PaperEngine, PassesOnWhatTheSinkAndTheProgressFunctionThrow) {
                     throw std::runtime_error("disk full");
                 ++delivered;
             };
-        };
-        EXPECT_THROW(slice_to(sink, body(), even_planes(50), {}, nullptr, tested()), std::runtime_error);
+        }};
+        EXPECT_THROW(slice_to(sink, body(), even_planes(50), {.engine = tested()}), std::runtime_error);
         EXPECT_EQ(delivered, 25U);
     }
     const Execution execution{.progress = [](const Progress& p) {
         if (p.stage == Stage::slice && p.done == p.total)
             throw std::runtime_error("enough");
     }};
-    EXPECT_THROW((void)slice(body(), even_planes(50), execution, nullptr, tested()), std::runtime_error);
+    EXPECT_THROW((void)slice(body(), even_planes(50), {.execution = execution, .engine = tested()}),
+                 std::runtime_error);
 }
 
 TEST_P(PaperEngine, OfNothingOrBesideTheMeshMakesEmptyLayers) {
@@ -202,8 +204,8 @@ TEST_P(PaperEngine, OfNothingOrBesideTheMeshMakesEmptyLayers) {
 
 TEST(SerialEngines, AreThoseThatCount) {
     for (const Engine& one : engines()) {
-        SliceReport report;
-        (void)slice(body(), even_planes(5), {}, &report, one);
+        LayerStack stack;
+        const SliceReport report = slice_to(appending_to(stack), body(), even_planes(5), {.engine = one});
         EXPECT_EQ(report.matching.has_value(), one.welds) << one.name;
         EXPECT_EQ(report.weld_seconds > 0, one.welds) << one.name;
     }

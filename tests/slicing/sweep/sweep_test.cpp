@@ -310,15 +310,16 @@ TEST(Sweep, KeepsCountOfManySmallContoursThatComeAndGo) {
             const Triangles triangles = scattered(30000, height, closed, 5);
             const TriangleSoup soup = test::soup(triangles);
             const Plan plan = even_planes(0, 190, 95);
-            SliceReport report;
-            const LayerStack stack = slice(soup, plan, {.threads = 1}, &report);
+            LayerStack stack;
+            const SliceReport report =
+                slice_to(appending_to(stack), soup, plan, {.execution = {.threads = 1}});
             for (const std::size_t i : {3U, 20U, 47U, 60U})
                 ASSERT_TRUE(test::net_flow(stack[i]) ==
                             test::net_flow(test::naive_section(triangles, plan.layers[i].z, plan.rule)))
                     << "layer " << i;
             EXPECT_EQ(report.open_chains == 0, closed);
             EXPECT_EQ(report.contours == report.open_chains, !closed);
-            expect_same(slice(soup, plan, {.threads = 7}), stack);
+            expect_same(slice(soup, plan, {.execution = {.threads = 7}}), stack);
         }
     }
 }
@@ -441,12 +442,12 @@ TEST(Sweep, FindsOnManyPlanesWhatItFindsOnFew) {
         const IndexedMesh wall = nearly_degenerate_wall(random);
         for (const SliceAt at : both_rules) {
             const Plan plan = plan_listed(z, at);
-            const LayerStack together = slice(wall, plan, {.threads = 1});
+            const LayerStack together = slice(wall, plan, {.execution = {.threads = 1}});
             for (std::ptrdiff_t i = 0; i < std::ssize(plan.layers); i += few) {
                 const std::ptrdiff_t end = std::min(i + few, std::ssize(plan.layers));
                 Plan part = plan;
                 part.layers = {plan.layers.begin() + i, plan.layers.begin() + end};
-                expect_same(slice(wall, part, {.threads = 1}),
+                expect_same(slice(wall, part, {.execution = {.threads = 1}}),
                             LayerStack(together.begin() + i, together.begin() + end));
                 counts.insert(together[static_cast<std::size_t>(i)].points.size());
             }
@@ -481,12 +482,14 @@ TEST(Sweep, GivesTheSameBytesForAnyThreadsOrderAndKindOfMesh) {
         SCOPED_TRACE(name);
         const Box3 box = bounding_box(soup);
         const Plan plan = even_planes(box.min.z, box.max.z, test::slowed ? 50 : 200);
-        const LayerStack stack = slice(soup, plan, {.threads = 1});
+        const LayerStack stack = slice(soup, plan, {.execution = {.threads = 1}});
         for (const unsigned threads : {2U, 7U})
-            expect_same(slice(soup, plan, {.threads = threads}), stack);
+            expect_same(slice(soup, plan, {.execution = {.threads = threads}}), stack);
         for (const unsigned threads : {1U, 7U}) {
-            expect_same(slice(shuffled(soup, threads), plan, {.threads = threads}), stack);
-            expect_same(slice(test::indexed(test::triangles_of(soup)), plan, {.threads = threads}), stack);
+            expect_same(slice(shuffled(soup, threads), plan, {.execution = {.threads = threads}}), stack);
+            expect_same(
+                slice(test::indexed(test::triangles_of(soup)), plan, {.execution = {.threads = threads}}),
+                stack);
         }
     }
 }
@@ -499,7 +502,7 @@ TEST(Sweep, GivesTheLayersOfThePlacedMesh) {
         for (Point3f& p : t)
             p = {2 * p.x, 2 * p.y, 2 * p.z};
     for (const unsigned threads : {1U, 7U})
-        expect_same(slice(soup.transformed(scaling(2, 2, 2)), plan, {.threads = threads}),
+        expect_same(slice(soup.transformed(scaling(2, 2, 2)), plan, {.execution = {.threads = threads}}),
                     slice(test::soup(doubled), plan));
 }
 
@@ -561,12 +564,13 @@ TEST(Sweep, WorksInAnyUnit) {
 TEST(Sweep, OfNothingOrBesideTheMeshIsEmptyLayers) {
     for (const unsigned threads : {1U, 2U, 7U}) {
         const Execution execution{.threads = threads};
-        EXPECT_TRUE(slice(make_box(1, 1, 1), Plan(), execution).empty());
+        EXPECT_TRUE(slice(make_box(1, 1, 1), Plan(), {.execution = execution}).empty());
         for (const LayerStack& stack :
-             {slice(TriangleSoup(), plan_listed({0, 1}), execution),
-              slice(IndexedMesh(), plan_listed({0, 1}), execution),
-              slice(make_box(1, 1, 1), plan_listed({-5, 7}), execution),
-              slice(test::soup({Triangle3f{}, Triangle3f{}}), plan_listed({0, 1}), execution)}) {
+             {slice(TriangleSoup(), plan_listed({0, 1}), {.execution = execution}),
+              slice(IndexedMesh(), plan_listed({0, 1}), {.execution = execution}),
+              slice(make_box(1, 1, 1), plan_listed({-5, 7}), {.execution = execution}),
+              slice(test::soup({Triangle3f{}, Triangle3f{}}), plan_listed({0, 1}),
+                    {.execution = execution})}) {
             ASSERT_EQ(stack.size(), 2U);
             for (const Layer& layer : stack) {
                 expect_sound(layer);
@@ -590,10 +594,9 @@ TEST(Sweep, OfAFlatMeshIsNothing) {
 /// The layers as they come in order when at most so many points may be in flight.
 LayerStack swept(const Mesh& mesh, const Plan& plan, unsigned threads, std::uint64_t points_in_flight) {
     LayerStack stack;
-    const LayerSink keep = test::keeping(stack);
-    const Execution execution{.threads = threads};
-    SliceReport report;
-    engine("sweep").slice({mesh, plan, keep, execution, points_in_flight, report});
+    slice_to(
+        appending_to(stack), mesh, plan,
+        {.execution = {.threads = threads}, .engine = engine("sweep"), .points_in_flight = points_in_flight});
     return stack;
 }
 
@@ -604,7 +607,7 @@ TEST(Sweep, GivesTheSameLayersHoweverFewPointsMayBeInFlight) {
           TriangleSoup(test::box_without_a_side())}) {
         const Box3 box = bounding_box(mesh);
         const Plan plan = even_planes(box.min.z, box.max.z, test::slowed ? 30 : 90);
-        const LayerStack expected = slice(mesh, plan, {.threads = 1});
+        const LayerStack expected = slice(mesh, plan, {.execution = {.threads = 1}});
         for (const unsigned threads : {1U, 2U, 7U}) {
             for (const std::uint64_t points : {1U, 1000U, 30'000U, 300'000U}) {
                 const LayerStack found = swept(mesh, plan, threads, points);
@@ -619,15 +622,16 @@ TEST(Sweep, EndsASharedTaskWhenTheSinkFails) {
     const TriangleSoup sheet = make_sheet({.holes = 36, .segments = 32});
     const Plan plan = even_planes(0, 3, 40);
     for (const unsigned threads : {1U, 2U, 7U}) {
-        const LayerSink fails = [&](Layer&& layer) -> std::function<void()> {
+        const LayerSink fails{.prepare = [&](Layer&& layer) -> Commit {
             if (layer.index == 20)
                 throw std::runtime_error("enough");
             return {};
-        };
-        const Execution execution{.threads = threads};
-        SliceReport report;
-        EXPECT_THROW(engine("sweep").slice({sheet, plan, fails, execution, 1000, report}),
-                     std::runtime_error);
+        }};
+        EXPECT_THROW(
+            slice_to(
+                fails, sheet, plan,
+                {.execution = {.threads = threads}, .engine = engine("sweep"), .points_in_flight = 1000}),
+            std::runtime_error);
     }
 }
 
@@ -635,7 +639,7 @@ TEST(Sweep, WritesLargeLayersTogetherAsItWritesThemOneByOne) {
     // Layers of several megabytes are written another way when they are written together.
     const TriangleSoup sheet = make_sheet({.holes = 225});
     const Plan plan = even_planes(0, 3, 4);
-    const LayerStack together = slice(sheet, plan, {.threads = 1});
+    const LayerStack together = slice(sheet, plan, {.execution = {.threads = 1}});
     ASSERT_GT(together.front().points.size() * sizeof(Point2), std::size_t{3} << 20);
     for (std::size_t i = 0; i < together.size(); ++i) {
         const Layer alone = cut(sheet, plan.layers[i].z);
