@@ -159,7 +159,7 @@ TEST(SelfIntersections, DoNotDependOnThePlacement) {
     const SelfIntersections expected = found_in(soup);
     EXPECT_GT(expected.crossing, 100U);
     for (const Transform& map : {rotation('x', 90), rotation('z', 270), scaling(0x1p-500, 0x1p-500, 0x1p-500),
-                                 scaling(0x1p1000, 0x1p1000, 0x1p1000)}) {
+                                 scaling(0x1p300, 0x1p300, 0x1p300)}) {
         const SelfIntersections found = found_in(soup.transformed(map));
         EXPECT_EQ(found.crossing, expected.crossing);
         EXPECT_EQ(found.overlapping, expected.overlapping);
