@@ -325,6 +325,7 @@ def plan(
     z_range: Optional[Tuple[float, float]],
     layers: Optional[Tuple[int, int]],
     snap: float,
+    max_memory: int,
     threads: int,
     progress: Optional[Progress],
     /,

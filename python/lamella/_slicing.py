@@ -56,6 +56,7 @@ def slice(
     unit_mm: Optional[float] = None,
     engine: str = "sweep",
     strict: bool = False,
+    max_memory: int = 0,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Stack:
@@ -84,6 +85,9 @@ def slice(
     unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.
     engine: the algorithm, one of `engines`.
     strict: raises a DefectError for any defect of the file or its mesh.
+    max_memory: largest number of bytes that reading a file and the list of layers may take; otherwise a LimitError is
+        raised. 0 means three quarters of the memory of the machine for the file, and 1 GiB for the list of layers: about
+        2 million layers.
     threads: number of threads; 0 means one for each processor. The result is the same, bit for bit, for any number.
     progress: called as progress(stage, done, total) from time to time, on the calling thread. The stages are "read",
         "weld", "link" and "slice"; `done` and `total` count bytes, triangles or layers. An exception that it raises
@@ -97,7 +101,7 @@ def slice(
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
-        direction, transform, unit_mm, engine, strict, threads, progress,
+        direction, transform, unit_mm, engine, strict, max_memory, threads, progress,
     )  # fmt: skip
     stack = _lamella.slice_stack(mesh, plan, engine, threads, progress)
     doubts = [f"{mesh.path or 'the mesh'}: {doubt}" for doubt in _lamella.mesh_doubts(stack)]
@@ -126,6 +130,7 @@ def iter_layers(
     unit_mm: Optional[float] = None,
     engine: str = "sweep",
     strict: bool = False,
+    max_memory: int = 0,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> LayerStream:
@@ -140,7 +145,7 @@ def iter_layers(
     """
     mesh, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
-        direction, transform, unit_mm, engine, strict, threads, progress,
+        direction, transform, unit_mm, engine, strict, max_memory, threads, progress,
     )  # fmt: skip
     return _lamella.stream(mesh, plan, engine, threads, progress)
 
@@ -163,6 +168,7 @@ def _prepared(
     unit_mm: Optional[float],
     engine: str,
     strict: bool,
+    max_memory: int,
     threads: int,
     progress: Optional[Progress],
 ) -> Tuple[Mesh, _lamella.Plan]:
@@ -174,6 +180,7 @@ def _prepared(
     threads, progress = check.thread_count(threads), check.listener(progress)
     where = placing(direction, transform)
     strict = check.flag("strict", strict)
+    max_memory = check.whole("max_memory", max_memory)
     above_bottom = check.optional(_heights, "offsets", offsets)
     cuts = check.optional(_heights, "z", z)
     ranges = check.optional(_ranges, "heights", heights)
@@ -187,7 +194,9 @@ def _prepared(
     z_limits = None if z_range is None else check.pair("z_range", z_range, "two numbers (from, to)", check.number)
     numbers = None if layers is None else check.pair("layers", layers, "two whole numbers (first, end)", check.whole)
     near = check.distance("snap", snap)
-    mesh = as_mesh("part", part, unit_mm=unit_mm, strict=strict, threads=threads, progress=progress)
+    mesh = as_mesh(
+        "part", part, unit_mm=unit_mm, strict=strict, max_memory=max_memory, threads=threads, progress=progress
+    )
     if strict:
         found = inspect(mesh, threads=threads, progress=progress)
         if not found.sound:
@@ -204,7 +213,7 @@ def _prepared(
         cut = _lamella.HeightRanges(ranges, height)
     else:
         cut = _lamella.UniformLayers(height, first_height)
-    plan = _lamella.plan(mesh, cut, place, z_limits, numbers, near, threads, progress)
+    plan = _lamella.plan(mesh, cut, place, z_limits, numbers, near, max_memory, threads, progress)
     doubt = _lamella.near_faces(mesh, plan, threads, progress)
     if doubt:
         doubt = f"{mesh.path or 'the mesh'}: {doubt}"

@@ -38,8 +38,10 @@ using IndexRange = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
 
 /// Returns the plan that slice_file would use for the layering of a job.
 CutPlan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at, const ZRange& z_range,
-                 const IndexRange& layers, double snap_mm, unsigned threads, const py::object& progress) {
+                 const IndexRange& layers, double snap_mm, std::uint64_t max_memory, unsigned threads,
+                 const py::object& progress) {
     FileJob job;
+    job.max_memory = max_memory;
     job.layering = {.cut = cut,
                     .at = slice_at_named(at),
                     .only = {.z_range = z_range, .index_range = layers},

@@ -176,6 +176,15 @@ def test_the_limit_of_memory_holds_for_layers(rook, tmp_path):
     assert len(lamella.read(path, max_memory=10_000_000)) > 10
 
 
+def test_the_limit_of_memory_holds_for_the_list_of_layers():
+    part = box_arrays(z=1.0)
+    for function in (lamella.slice, lamella.iter_layers):
+        with pytest.raises(lamella.LimitError, match="`max_memory`"):
+            function(part, 5e-6, max_memory=50_000_000)
+    with lamella.iter_layers(part, 5e-6, max_memory=200_000_000) as layers:
+        assert next(layers).thickness == pytest.approx(5e-6)
+
+
 def test_output_errors_are_those_of_the_program(program, rook, tmp_path):
     stack = lamella.slice(rook, 10)
     target = tmp_path / "missing" / "out.cli"
