@@ -259,8 +259,10 @@ Figures run_figures(const FileResult& result) {
         {"total", seconds.total},
         {"bytes", result.bytes, "written",
          result.format.empty() ? "" : fmt::format("{}, {}", result.format, byte_size(result.bytes))}};
-    const LayerMeasure all{
-        .contours = report.contours, .open_chains = report.open_chains, .points = report.points};
+    LayerMeasure all;
+    all.contours = report.contours;
+    all.open_chains = report.open_chains;
+    all.points = report.points;
     for (Figure& figure : layer_figures(report.layers, all, result.volume_mm3))
         figures.push_back(std::move(figure));
     return figures;

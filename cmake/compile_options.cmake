@@ -12,6 +12,8 @@ target_compile_options(
               $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>
               -Wconversion
               -Wno-sign-conversion
+              # Sizes and counts have 64 bits everywhere; where memory has 32, limits are checked before they are used.
+              $<$<EQUAL:${CMAKE_SIZEOF_VOID_P},4>:-Wno-shorten-64-to-32>
               -Wnon-virtual-dtor
               -Woverloaded-virtual
               # Never fuses a*b+c, so that every processor computes the same bits (docs/conventions.md).

@@ -3,6 +3,8 @@
 // Writes the wire format of Protocol Buffers. A message consists of fields: a field number, a type and a
 // value, which is a varint, 32 bits, 64 bits, or a length followed by as many bytes.
 
+#include "core/bit_cast.hpp"
+
 #include <bit>
 #include <cstdint>
 #include <cstring>
@@ -46,7 +48,7 @@ class ProtobufMessage {
         if (single == 0)
             return;
         append(protobuf_tag(field, ProtobufType::bits_32));
-        const auto bits = std::bit_cast<std::uint32_t>(single);
+        const auto bits = bit_cast<std::uint32_t>(single);
         bytes_.append(reinterpret_cast<const char*>(&bits), sizeof bits);
     }
     void text(std::uint32_t field, std::string_view value) {

@@ -13,6 +13,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
 
+#include "core/bit_cast.hpp"
 #include "core/executor.hpp"
 #include "core/key_groups.hpp"
 #include "core/pages.hpp"
@@ -23,7 +24,6 @@
 
 #include <array>
 #include <atomic>
-#include <bit>
 #include <cassert>
 #include <compare>
 #include <optional>
@@ -58,20 +58,20 @@ std::uint64_t hash(const DoubleKey& key) noexcept {
 }
 
 Point3 point(const SingleKey& key) noexcept {
-    return {std::bit_cast<float>(key.x), std::bit_cast<float>(key.y), std::bit_cast<float>(key.z)};
+    return {bit_cast<float>(key.x), bit_cast<float>(key.y), bit_cast<float>(key.z)};
 }
 
 Point3 point(const DoubleKey& key) noexcept {
-    return {std::bit_cast<double>(key.x), std::bit_cast<double>(key.y), std::bit_cast<double>(key.z)};
+    return {bit_cast<double>(key.x), bit_cast<double>(key.y), bit_cast<double>(key.z)};
 }
 
 /// Returns the corners of triangle i.
 template <class Key>
 std::array<Key, 3> keys_of(const TriangleSoup& soup, std::size_t i) noexcept {
     if constexpr (std::is_same_v<Key, SingleKey>)
-        return std::bit_cast<std::array<Key, 3>>(soup.stored(i));
+        return bit_cast<std::array<Key, 3>>(soup.stored(i));
     else
-        return std::bit_cast<std::array<Key, 3>>(soup.placed(i));
+        return bit_cast<std::array<Key, 3>>(soup.placed(i));
 }
 
 /// One worker's range of triangles and the local vertices that it found there.
@@ -234,7 +234,7 @@ std::optional<IndexedMesh> joined_vertices(const IndexedMesh& mesh, const Execut
     executor.for_chunks(vertices, block, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) {
             const Point3& p = mesh.vertices[i];
-            keys[i] = std::bit_cast<DoubleKey>(Point3{p.x + 0.0, p.y + 0.0, p.z + 0.0});
+            keys[i] = bit_cast<DoubleKey>(Point3{p.x + 0.0, p.y + 0.0, p.z + 0.0});
         }
     });
     const std::array<std::span<const DoubleKey>, 1> all{keys.span()};

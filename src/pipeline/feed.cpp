@@ -616,7 +616,7 @@ TriangleSoup Feed::exchanged(std::span<const std::vector<Triangle3f>> outgoing) 
     assert(at == total);
     among_->exchange(out, in);
     return {TriangleSoup::KnownFinite{}, memory, reinterpret_cast<const std::byte*>(memory->data()),
-            sizeof(Triangle3f), total};
+            sizeof(Triangle3f), static_cast<std::size_t>(total)};
 }
 
 void Feed::store(std::size_t shape, const TriangleSoup& triangles, const Execution& execution) {

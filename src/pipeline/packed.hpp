@@ -4,8 +4,9 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/bit_cast.hpp"
+
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -24,7 +25,7 @@ constexpr bool without_gaps_between_members() noexcept {
     if constexpr (!std::has_unique_object_representations_v<T> && !std::is_floating_point_v<T>) {
         static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
         [[maybe_unused]] constexpr auto words =
-            std::bit_cast<std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)>>(T{});
+            bit_cast<std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)>>(T{});
     }
     return true;
 }

@@ -98,9 +98,11 @@ std::optional<std::size_t> RangeStore::incomplete() const noexcept {
 TriangleSoup RangeStore::take(std::size_t range, std::size_t shape, const Execution& execution) {
     const Extent& from = extent(range, shape);
     const std::uint64_t count = from.end - from.begin;
+    const auto triangles = static_cast<std::size_t>(count);
     if (memory_)
         return {TriangleSoup::KnownFinite{}, memory_,
-                reinterpret_cast<const std::byte*>(memory_->data() + from.begin), sizeof(Triangle3f), count};
+                reinterpret_cast<const std::byte*>(memory_->data() + from.begin), sizeof(Triangle3f),
+                triangles};
     const auto memory = std::make_shared<const PageArray<Triangle3f>>(count);
     constexpr std::uint64_t at_once = std::uint64_t{1} << 15;
     Executor executor(execution);
@@ -111,7 +113,7 @@ TriangleSoup RangeStore::take(std::size_t range, std::size_t shape, const Execut
     executor.check_cancelled();
     from.file->forget(from.begin * sizeof(Triangle3f), count * sizeof(Triangle3f));
     return {TriangleSoup::KnownFinite{}, memory, reinterpret_cast<const std::byte*>(memory->data()),
-            sizeof(Triangle3f), count};
+            sizeof(Triangle3f), triangles};
 }
 
 } // namespace lamella

@@ -136,7 +136,8 @@ ColourImage fitted(const ColourImage& image, std::uint32_t width, std::uint32_t 
                 continue;
             const auto pixel = mean(image, from, from_row, to, to_row);
             std::copy(pixel.begin(), pixel.end(),
-                      result.values.begin() + std::ptrdiff_t{4} * (std::ptrdiff_t{row} * width + column));
+                      result.values.begin() +
+                          std::ptrdiff_t{4} * (static_cast<std::ptrdiff_t>(row) * width + column));
         }
     }
     return result;
@@ -209,8 +210,8 @@ std::vector<ReliefSpan> Relief::spans(std::span<const Layer> parts) const {
 
 void Relief::add(std::span<const ReliefSpan> spans) {
     for (const ReliefSpan& span : spans)
-        std::fill_n(heights_.begin() + std::ptrdiff_t{span.row} * width_ + span.first, span.end - span.first,
-                    span.z);
+        std::fill_n(heights_.begin() + static_cast<std::ptrdiff_t>(span.row) * width_ + span.first,
+                    span.end - span.first, span.z);
 }
 
 Relief::Vector Relief::position(std::size_t row, std::size_t column) const noexcept {

@@ -147,7 +147,7 @@ class ObjLines : Words {
     void note_relative(std::uint64_t first_triangle) {
         relative_.resize(corners_.size(), false);
         for (std::uint64_t t = first_triangle; t < chunk_.triangles.size(); ++t) {
-            const std::array<std::size_t, 3> locations{0, t - first_triangle + 1, t - first_triangle + 2};
+            const std::array<std::uint64_t, 3> locations{0, t - first_triangle + 1, t - first_triangle + 2};
             for (std::size_t k = 0; k < 3; ++k)
                 if (relative_[locations[k]])
                     chunk_.relative.push_back(3 * t + k);

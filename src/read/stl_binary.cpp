@@ -129,7 +129,8 @@ Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOp
         const std::size_t location = begin * stl_record_bytes;
         if (memory)
             copy_out(source, corners_at + location,
-                     memory->span().subspan(location, std::min(end * stl_record_bytes, size) - location));
+                     memory->span().subspan(location, std::min<std::uint64_t>(end * stl_record_bytes, size) -
+                                                          location));
         const Survey surveyed = survey(corners + location, end - begin);
         boxes[worker].add(surveyed.box);
         if (!surveyed.finite) {
@@ -169,7 +170,7 @@ TriangleSoup copy_finite(const std::byte* corners, std::uint64_t n, const NonFin
                 std::memcpy(to++, corners + i * stl_record_bytes, sizeof *to);
     });
     const auto* first = reinterpret_cast<const std::byte*>(memory->data());
-    return {TriangleSoup::KnownFinite{}, memory, first, sizeof(Triangle3f), kept};
+    return {TriangleSoup::KnownFinite{}, memory, first, sizeof(Triangle3f), static_cast<std::size_t>(kept)};
 }
 
 /// Returns the text of the header, up to the first byte that is not text, without blanks at its beginning and

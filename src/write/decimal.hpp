@@ -104,11 +104,21 @@ inline constexpr std::size_t most_double_digits = 24;
 /// Writes the shortest text that reads back as the same number, and returns the end. The text has an exponent
 /// if that is shorter.
 char* put_shortest(char* out, double value) noexcept;
+char* put_shortest(char* out, float value) noexcept;
 /// Returns the text of `put_shortest` as a string; zero has no sign.
 [[nodiscard]] std::string shortest_text(double value);
 
 /// Returns the shortest text that reads back as the same number, without an exponent and with at least one
 /// decimal.
 [[nodiscard]] std::string exact_decimal_text(double value);
+
+namespace detail {
+
+/// Writes the texts of std::to_chars, with an exponent if that is shorter or never. Used where the standard
+/// library has no std::to_chars of floating-point numbers (libc++ before 14).
+char* put_shortest_without_library(char* out, double value, bool exponents);
+char* put_shortest_without_library(char* out, float value, bool exponents);
+
+} // namespace detail
 
 } // namespace lamella

@@ -1,7 +1,8 @@
 #include "write/exposure_keys.hpp"
 
+#include "core/bit_cast.hpp"
+
 #include <array>
-#include <bit>
 #include <cassert>
 #include <cstdint>
 #include <map>
@@ -17,7 +18,7 @@ namespace {
 /// no order; -0 becomes 0.
 auto key_of(const Exposure& exposure) {
     const auto bits = [](auto... numbers) {
-        return std::array{std::bit_cast<std::uint64_t>(numbers + 0.0)...};
+        return std::array{bit_cast<std::uint64_t>(numbers + 0.0)...};
     };
     const auto& [name, power, speed, jump_speed, focus, spot, mark_delay, jump_delay] = exposure.parameters;
     return std::tuple(exposure.region, exposure.kind, exposure.contour, std::string_view(name),

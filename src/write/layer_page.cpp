@@ -91,7 +91,8 @@ void look_at(const PlaneView& plane, std::span<const PartInfo> parts, PlaneFacts
     const Nesting nested = nesting(all);
     facts.misoriented +=
         static_cast<std::uint64_t>(std::count(nested.kind.begin(), nested.kind.end(), RingKind::misoriented));
-    facts.measure.holes -= std::min(facts.measure.holes, facts.misoriented); // these are clockwise, too
+    facts.measure.holes -=
+        std::min<std::uint64_t>(facts.measure.holes, facts.misoriented); // these are clockwise, too
     facts.overlapping +=
         static_cast<std::uint64_t>(std::count(nested.kind.begin(), nested.kind.end(), RingKind::overlapping));
 }

@@ -6,19 +6,20 @@
 #include "mesh/triangle_contact.hpp"
 #include "system/atomic_file.hpp"
 #include "write/byte_buffer.hpp"
+#include "write/decimal.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 #include <memory>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 namespace lamella {
@@ -105,10 +106,12 @@ void append_blocks(AtomicFile& file, std::size_t count, std::size_t longest, Put
 /// Writes the rest of a line: a space before each number, which is the shortest text that reads back to it.
 template <class Number>
 char* put_rest_of_line(char* out, const std::array<Number, 3>& numbers) {
-    constexpr std::size_t longest_number = 24;
     for (const Number number : numbers) {
         *out++ = ' ';
-        out = std::to_chars(out, out + longest_number, number).ptr;
+        if constexpr (std::is_floating_point_v<Number>)
+            out = put_shortest(out, number);
+        else
+            out = put_integer(out, std::uint64_t{number});
     }
     *out++ = '\n';
     return out;

@@ -3,7 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <charconv>
+#include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <iterator>
 #include <limits>
 #include <random>
 #include <string>
@@ -89,6 +93,56 @@ TEST(ExactDecimalText, ReadsBackAndHasADecimalPoint) {
     EXPECT_EQ(exact_decimal_text(1), "1.0");
     EXPECT_EQ(exact_decimal_text(1e-9), "0.000000001");
     EXPECT_EQ(std::stod(exact_decimal_text(1.0 / 3)), 1.0 / 3);
+}
+
+template <class Number>
+std::string portable_text(Number value, bool exponents = true) {
+    char buffer[2000];
+    return {buffer, detail::put_shortest_without_library(buffer, value, exponents)};
+}
+
+/// Numbers of any exponent, and numbers with few digits.
+std::vector<double> telling_numbers() {
+    std::vector<double> values{0.0,
+                               -0.0,
+                               std::numeric_limits<double>::max(),
+                               std::numeric_limits<double>::denorm_min(),
+                               9007199254740993.0,
+                               0.1,
+                               1e5,
+                               1e-4};
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 20'000; ++i) {
+        const std::uint64_t bits = random();
+        double value = 0;
+        std::memcpy(&value, &bits, sizeof value);
+        if (std::isfinite(value))
+            values.push_back(value);
+        values.push_back(
+            std::ldexp(static_cast<double>(static_cast<std::int64_t>(random()) >> (random() % 60)),
+                       static_cast<int>(random() % 80) - 40));
+        values.push_back(static_cast<double>(random() % 1000) *
+                         std::pow(10, static_cast<int>(random() % 40) - 20));
+    }
+    return values;
+}
+
+TEST(PutShortest, WritesTheSameTextsWithoutTheStandardLibrary) {
+    char buffer[2000];
+    const auto fixed = std::chars_format::fixed;
+    const auto text = [&](auto... arguments) {
+        return std::string(buffer, std::to_chars(buffer, std::end(buffer), arguments...).ptr);
+    };
+    for (const double value : telling_numbers()) {
+        ASSERT_EQ(portable_text(value), text(value));
+        ASSERT_EQ(portable_text(value, false), text(value, fixed));
+        const auto single = static_cast<float>(value);
+        ASSERT_EQ(portable_text(single), text(single));
+        ASSERT_EQ(portable_text(single, false), text(single, fixed));
+        if (const std::string rounded = text(value, fixed, 6); rounded != "-0.000000") {
+            ASSERT_EQ(decimal_text(value, 6, 6), rounded);
+        }
+    }
 }
 
 } // namespace

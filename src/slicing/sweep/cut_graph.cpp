@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/bit_cast.hpp"
 #include "core/key_groups.hpp"
 #include "slicing/sweep/edge_hash.hpp"
 #include "slicing/sweep/pairing.hpp"
@@ -67,7 +68,7 @@ struct FloatCorners {
             std::array<float, 2> xy;
             std::memcpy(&xy, triangle + 12 * k, 8);
             xy = {xy[0] + 0.0F, xy[1] + 0.0F}; // -0 becomes +0
-            corners[k] = {std::bit_cast<std::uint64_t>(xy), std::bit_cast<std::uint32_t>(z[k] + 0.0F)};
+            corners[k] = {bit_cast<std::uint64_t>(xy), bit_cast<std::uint32_t>(z[k] + 0.0F)};
         }
         return true;
     }
@@ -75,11 +76,11 @@ struct FloatCorners {
     [[nodiscard]] static bool is(const Point3f& stored, const Corner& c) {
         std::uint64_t xy;
         std::memcpy(&xy, &stored, sizeof xy);
-        return static_cast<int>(xy == c.xy) & static_cast<int>(std::bit_cast<std::uint32_t>(stored.z) == c.z);
+        return static_cast<int>(xy == c.xy) & static_cast<int>(bit_cast<std::uint32_t>(stored.z) == c.z);
     }
     static void store(const Corner& c, Point3f& to) {
         std::memcpy(static_cast<void*>(&to), &c.xy, sizeof c.xy);
-        to.z = std::bit_cast<float>(c.z);
+        to.z = bit_cast<float>(c.z);
     }
 
   private:
@@ -101,8 +102,8 @@ struct PlacedCorners {
         return !(rank[0] == rank[1] && rank[1] == rank[2]);
     }
     [[nodiscard]] static std::uint64_t hash(const Corner& c) {
-        return mix(mix(std::bit_cast<std::uint64_t>(c.x), std::bit_cast<std::uint64_t>(c.y)),
-                   std::bit_cast<std::uint64_t>(c.z));
+        return mix(mix(bit_cast<std::uint64_t>(c.x), bit_cast<std::uint64_t>(c.y)),
+                   bit_cast<std::uint64_t>(c.z));
     }
     [[nodiscard]] static bool is(const Point3& stored, const Corner& c) { return stored == c; }
     static void store(const Corner& c, Point3& to) { to = c; }

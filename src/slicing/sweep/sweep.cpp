@@ -90,7 +90,7 @@ class alignas(128) Sweep {
     /// to leave this cache, so none are stored.
     static std::uint64_t room_for_columns(const PlaneLoads& loads, bool shared) {
         constexpr std::uint64_t most = 1U << 16; // edges: 3 MB
-        return shared ? 0 : std::min(most, EdgeColumns::padded(8 * loads.all_points));
+        return shared ? 0 : std::min<std::uint64_t>(most, EdgeColumns::padded(8 * loads.all_points));
     }
 
     /// Adds a run. In a task of one worker it is measured now, while its nodes are in the cache.
