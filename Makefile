@@ -7,7 +7,7 @@ JOBS := $(shell nproc)
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
 MODULES := core mesh parts contour slicing polygon scan system container read raster write pipeline
 blank := $(subst ,, )
-SOURCES = $(shell find app bench examples include parts python src tests -name '*.[ch]pp' 2>/dev/null)
+SOURCES = $(shell find app bench examples include parts python src tests web -name '*.[ch]pp' 2>/dev/null)
 
 # The first build of a tree compiles the sources of a module together, which takes two thirds of the time.
 ifeq ($(wildcard build/CMakeCache.txt),)
@@ -51,7 +51,7 @@ test: packages  ## build everything and run the tests: a few minutes
 	$(CTEST) --test-dir build $(TESTS)
 	$(if $(TESTS),,@touch build/tests/passed)
 
-test-all: test-large test-asan test-tsan test-arm64 test-shared fresh  ## run the long suites: large programs, sanitizers, ARM64, fresh
+test-all: test-large test-asan test-tsan test-arm64 test-shared test-web fresh  ## run the long suites: large programs, sanitizers, ARM64, web, fresh
 
 # The targets from here to `fresh` are parts of test-all.
 packages-all: packages packages-viewer
@@ -91,6 +91,17 @@ test-shared: packages-all
 
 fresh:  ## run `make demo` and `make test` in a fresh Debian 12 with git, make and nothing else (root only)
 	@tools/fresh.sh
+
+# Debian's Emscripten looks for the modules of its JavaScript optimiser here.
+web: export NODE_PATH := /usr/share/nodejs
+web: packages packages-viewer  ## build the npm package and the playground: build/web/package, build/web/playground.html
+	@tools/install_packages.sh tools/packages-web.txt
+	tools/build_libraries.sh wasm
+	cmake --preset web
+	cmake --build build-web --target lamella_playground
+
+test-web: web build packages-all
+	tests/web/run.sh build
 
 fuzz: packages-all  ## fuzz readers and strategies, each for MINUTES (default 10); writes findings to out/fuzz/
 	cmake --preset fuzz
@@ -188,5 +199,5 @@ clean:  ## remove all build and output folders
 
 .NOTPARALLEL:
 .PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan \
-        test-arm64 test-shared fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin \
+        test-arm64 test-shared web test-web fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin \
         out-of-core python-bench page-bench paper format format-check lint install dist clean

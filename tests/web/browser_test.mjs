@@ -1,0 +1,167 @@
+// The playground and the package in Chromium, without a network: LAMELLA_PROGRAM, LAMELLA_PACKAGE, LAMELLA_PLAYGROUND.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { tmpdir } from 'node:os';
+import { join, normalize } from 'node:path';
+import { after, before, test } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { chromium } from 'playwright-core';
+
+const program = process.env.LAMELLA_PROGRAM;
+const packageFolder = process.env.LAMELLA_PACKAGE;
+const playground = pathToFileURL(process.env.LAMELLA_PLAYGROUND).href;
+const browserPath = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find(existsSync);
+const folder = mkdtempSync(join(tmpdir(), 'lamella-playground-'));
+const native = (...words) => execFileSync(program, words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] });
+
+let browser;
+before(async () => {
+  if (!browserPath) throw new Error("no browser: install Debian's chromium");
+  // Drawing in space must not depend on a graphics card; root needs --no-sandbox.
+  browser = await chromium.launch({ executablePath: browserPath, args: ['--no-sandbox', '--enable-unsafe-swiftshader'] });
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+/** Opens the playground from disk; all that it complains of or asks a network for is gathered. */
+async function open(hash = '', options = {}) {
+  const context = await browser.newContext({ offline: true, viewport: { width: 1400, height: 900 }, acceptDownloads: true, ...options });
+  const page = await context.newPage();
+  page.setDefaultTimeout(120000);
+  const complaints = [];
+  page.on('console', (message) => message.text().includes('GL Driver Message') || complaints.push(message.text()));
+  page.on('pageerror', (error) => complaints.push(error.stack));
+  page.on('request', (request) => /^(file|data|blob|about):/.test(request.url()) || complaints.push(`asks for ${request.url()}`));
+  await page.goto(playground + hash);
+  return { page, complaints, close: () => context.close() };
+}
+
+const layersOf = async (page) => {
+  const frame = page.frameLocator('#viewer');
+  await frame.locator('canvas[data-layer]').first().waitFor();
+  return frame;
+};
+const sliced = (page) => page.getByText(/^(Sliced|Read)\.$/).waitFor();
+
+test('a test body is sliced and shown, and its link keeps the settings', async () => {
+  const { page, complaints, close } = await open();
+  await page.locator('[name=layerHeight]').fill('0.5');
+  await page.locator('#body').selectOption('rook');
+  await sliced(page);
+  const frame = await layersOf(page);
+  assert.match(await frame.locator('#title').textContent(), /rook/);
+  assert.match(await page.locator('#times').textContent(), /layers106/);
+  assert.match(page.url(), /layerHeight=0.5/);
+  assert.match(page.url(), /body=rook/);
+  const again = await open(new URL(page.url()).hash);
+  await sliced(again.page);
+  assert.match(await again.page.locator('#times').textContent(), /layers106/);
+  await page.getByRole('button', { name: 'Diagnosis of the mesh' }).click();
+  await frame.locator('canvas[data-ready]').first().waitFor();
+  assert.deepEqual([...complaints, ...again.complaints], []);
+  await again.close();
+  await close();
+});
+
+test('a dropped file is sliced into the bytes of the program', async () => {
+  native('make', 'torus', '-o', 'torus.stl');
+  native('slice', 'torus.stl', '-o', 'torus.cli', '--layer-height', '1', '--rotate-x', '90');
+  const { page, complaints, close } = await open('#layerHeight=1&rotateX=90');
+  await page.locator('#file').setInputFiles(join(folder, 'torus.stl'));
+  await sliced(page);
+  await page.locator('#format').selectOption('cli');
+  const coming = page.waitForEvent('download');
+  await page.getByRole('button', { name: 'Download' }).click();
+  const download = await coming;
+  assert.equal(download.suggestedFilename(), 'torus.cli');
+  assert.ok(Buffer.compare(readFileSync(await download.path()), readFileSync(join(folder, 'torus.cli'))) === 0);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a slice file and scan vectors are shown', async () => {
+  native('make', 'box', '-o', 'box.stl');
+  native('slice', 'box.stl', '-o', 'box.cli', '--layer-height', '1');
+  const { page, complaints, close } = await open('#layerHeight=1');
+  await page.locator('#file').setInputFiles(join(folder, 'box.cli'));
+  await sliced(page);
+  await layersOf(page);
+  await page.getByText('Scan vectors', { exact: true }).click();
+  await page.locator('#body').selectOption('box');
+  await sliced(page);
+  await page.locator('[name=scan]').check();
+  await page.locator('#format option[value=ilt]').waitFor({ state: 'attached' });
+  await page.frameLocator('#viewer').getByRole('button', { name: /core hatch/ }).first().waitFor();
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a broken file gives the error of the program, and the page goes on', async () => {
+  const { page, close } = await open();
+  for (const [name, content] of [['bad.stl', 'solid\nfacet\n'], ['empty.stl', '']]) {
+    writeFileSync(join(folder, name), content);
+    await page.locator('#file').setInputFiles(join(folder, name));
+    await page.locator('#error:not(:empty)').waitFor();
+    const text = await page.locator('#error').textContent();
+    assert.match(text, new RegExp(`^${name}`));
+    await page.locator('#body').selectOption('box');
+    await sliced(page);
+    assert.equal(await page.locator('#error').textContent(), '');
+  }
+  await close();
+});
+
+test('a run is cancelled', async () => {
+  const { page, close } = await open('#layerHeight=0.001');
+  await page.locator('#body').selectOption('head');
+  await page.getByRole('button', { name: 'Cancel' }).click();
+  await page.getByText('Cancelled.').waitFor();
+  await page.locator('[name=layerHeight]').fill('5');
+  await page.locator('#body').selectOption('box');
+  await sliced(page);
+  await close();
+});
+
+test('everything is reached with the keyboard, and a phone shows it in its width', async () => {
+  const { page, close } = await open('#body=box', { viewport: { width: 390, height: 844 }, colorScheme: 'dark' });
+  await sliced(page);
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
+  assert.equal(await page.evaluate(() => document.documentElement.dataset.theme), 'dark');
+  const reached = new Set();
+  for (let i = 0; i < 40; ++i) {
+    await page.keyboard.press('Tab');
+    reached.add(await page.evaluate(() => document.activeElement.id || document.activeElement.name || document.activeElement.localName));
+  }
+  for (const id of ['file', 'body', 'layerHeight', 'slice', 'format', 'download', 'summary']) assert.ok(reached.has(id), id);
+  await close();
+});
+
+test('the package works as a module of a page', async () => {
+  const kinds = { '.js': 'text/javascript', '.wasm': 'application/wasm', '.html': 'text/html' };
+  const [, sample] = /^```html\n([\s\S]*?)^```$/m.exec(readFileSync(process.env.LAMELLA_PAGE, 'utf8'));
+  const server = createServer((request, response) => {
+    if (request.url === '/') return response.setHeader('content-type', 'text/html').end(`<!doctype html><body>${sample}`);
+    const path = join(packageFolder, normalize(request.url).replace(/^\/lamella/, ''));
+    if (!existsSync(path)) return response.writeHead(404).end();
+    response.setHeader('content-type', kinds[/\.[a-z]+$/.exec(path)[0]] ?? 'text/plain').end(readFileSync(path));
+  });
+  await new Promise((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const page = await browser.newPage();
+  await page.goto(`http://127.0.0.1:${server.address().port}/`);
+  await page.getByText('107 layers').or(page.getByText('106 layers')).waitFor();
+  const hashes = await page.evaluate(async () => {
+    const { makeBody, slice } = await import('/lamella/browser.js');
+    const stack = await slice(await makeBody('rook'), { layerHeight: 2 });
+    return stack.layers.map((layer) => layer.hash);
+  });
+  native('make', 'rook', '-o', 'rook.stl');
+  native('slice', 'rook.stl', '--stats', 'rook.json', '--layer-height', '2');
+  assert.deepEqual(hashes, JSON.parse(readFileSync(join(folder, 'rook.json'), 'utf8')).layers.map(({ hash }) => hash));
+  await page.close();
+  server.close();
+});

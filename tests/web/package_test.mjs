@@ -1,0 +1,284 @@
+// The npm package against the program of this computer: LAMELLA_PROGRAM, LAMELLA_PACKAGE (its folder).
+
+import assert from 'node:assert/strict';
+import { execFileSync, spawn, spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, test } from 'node:test';
+import { pathToFileURL } from 'node:url';
+
+process.env.SOURCE_DATE_EPOCH = '0';
+const program = process.env.LAMELLA_PROGRAM;
+const packageFolder = process.env.LAMELLA_PACKAGE;
+const lamella = await import(pathToFileURL(join(packageFolder, 'node.js')).href);
+const { LamellaError, Mesh, Stack, diagnose, makeBody, readFile, readLayers, readMesh, run, slice, sliceToFile, view, writeLayers } = lamella;
+
+const folder = mkdtempSync(join(tmpdir(), 'lamella-web-'));
+after(() => rmSync(folder, { recursive: true, force: true }));
+const native = (...words) => execFileSync(program, words, { cwd: folder, encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'], maxBuffer: 1 << 28 });
+const bytesOf = (name) => new Uint8Array(readFileSync(join(folder, name)));
+const same = (a, b) => Buffer.compare(Buffer.from(a), Buffer.from(b)) === 0;
+
+/** Each test body, small enough for a moment, with a layer height that gives some dozens of layers. */
+const bodies = [
+  ['sheet', { holes: 25, segments: 64 }, 0.2],
+  ['rook', {}, 1],
+  ['dodecahedra', {}, 2],
+  ['calibration', {}, 1],
+  ['head', {}, 8],
+  ['sole', {}, 1],
+  ['lattice', { cells: 2 }, 0.5],
+  ['box', { size: 10, rotate: [10, 20, 30] }, 0.5],
+  ['sphere', { size: 20 }, 0.5],
+  ['torus', { size: 20 }, 0.5],
+  ['cylinder', { size: 20 }, 0.5],
+];
+
+const kebab = (name) => name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
+const words = (options) => Object.entries(options).flatMap(([name, value]) => [`--${kebab(name)}`, String(value)]);
+
+for (const [body, options, layerHeight] of bodies)
+  test(`${body} has the bytes of the program's file and the content hash of each of its layers`, async () => {
+    native('make', body, '-o', `${body}.stl`, ...words(options));
+    const mesh = await makeBody(body, options);
+    assert.ok(same(mesh.bytes, bytesOf(`${body}.stl`)));
+    native('slice', `${body}.stl`, '--stats', 'stats.json', '--layer-height', String(layerHeight));
+    const expected = JSON.parse(readFileSync(join(folder, 'stats.json'), 'utf8'));
+    const stack = await slice(mesh, { layerHeight });
+    assert.equal(stack.layers.length, expected.layers.length);
+    expected.layers.forEach(({ hash, z, contours, points }, i) => {
+      const layer = stack.layers[i];
+      assert.deepEqual([layer.hash, layer.z, layer.contours, layer.points.length / 2], [hash, z, contours, points]);
+    });
+    assert.equal(mesh.triangles, expected.input.triangles);
+    assert.deepEqual(mesh.box, expected.input.bbox);
+  });
+
+/** The formats that the program lists. */
+function formats() {
+  const help = native('help', 'slice').replace(/\s+/g, ' ');
+  return /does not end in a known extension: ([^;]*?) --/.exec(help)[1].split(', ');
+}
+
+for (const format of formats())
+  test(`slicing into ${format} gives the bytes of the program`, async () => {
+    const mesh = await makeBody('rook');
+    writeFileSync(join(folder, 'rook.stl'), mesh.bytes);
+    const vectors = ['ilt', 'ovf', '3mf-toolpath'].includes(format);
+    const options = { layerHeight: 4, ...(vectors ? { scan: true, hatchDistance: 0.5 } : {}), ...(format.startsWith('png') ? { pixelSize: 0.4 } : {}) };
+    const given = words(options).filter((word) => word !== 'true');
+    native('slice', 'rook.stl', '-o', 'layers', '--format', format, ...given);
+    const { bytes } = await sliceToFile(mesh, format, options);
+    if (!(bytes instanceof Uint8Array)) { // a folder
+      const names = readdirSync(join(folder, 'layers'));
+      assert.deepEqual(Object.keys(bytes).sort(), names.map((name) => `layers/${name}`).sort());
+      for (const name of names) assert.ok(same(bytes[`layers/${name}`], bytesOf(join('layers', name))), name);
+    } else {
+      assert.ok(same(bytes, bytesOf('layers')), format);
+    }
+    rmSync(join(folder, 'layers'), { recursive: true });
+  });
+
+test('layers are written, read and changed like those of the program', async () => {
+  const stack = await slice(await makeBody('rook'), { layerHeight: 2 });
+  const cli = await writeLayers(stack, 'cli');
+  const again = await readLayers(cli, 'rook.cli');
+  assert.ok(again instanceof Stack);
+  assert.equal(again.layers.length, stack.layers.length);
+  const npz = await readLayers(stack.bytes, 'rook.npz');
+  stack.layers.forEach((layer, i) => assert.deepEqual(npz.layers[i].points, layer.points));
+  assert.ok((await readFile(cli, 'rook.cli')) instanceof Stack);
+  await assert.rejects(readMesh(cli, 'rook.cli'), { name: 'LamellaError', kind: 'input', message: /readLayers/ });
+});
+
+test('points are views of the memory of the stack', async () => {
+  const stack = await slice(await makeBody('torus'), { layerHeight: 2 });
+  for (const layer of stack.layers) {
+    assert.equal(layer.points.buffer, stack.bytes.buffer);
+    assert.equal(layer.points.length, 2 * layer.offsets.at(-1));
+    assert.equal(layer.contours, layer.offsets.length - 1);
+    for (let i = 0; i < layer.contours; ++i) assert.equal(layer.contour(i).buffer, stack.bytes.buffer);
+  }
+});
+
+test('several meshes on a plate stay apart, each with its placement', async () => {
+  const box = await makeBody('box', { size: 10 });
+  const stack = await slice([box, { mesh: box, translate: [30, 0, 0], label: 'second', copies: 2 }], { layerHeight: 5 });
+  assert.equal(stack.labels.length, 3);
+  assert.deepEqual([...stack.layers[0].parts], [0, 1, 2]);
+  assert.equal(stack.layers[0].areaMm2, 300);
+});
+
+test('scan vectors come with their hatches, and are written with their parameters', async () => {
+  const box = await makeBody('box', { size: 10 });
+  const strategy = (await run(['strategy', 'show'])).text;
+  const stack = await slice(box, { layerHeight: 5, scan: true, strategy });
+  assert.ok(stack.layers[0].hatches.length > 100);
+  assert.equal(stack.layers[0].hatches.length, 4 * stack.layers[0].hatchParts.length);
+  writeFileSync(join(folder, 'box.stl'), box.bytes);
+  native('slice', 'box.stl', '-o', 'box.ilt', '--layer-height', '5', '--scan');
+  assert.ok(same(await writeLayers(stack, 'ilt'), bytesOf('box.ilt')));
+});
+
+test('heights of every kind reach the program', async () => {
+  const box = await makeBody('box', { size: 10 });
+  const z = async (options) => (await slice(box, options)).layers.map((layer) => layer.z);
+  assert.deepEqual(await z({ zList: [1, 2.5] }), [1, 2.5]);
+  assert.equal((await z({ heights: [[0, 5, 1]], layerHeight: 2.5 })).length, 7);
+  assert.deepEqual(await z({ layerHeight: 1, layers: [2, 4] }), [2.5, 3.5]);
+  assert.deepEqual(await z({ layerHeight: 1, zRange: [null, 2] }), [0.5, 1.5]);
+  assert.equal((await z({ adaptive: [1, 5], cusp: 5 })).length, 2);
+});
+
+test('a diagnosis and a page are those of the program', async () => {
+  const mesh = await makeBody('rook');
+  writeFileSync(join(folder, 'rook.stl'), mesh.bytes);
+  const { warnings, ...facts } = await diagnose(mesh);
+  assert.deepEqual(facts, JSON.parse(native('info', 'rook.stl', '--json')));
+  assert.deepEqual(warnings, []);
+  assert.match(Buffer.from(await view(mesh, { layerHeight: 5 })).toString(), /<title>Lamella<\/title>/);
+});
+
+test('errors have the texts of the program, and kinds', async () => {
+  for (const [name, content, options] of [
+    ['empty.stl', '', {}],
+    ['text.stl', 'solid a\nfacet normal 0 0 0\nouter loop\nvertex 0 0\n', {}],
+    ['picture.png', '\x89PNG\r\n\x1a\n', {}],
+  ]) {
+    writeFileSync(join(folder, name), content, 'latin1');
+    const { stderr } = spawnSync(program, ['info', name], { cwd: folder, encoding: 'utf8' });
+    await assert.rejects(readMesh(bytesOf(name), name, options), (error) => {
+      assert.ok(error instanceof LamellaError);
+      assert.equal(`lamella: error: ${error.message}\n`, stderr);
+      assert.equal(error.kind, 'input');
+      return true;
+    });
+  }
+  const box = await makeBody('box');
+  await assert.rejects(slice(box, { layerHeight: -1 }), { kind: 'usage', exitCode: 2, message: /--layer-height/ });
+  await assert.rejects(slice(box, { layerHight: 1 }), { kind: 'usage', message: /--layer-height/ });
+  await assert.rejects(sliceToFile(box, 'png', { maxOutput: 10, layerHeight: 1 }), { kind: 'limit' });
+  await assert.rejects(readMesh({}, 'x.stl'), TypeError);
+});
+
+test('a call reports progress and ends when its signal is aborted', async () => {
+  const mesh = await makeBody('lattice', { cells: 8 });
+  const stages = [];
+  await slice(mesh, { layerHeight: 1, onProgress: ({ stage }) => stages.push(stage) });
+  assert.ok(stages.includes('read') && stages.includes('slice'));
+  const abort = new AbortController();
+  const call = slice(mesh, { layerHeight: 0.001, signal: abort.signal, onProgress: () => abort.abort(new Error('enough')) });
+  await assert.rejects(call, { message: 'enough' });
+  await assert.rejects(slice(mesh, { signal: AbortSignal.abort() }), { name: 'AbortError' });
+  assert.ok((await slice(mesh, { layerHeight: 10 })).layers.length > 0);
+});
+
+test('a thousand slices leave no memory behind', async () => {
+  const box = await makeBody('sphere', { size: 20, detail: 3 });
+  const some = async (count) => {
+    for (let i = 0; i < count; ++i) await slice(box, { layerHeight: 1 });
+    globalThis.gc?.();
+    return process.memoryUsage().rss;
+  };
+  const before = await some(200);
+  const after = await some(1000);
+  assert.ok(after - before < 64e6, `${((after - before) / 1e6).toFixed(1)} MB more`);
+});
+
+/** Numbers that look random, the same in every run. */
+function* random(seed) {
+  for (let state = seed; ; ) {
+    state = (Math.imul(state, 1664525) + 1013904223) >>> 0;
+    yield state / 2 ** 32;
+  }
+}
+
+test('changed files give an error or a result, never a trap', async () => {
+  const rook = await makeBody('cylinder', { size: 10, segments: 8 });
+  const stack = await slice(rook, { layerHeight: 2 });
+  const seeds = [['part.stl', rook.bytes]];
+  for (const name of ['part.obj', 'part.ply']) seeds.push([name, (await makeBody('cylinder', { segments: 8, format: name.slice(-3) })).bytes]);
+  seeds.push(['ascii.stl', (await makeBody('cylinder', { segments: 8, ascii: true })).bytes]);
+  for (const format of ['cli', 'cli-ascii', 'svg', 'slc', '3mf', 'json', 'npz']) seeds.push([`layers.${format}`, await writeLayers(stack, format)]);
+  const numbers = random(7);
+  const next = (n) => Math.floor(numbers.next().value * n);
+  const rounds = Number(process.env.LAMELLA_MUTATIONS ?? 200);
+  let results = 0;
+  const calls = [];
+  for (let i = 0; i < rounds; ++i)
+    for (const [name, original] of seeds) {
+      const bytes = original.slice(0, next(4) === 0 ? next(original.length) : original.length);
+      for (let k = next(8); k >= 0 && bytes.length > 0; --k) bytes[next(bytes.length)] = next(256);
+      calls.push(
+        readFile(bytes, name).then(
+          () => ++results,
+          (error) => {
+            assert.ok(error instanceof LamellaError, error.stack);
+            assert.ok(['input', 'limit', 'defect', 'usage'].includes(error.kind), error.message);
+            assert.doesNotMatch(error.message, /stopped by WebAssembly/);
+          },
+        ),
+      );
+      if (calls.length >= 50) await Promise.all(calls.splice(0));
+    }
+  await Promise.all(calls);
+  assert.ok(results > 0);
+});
+
+test('the program of the package works on the files of this computer', () => {
+  native('make', 'rook', '-o', 'rook.stl');
+  native('slice', 'rook.stl', '-o', 'native.cli', '--layer-height', '1');
+  const cli = (...words) => spawnSync(process.execPath, [join(packageFolder, 'cli.js'), ...words], { cwd: folder, maxBuffer: 1 << 28 });
+  const sliced = cli('slice', 'rook.stl', '-o', 'web.cli', '--layer-height', '1');
+  assert.equal(sliced.status, 0, String(sliced.stderr));
+  assert.ok(same(bytesOf('web.cli'), bytesOf('native.cli')));
+  assert.ok(same(cli('slice', join(folder, 'rook.stl'), '-o', '-', '--format', 'cli', '--layer-height', '1').stdout, bytesOf('native.cli')));
+  const piped = spawnSync(process.execPath, [join(packageFolder, 'cli.js'), 'slice', '-', '-o', 'piped.cli', '--layer-height', '1'], { cwd: folder, input: bytesOf('rook.stl') });
+  assert.equal(piped.status, 0, String(piped.stderr));
+  assert.equal(bytesOf('piped.cli').length, bytesOf('native.cli').length);
+  const refused = cli('slice', 'missing.stl', '-o', 'x.cli');
+  const expected = spawnSync(program, ['slice', 'missing.stl', '-o', 'x.cli'], { cwd: folder });
+  assert.equal(refused.status, expected.status);
+  assert.equal(String(refused.stderr), String(expected.stderr));
+  assert.ok(!readdirSync(folder).includes('x.cli'));
+});
+
+test('Ctrl-C ends the program of the package and leaves nothing behind', async () => {
+  const place = mkdtempSync(join(folder, 'cancelled-'));
+  native('make', 'lattice', '--cells', '12', '-o', 'large.stl');
+  const running = spawn(process.execPath, [join(packageFolder, 'cli.js'), 'slice', join(folder, 'large.stl'), '-o', 'x.cli', '--layer-height', '0.01'], {
+    cwd: place,
+    stdio: ['ignore', 'ignore', 'pipe'],
+  });
+  const ended = new Promise((resolve) => running.on('exit', (code) => resolve(code)));
+  let text = '';
+  running.stderr.on('data', (data) => (text += data));
+  while (readdirSync(place).length === 0) await new Promise((resolve) => setTimeout(resolve, 10));
+  running.kill('SIGINT');
+  assert.equal(await ended, 130);
+  assert.equal(text, 'lamella: error: cancelled\n');
+  assert.deepEqual(readdirSync(place), []);
+});
+
+test('the samples of the documentation run', async () => {
+  const page = readFileSync(process.env.LAMELLA_PAGE, 'utf8');
+  const samples = [...page.matchAll(/^```js\n(import [^`]*from 'lamella';\n[^`]*)^```$/gm)].map(([, text]) => text);
+  assert.ok(samples.length > 0);
+  native('make', 'rook', '-o', 'part.stl');
+  native('slice', 'part.stl', '-o', 'native.cli');
+  for (const sample of samples) {
+    writeFileSync(join(folder, 'sample.mjs'), sample.replaceAll("'lamella'", JSON.stringify(pathToFileURL(join(packageFolder, 'node.js')).href)));
+    const { status, stderr } = spawnSync(process.execPath, ['sample.mjs'], { cwd: folder, encoding: 'utf8' });
+    assert.equal(status, 0, stderr);
+    native('compare', 'part.cli', 'native.cli');
+  }
+});
+
+test('only what is documented is exported', () => {
+  assert.deepEqual(Object.keys(lamella).sort(), [
+    'LamellaError', 'Layer', 'Mesh', 'Stack', 'diagnose', 'makeBody', 'readFile', 'readLayers', 'readMesh', 'releaseWorkers', 'run', 'slice',
+    'sliceToFile', 'usePlatform', 'view', 'writeLayers',
+  ]);
+  assert.ok(Mesh);
+});

@@ -1,0 +1,273 @@
+// Types of the package. The options are those of the program, in camel case: `lamella slice --help` describes them.
+
+export type Bytes = Uint8Array | ArrayBuffer | ArrayBufferView | string;
+export type Triple = readonly [number, number, number];
+export type Range = readonly [from: number | null, to: number | null];
+
+export interface Progress {
+  stage: 'read' | 'weld' | 'link' | 'slice' | 'polygon' | 'write';
+  done: number;
+  total: number;
+  seconds: number;
+}
+
+export interface CallOptions {
+  /** Ends the call; its promise is rejected with the reason of the signal. */
+  signal?: AbortSignal;
+  onProgress?: (progress: Progress) => void;
+}
+
+export type ErrorKind = 'internal' | 'usage' | 'input' | 'defect' | 'limit' | 'output' | 'cancelled';
+
+/** A failure that the program reports; its message is the text of the program. */
+export class LamellaError extends Error {
+  constructor(message: string, exitCode: number);
+  readonly kind: ErrorKind;
+  readonly exitCode: number;
+  readonly warnings?: string[];
+}
+
+export type Unit = 'mm' | 'cm' | 'm' | 'inch' | 'ft' | 'um' | number;
+export type Box = [min: [number, number, number], max: [number, number, number]];
+
+/** A mesh file that was read without an error. */
+export class Mesh {
+  private constructor();
+  readonly name: string;
+  /** The file. */
+  readonly bytes: Uint8Array;
+  /** Such as `stl-binary` or `3mf`. */
+  readonly format: string;
+  /** In the file. */
+  readonly triangles: number;
+  readonly unit: string;
+  /** Of all parts, mm. */
+  readonly box: Box;
+  readonly parts: { label: string; support: boolean; box: Box }[];
+  readonly warnings: string[];
+}
+
+export interface ReadOptions extends CallOptions {
+  /** The unit of a file that does not give it. */
+  unit?: Unit;
+  /** Roles of bodies in 3MF and AMF files that are read as solids, too. */
+  include?: string | string[];
+  maxTriangles?: number;
+}
+
+/** Reads a mesh file (STL, OBJ, PLY, OFF, 3MF, AMF); its format is recognised by its content. */
+export function readMesh(data: Bytes, name?: string, options?: ReadOptions): Promise<Mesh>;
+/** Reads a slice file (CLI, SVG, SLC, 3MF, JSON, NPZ, ILT, OVF); its format is recognised by its content. */
+export function readLayers(data: Bytes, name?: string, options?: CallOptions): Promise<Stack>;
+/** Reads a mesh or layers, whatever the file holds. */
+export function readFile(data: Bytes, name?: string, options?: ReadOptions): Promise<Mesh | Stack>;
+
+export type Body =
+  | 'sheet' | 'rook' | 'dodecahedra' | 'calibration' | 'head' | 'sole' | 'lattice' | 'box' | 'sphere' | 'torus' | 'cylinder';
+export interface BodyOptions {
+  format?: 'stl' | 'ply' | 'obj';
+  ascii?: boolean;
+  shuffle?: number;
+  holes?: number;
+  segments?: number;
+  size?: number | Triple;
+  thickness?: number;
+  cells?: number;
+  detail?: number;
+  order?: 'wall' | 'hole' | 'split' | 'shuffle';
+  scale?: number | Triple;
+  rotate?: Triple;
+  rotateX?: number;
+  rotateY?: number;
+  rotateZ?: number;
+  translate?: Triple;
+  signal?: AbortSignal;
+}
+/** Makes a test body. */
+export function makeBody(body: Body, options?: BodyOptions): Promise<Mesh>;
+
+/** What `lamella info --json` prints. */
+export interface Diagnosis {
+  triangles: number;
+  vertices: number;
+  bbox: Box;
+  volume_mm3: number;
+  area_mm2: number;
+  closed: boolean;
+  shells: number;
+  cavities: number;
+  defects: Record<string, number>;
+  places: Record<string, unknown[]>;
+  warnings: string[];
+  [fact: string]: unknown;
+}
+export function diagnose(mesh: Mesh, options?: CallOptions & { selfIntersections?: boolean; unit?: Unit }): Promise<Diagnosis>;
+
+export interface Placement {
+  unit?: Unit;
+  scale?: number | Triple;
+  rotate?: Triple;
+  rotateX?: number;
+  rotateY?: number;
+  rotateZ?: number;
+  translate?: Triple;
+  /** Slices along this direction instead of z. */
+  direction?: Triple;
+  copies?: number;
+  spacing?: number;
+  label?: string;
+  support?: boolean;
+}
+
+/** Options of the files of some formats. */
+export interface WriteOptions extends CallOptions {
+  unitsMm?: number;
+  short?: boolean;
+  maxOutput?: number | string;
+  strict?: boolean;
+  pixelSize?: number | readonly [number, number];
+  resolution?: readonly [number, number];
+  displaySize?: readonly [number, number];
+  orientation?: 'landscape' | 'portrait';
+  mirror?: 'none' | 'x' | 'y' | 'xy';
+  antialias?: number;
+  gamma?: number;
+  exposure?: number;
+  firstExposure?: number;
+  fadeLayers?: number;
+}
+
+export interface SliceOptions extends WriteOptions, Placement {
+  layerHeight?: number;
+  firstLayerHeight?: number;
+  sliceAt?: 'bottom' | 'middle' | 'top';
+  zRange?: Range;
+  layers?: Range;
+  /** Cuts at exactly these heights. */
+  zList?: number[];
+  /** Layers of a height from here to there above the bottom. */
+  heights?: (readonly [from: number, to: number, layerHeight: number])[];
+  adaptive?: readonly [min: number, max: number];
+  cusp?: number;
+  snap?: number;
+  weldTolerance?: number;
+  dropDuplicates?: boolean;
+  orient?: boolean;
+  closeGaps?: number;
+  fill?: 'none' | 'nonzero' | 'evenodd' | 'positive';
+  offset?: number;
+  offsetCorners?: 'mitre' | 'bevel' | 'round';
+  largestOnly?: boolean;
+  minArea?: number;
+  simplify?: number;
+  /** Scan vectors instead of contours. */
+  scan?: boolean;
+  /** The text of a strategy file. */
+  strategy?: string;
+  contours?: number;
+  beamOffset?: number;
+  contourDistance?: number;
+  pattern?: 'lines' | 'meander' | 'stripes' | 'chessboard' | 'hexagons';
+  hatchDistance?: number;
+  hatchAngle?: number;
+  hatchTurn?: number;
+  hatchBorder?: number;
+  shortest?: number;
+  cellSize?: number;
+  skinLayers?: number;
+  buildVolume?: Triple;
+  engine?: 'sweep' | 'conventional' | 'ecc' | 'ecc-edge-match' | 'eecc';
+  inspect?: boolean;
+  include?: string | string[];
+  maxTriangles?: number;
+  maxMemory?: number | string;
+  threads?: number;
+}
+
+/** The contours of one plane. `points`, `closed` and `hatches` are views of the stack's memory. */
+export class Layer {
+  private constructor();
+  readonly index: number;
+  /** Heights of the cut, and of the bottom and top of the material, mm. */
+  readonly z: number;
+  readonly bottom: number;
+  readonly top: number;
+  /** Number of contours. */
+  readonly contours: number;
+  /** x and y of all points, in turn, mm. */
+  readonly points: Float64Array;
+  /** Contour i has the points from offsets[i] to offsets[i + 1]; a ring does not repeat its first point. */
+  readonly offsets: Uint32Array;
+  /** 1 for each ring, 0 for each open contour. */
+  readonly closed: Uint8Array;
+  /** The part of each contour: an index of `Stack.labels`. */
+  readonly parts: Uint32Array;
+  /** x and y of the first and last point of each hatch line, in turn. */
+  readonly hatches: Float64Array;
+  readonly hatchParts: Uint32Array;
+  /** x and y of the points of contour i, in turn. */
+  contour(i: number): Float64Array;
+
+  // Of sliced layers:
+  /** Content hash of the contours: equal on every machine. */
+  readonly hash?: string;
+  readonly thickness?: number;
+  readonly holes?: number;
+  readonly areaMm2?: number;
+  readonly perimeterMm?: number;
+  readonly openChains?: number;
+}
+
+/** Layers in ascending z. */
+export class Stack {
+  private constructor();
+  readonly layers: Layer[];
+  /** Of the parts. */
+  readonly labels: string[];
+  /** What `lamella slice --stats` writes; null for layers that were read. */
+  readonly statistics: Record<string, any> | null;
+  readonly warnings: string[];
+  /** An NPZ file of the layers. */
+  readonly bytes: Uint8Array;
+}
+
+export type PlacedMesh = Mesh | ({ mesh: Mesh } & Placement);
+
+/** Slices one mesh, or several on one plate. */
+export function slice(meshes: Mesh | readonly PlacedMesh[], options?: SliceOptions): Promise<Stack>;
+
+export type FileFormat =
+  | 'cli' | 'cli-ascii' | 'svg' | 'slc' | '3mf' | 'dxf' | 'geojson' | 'json' | 'npz' | 'ilt' | 'ovf' | '3mf-toolpath' | 'html'
+  | 'svg-layers' | 'png-zip' | 'sl1' | 'sl1s';
+
+/** Slices into a slice file, without layers in between. */
+export function sliceToFile(
+  meshes: Mesh | readonly PlacedMesh[],
+  format: FileFormat,
+  options?: SliceOptions,
+): Promise<{ bytes: Uint8Array; statistics: Record<string, any>; warnings: string[] }>;
+
+/** Writes layers in a slice format. */
+export function writeLayers(stack: Stack, format: FileFormat, options?: WriteOptions & { label?: string }): Promise<Uint8Array>;
+/** Writes one file for each layer. */
+export function writeLayers(stack: Stack, format: 'png', options?: WriteOptions): Promise<Record<string, Uint8Array>>;
+
+/** A page that shows the layers, as `lamella view` writes it: HTML. */
+export function view(meshOrStack: Mesh | Stack, options?: SliceOptions): Promise<Uint8Array>;
+
+export interface RunResult {
+  /** Exit code of the program. */
+  code: number;
+  /** Standard output. */
+  text: string;
+  warnings: string[];
+  /** Other lines of standard error. */
+  notes: string[];
+  /** The files that the program wrote, by name. */
+  files: Record<string, Uint8Array>;
+}
+/** Runs the program with the words of a command line, on files given by name. Throws LamellaError if it fails. */
+export function run(words: string[], files?: Record<string, Bytes>, options?: CallOptions): Promise<RunResult>;
+
+/** Ends all workers that compute nothing. The next call starts new ones. */
+export function releaseWorkers(): void;

@@ -1,0 +1,457 @@
+// The interface for JavaScript: meshes and stacks of layers are bytes in the caller's memory, and each call runs the
+// program on them in a worker. So nothing has to be freed, and a call can be ended at any time.
+
+const kinds = { 1: 'internal', 2: 'usage', 3: 'input', 4: 'defect', 5: 'limit', 6: 'output', 130: 'cancelled' };
+
+/** A failure that the program reports; its message is the text of the program. */
+export class LamellaError extends Error {
+  /** @param {string} message @param {number} exitCode of the program */
+  constructor(message, exitCode) {
+    super(message);
+    this.name = 'LamellaError';
+    this.exitCode = exitCode;
+    this.kind = kinds[exitCode] ?? 'internal';
+  }
+}
+
+let platform;
+let module; // of WebAssembly, compiled once
+const idle = []; // workers
+const waiting = []; // functions to call with a worker
+let started = 0;
+
+/** Called once, by the entry for Node.js or for browsers. */
+export function usePlatform(given) {
+  platform = given;
+}
+
+function startWorker(compiled) {
+  const worker = { job: null };
+  const fail = (error) => {
+    worker.handle.end();
+    drop(worker);
+    worker.job?.reject(error);
+  };
+  worker.handle = platform.startWorker(
+    compiled,
+    (message) => {
+      if (message.line !== undefined) worker.job?.onLine(message.line);
+      else worker.job?.finish(message);
+    },
+    fail,
+  );
+  return worker;
+}
+
+async function takeWorker() {
+  module ??= platform.loadModule();
+  const compiled = await module;
+  if (idle.length > 0) return idle.pop();
+  if (started < platform.workers) {
+    started += 1;
+    return startWorker(compiled);
+  }
+  return new Promise((resolve) => waiting.push(resolve));
+}
+
+function giveBack(worker) {
+  const next = waiting.shift();
+  if (next) next(worker);
+  else idle.push(worker);
+}
+
+/** A worker that was ended makes room for another one. */
+function drop(worker) {
+  const at = idle.indexOf(worker);
+  if (at >= 0) idle.splice(at, 1);
+  started -= 1;
+  if (waiting.length > 0) takeWorker().then(waiting.shift());
+}
+
+/** Ends all workers that compute nothing. The next call starts new ones. */
+export function releaseWorkers() {
+  for (const worker of idle.splice(0)) {
+    worker.handle.end();
+    started -= 1;
+  }
+}
+
+/** Runs in a worker. @returns {Promise<{code: number, output: Uint8Array, files: object[]}>} */
+async function runInWorker(words, inputs, signal, onLine) {
+  signal?.throwIfAborted();
+  const worker = await takeWorker();
+  if (signal?.aborted) {
+    giveBack(worker);
+    signal.throwIfAborted();
+  }
+  worker.handle.hold(true);
+  let abort;
+  try {
+    return await new Promise((resolve, reject) => {
+      abort = () => {
+        worker.handle.end();
+        drop(worker);
+        reject(signal.reason);
+      };
+      worker.job = {
+        onLine,
+        reject,
+        finish({ result, trap }) {
+          worker.handle.hold(false);
+          giveBack(worker);
+          if (result) resolve(result);
+          else reject(new LamellaError(trapText(trap), 5));
+        },
+      };
+      signal?.addEventListener('abort', abort, { once: true });
+      worker.handle.post({ words, inputs });
+    });
+  } finally {
+    worker.job = null;
+    signal?.removeEventListener('abort', abort);
+  }
+}
+
+const trapText = (trap) =>
+  `stopped by WebAssembly (${trap}): most likely the 4 GB that it can use, or its stack, were not enough; the program for the computer itself has no such limit`;
+
+/**
+ * Runs the program with a command line, on files given by name.
+ * @param {string[]} words such as ['slice', 'part.stl', '-o', 'part.cli']
+ * @param {Record<string, Uint8Array>} files
+ * @param {{signal?: AbortSignal, onProgress?: Function}} options
+ */
+export async function run(words, files = {}, { signal, onProgress } = {}) {
+  const warnings = [];
+  const texts = [];
+  let failure;
+  const onLine = (line) => {
+    const message = line.startsWith('{') ? JSON.parse(line) : {};
+    if (message.stage !== undefined) onProgress?.(message);
+    else if (message.warning !== undefined) warnings.push(message.warning);
+    else if (message.error !== undefined) failure = message.error;
+    else if (line.startsWith('lamella: error: ')) failure = line.slice('lamella: error: '.length);
+    else if (line.startsWith('lamella: warning: ')) warnings.push(line.slice('lamella: warning: '.length));
+    else texts.push(line);
+  };
+  const inputs = Object.entries(files).map(([name, bytes]) => ({ name, bytes: bytesOf(bytes) }));
+  const { code, output, files: written } = await runInWorker(words, inputs, signal, onLine);
+  const result = {
+    code,
+    text: new TextDecoder().decode(output),
+    warnings,
+    notes: texts,
+    files: Object.fromEntries(written.map(({ name, bytes }) => [name, bytes])),
+  };
+  if (failure !== undefined) throw Object.assign(new LamellaError(failure, code), { warnings });
+  return result;
+}
+
+function bytesOf(data) {
+  if (data instanceof Uint8Array) return data;
+  if (typeof data === 'string') return new TextEncoder().encode(data);
+  if (ArrayBuffer.isView(data)) return new Uint8Array(data.buffer, data.byteOffset, data.byteLength);
+  if (data instanceof ArrayBuffer || (typeof SharedArrayBuffer !== 'undefined' && data instanceof SharedArrayBuffer)) return new Uint8Array(data);
+  throw new TypeError('bytes must be an ArrayBuffer, a view of one, or a string');
+}
+
+// ---- Options: those of the program, in camel case. --------------------------------------------------------------------
+
+const ranges = new Set(['layers', 'zRange', 'adaptive']);
+/** Options that are files for the program, and the name of the file. */
+const texts = { zList: 'heights.json', strategy: 'strategy.toml' };
+const ofCall = new Set(['signal', 'onProgress']);
+
+const kebab = (name) => name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
+
+function valueText(name, value) {
+  if (name === 'heights') return value.map(([from, to, height]) => `${from}:${to}=${height}`).join(',');
+  if (name === 'resolution') return value.join('x');
+  if (ranges.has(name)) return value.map((end) => end ?? '').join(':');
+  return Array.isArray(value) ? value.join(',') : String(value);
+}
+
+/** The words for options; files that they need are added to `files`. */
+function wordsOf(options, files) {
+  return Object.entries(options).flatMap(([name, value]) => {
+    if (value === undefined || value === null || value === false || ofCall.has(name)) return [];
+    const option = `--${kebab(name)}`;
+    if (value === true) return [option];
+    if (texts[name] !== undefined) {
+      files[texts[name]] = typeof value === 'string' ? value : JSON.stringify(value);
+      return [option, texts[name]];
+    }
+    return [`${option}=${valueText(name, value)}`];
+  });
+}
+
+/** A name under which a file can lie beside the others of a call. */
+function fileName(name, files) {
+  const plain = name.replace(/^.*[/\\]/, '') || 'part';
+  for (let number = 1; ; ++number) {
+    const unique = number === 1 ? plain : plain.replace(/(\.[^.]*)?$/, `-${number}$1`);
+    if (files[unique] === undefined) return unique;
+  }
+}
+
+// ---- Meshes -----------------------------------------------------------------------------------------------------------
+
+/** A mesh file that was read without an error. It is bytes: memory is given back when nothing refers to it. */
+export class Mesh {
+  constructor(bytes, facts, warnings) {
+    Object.assign(this, facts, { bytes, warnings });
+  }
+}
+
+/** Reads a mesh or slice file and describes it. */
+async function readAny(data, name, options) {
+  const bytes = bytesOf(data);
+  const plain = fileName(name, {});
+  const { text, warnings } = await run(['read', plain, '--progress=json', ...wordsOf(options, {})], { [plain]: bytes }, options);
+  return { bytes, warnings, facts: { ...JSON.parse(text), name: plain } };
+}
+
+/** Reads a mesh file; its format is recognised by its content. */
+export async function readMesh(data, name = 'part', options = {}) {
+  const { bytes, facts, warnings } = await readAny(data, name, options);
+  if (facts.kind !== 'mesh') throw new LamellaError(`${facts.name}: holds layers (${facts.format}); readLayers reads them`, 3);
+  return new Mesh(bytes, facts, warnings);
+}
+
+/** Reads a mesh or layers, whatever the file holds. @returns {Promise<Mesh|Stack>} */
+export async function readFile(data, name = 'part', options = {}) {
+  const { bytes, facts, warnings } = await readAny(data, name, options);
+  return facts.kind === 'mesh' ? new Mesh(bytes, facts, warnings) : readLayers(bytes, facts.name, options);
+}
+
+/** Makes one of the test bodies, such as `rook`. */
+export async function makeBody(body, { ascii, format = 'stl', ...options } = {}) {
+  const name = `${body}.${format}`;
+  const { files } = await run(['make', body, '-o', name, ...wordsOf({ ascii, ...options }, {})], {}, options);
+  return readMesh(files[name], name, { signal: options.signal });
+}
+
+/** Size, volume, shells and every kind of defect with its positions, as `lamella info --json` describes them. */
+export async function diagnose(mesh, options = {}) {
+  const { text, warnings } = await run(['info', mesh.name, '--json', '--progress=json', ...wordsOf(options, {})], { [mesh.name]: mesh.bytes }, options);
+  return { ...JSON.parse(text), warnings };
+}
+
+// ---- Layers -----------------------------------------------------------------------------------------------------------
+
+/** The entries of a zip archive whose bytes are stored as they are. */
+function* entries(bytes) {
+  const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
+  let end = bytes.length - 22;
+  while (view.getUint32(end, true) !== 0x06054b50) end -= 1;
+  let at = view.getUint32(end + 16, true);
+  for (let left = view.getUint16(end + 10, true); left > 0; --left) {
+    const nameBytes = view.getUint16(at + 28, true);
+    const header = view.getUint32(at + 42, true);
+    const name = new TextDecoder().decode(bytes.subarray(at + 46, at + 46 + nameBytes));
+    const begin = header + 30 + view.getUint16(header + 26, true) + view.getUint16(header + 28, true);
+    yield [name, begin, view.getUint32(at + 20, true)];
+    at += 46 + nameBytes + view.getUint16(at + 30, true) + view.getUint16(at + 32, true);
+  }
+}
+
+const headerBytes = 128; // of the arrays that the program writes
+const types = { '<f8': Float64Array, '<i8': BigInt64Array, '|b1': Uint8Array };
+
+/** The arrays of an NPZ file that the program wrote, views of one buffer. */
+function arraysOf(file) {
+  // Views of doubles begin at multiples of 8 bytes. The file is moved so that its points do.
+  const [, first] = entries(file).next().value;
+  const shift = (8 - ((first + headerBytes) % 8)) % 8;
+  const bytes = new Uint8Array(new ArrayBuffer(file.length + shift), shift);
+  bytes.set(file);
+  const arrays = {};
+  for (const [name, begin, size] of entries(bytes)) {
+    const header = new TextDecoder('latin1').decode(bytes.subarray(begin + 10, begin + headerBytes));
+    const type = /'descr': '([^']*)'/.exec(header)[1];
+    const data = bytes.subarray(begin + headerBytes, begin + size);
+    arrays[name.replace('.npy', '')] = type.startsWith('<U') ? strings(data, Number(type.slice(2))) : numbers(data, types[type]);
+  }
+  return { bytes, arrays };
+}
+
+function numbers(data, Type) {
+  const begin = data.byteOffset;
+  if (begin % Type.BYTES_PER_ELEMENT === 0) return new Type(data.buffer, begin, data.length / Type.BYTES_PER_ELEMENT);
+  return new Type(data.slice().buffer);
+}
+
+function strings(data, length) {
+  const points = new Uint32Array(data.slice().buffer);
+  return Array.from({ length: points.length / length }, (_, i) =>
+    String.fromCodePoint(...points.subarray(i * length, (i + 1) * length)).replace(/\0+$/, ''),
+  );
+}
+
+/** The position of the first number of an ascending array that is not below `value`. */
+function lowerBound(array, value) {
+  let [low, high] = [0, array.length];
+  while (low < high) {
+    const middle = (low + high) >>> 1;
+    if (array[middle] < value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+/** The contours of one plane. `points`, `closed` and `hatches` are views without a copy. */
+export class Layer {
+  #arrays;
+  #first; // contour
+  #last;
+  #offsets;
+  #hatches; // from which line to which
+
+  constructor(arrays, i, statistics) {
+    this.#arrays = arrays;
+    this.index = Number(arrays.index[i]);
+    this.z = arrays.z[i];
+    this.bottom = arrays.bottom[i];
+    this.top = arrays.top[i];
+    this.#first = lowerBound(arrays.layer, BigInt(i));
+    this.#last = lowerBound(arrays.layer, BigInt(i + 1));
+    this.#hatches = arrays.hatch_layer ? [lowerBound(arrays.hatch_layer, BigInt(i)), lowerBound(arrays.hatch_layer, BigInt(i + 1))] : [0, 0];
+    Object.assign(this, statistics);
+  }
+
+  /** Number of contours. */
+  get contours() {
+    return this.#last - this.#first;
+  }
+
+  /** x and y of all points, in turn. */
+  get points() {
+    const { points, offsets } = this.#arrays;
+    return points.subarray(2 * Number(offsets[this.#first]), 2 * Number(offsets[this.#last]));
+  }
+
+  /** Contour i has the points from offsets[i] to offsets[i + 1]. */
+  get offsets() {
+    if (!this.#offsets) {
+      const { offsets } = this.#arrays;
+      const begin = offsets[this.#first];
+      this.#offsets = Uint32Array.from(offsets.subarray(this.#first, this.#last + 1), (offset) => Number(offset - begin));
+    }
+    return this.#offsets;
+  }
+
+  /** 1 for each ring, 0 for each open contour. */
+  get closed() {
+    return this.#arrays.closed.subarray(this.#first, this.#last);
+  }
+
+  /** The part of each contour. */
+  get parts() {
+    return Uint32Array.from(this.#arrays.part.subarray(this.#first, this.#last), Number);
+  }
+
+  /** x and y of the first and last point of each hatch line, in turn. */
+  get hatches() {
+    const [begin, end] = this.#hatches;
+    return this.#arrays.hatches?.subarray(4 * begin, 4 * end) ?? new Float64Array();
+  }
+
+  /** The part of each hatch line. */
+  get hatchParts() {
+    const [begin, end] = this.#hatches;
+    return Uint32Array.from(this.#arrays.hatch_part?.subarray(begin, end) ?? [], Number);
+  }
+
+  /** x and y of the points of contour i, in turn. */
+  contour(i) {
+    return this.points.subarray(2 * this.offsets[i], 2 * this.offsets[i + 1]);
+  }
+}
+
+const camel = (name) => name.replace(/_(mm[23]?|[a-z])/g, (_, rest) => rest[0].toUpperCase() + rest.slice(1));
+
+/** Statistics without the properties that layers have anyway. */
+function statisticsOf({ index, z, contours, points, ...rest }) {
+  return Object.fromEntries(Object.entries(rest).map(([name, value]) => [camel(name), value]));
+}
+
+/** Layers in ascending z. `bytes` are an NPZ file of them. */
+export class Stack {
+  constructor(file, { statistics = null, warnings = [], source = null } = {}) {
+    const { bytes, arrays } = arraysOf(file);
+    this.bytes = bytes;
+    this.labels = arrays.labels;
+    this.layers = Array.from(arrays.z, (_, i) => new Layer(arrays, i, statistics?.layers ? statisticsOf(statistics.layers[i]) : {}));
+    this.statistics = statistics;
+    this.warnings = warnings;
+    /** Of scan vectors: how they are made again, because NPZ files store no parameters. */
+    this.source = source;
+  }
+}
+
+/** Words and files for meshes, each with its placement. */
+function inputWords(meshes, files) {
+  return [meshes].flat().flatMap((one) => {
+    const { mesh, ...placement } = one instanceof Mesh ? { mesh: one } : one;
+    const name = fileName(mesh.name, files);
+    files[name] = mesh.bytes;
+    return [name, ...wordsOf(placement, files)];
+  });
+}
+
+function sliceWords(meshes, options, files) {
+  // Placements of all meshes go before the first one.
+  return ['slice', ...wordsOf(options, files), ...inputWords(meshes, files), '--progress=json'];
+}
+
+/**
+ * Slices one mesh, or several on one plate.
+ * @param {Mesh | (Mesh | {mesh: Mesh})[]} meshes
+ * @returns {Promise<Stack>}
+ */
+export async function slice(meshes, options = {}) {
+  const files = {};
+  const words = sliceWords(meshes, options, files);
+  const { files: written, warnings } = await run([...words, '-o', 'layers.npz', '--stats', 'layers.stats'], files, options);
+  const statistics = JSON.parse(new TextDecoder().decode(written['layers.stats']));
+  return new Stack(written['layers.npz'], { statistics, warnings, source: statistics.scan ? { meshes, options } : null });
+}
+
+/** The files of a run, or the bytes of the only one. */
+function result(files, name) {
+  return files[name] ?? files;
+}
+
+/**
+ * Slices into a slice file, without layers in between.
+ * @param {string} format such as 'cli' or '3mf'; `png` gives a file for each layer, by name
+ * @returns {Promise<{bytes: Uint8Array, statistics: object, warnings: string[]}>}
+ */
+export async function sliceToFile(meshes, format, options = {}) {
+  const files = {};
+  const words = sliceWords(meshes, options, files);
+  const { files: all, warnings } = await run([...words, '-o', 'layers', '--format', format, '--stats', 'figures.json'], files, options);
+  const { 'figures.json': figures, ...written } = all;
+  return { bytes: result(written, 'layers'), statistics: JSON.parse(new TextDecoder().decode(figures)), warnings };
+}
+
+/** Writes layers in any slice format. @returns {Promise<Uint8Array>} */
+export async function writeLayers(stack, format, options = {}) {
+  if (stack.source) return (await sliceToFile(stack.source.meshes, format, { ...stack.source.options, ...options })).bytes;
+  const { files } = await run(['convert', 'stack.npz', 'layers', '--format', format, '--progress=json', ...wordsOf(options, {})], { 'stack.npz': stack.bytes }, options);
+  return result(files, 'layers');
+}
+
+/** Reads a slice file; its format is recognised by its content. */
+export async function readLayers(data, name = 'layers', options = {}) {
+  const plain = fileName(name, { 'stack.npz': 1 });
+  const { files, warnings } = await run(['convert', plain, 'stack.npz', '--progress=json', ...wordsOf(options, {})], { [plain]: bytesOf(data) }, options);
+  return new Stack(files['stack.npz'], { warnings });
+}
+
+/** A page that shows a mesh's or a file's layers, as `lamella view` writes it. @returns {Promise<Uint8Array>} HTML */
+export async function view(meshOrStack, options = {}) {
+  const name = meshOrStack instanceof Mesh ? meshOrStack.name : 'stack.npz';
+  const { files } = await run(['view', name, '-o', 'page.html', '--progress=json', ...wordsOf(options, {})], { [name]: meshOrStack.bytes }, options);
+  return files['page.html'];
+}

@@ -1,0 +1,26 @@
+// The entry for Node.js.
+
+import { readFile } from 'node:fs/promises';
+import { availableParallelism, cpus } from 'node:os';
+import { Worker } from 'node:worker_threads';
+
+import { usePlatform } from './api.js';
+
+usePlatform({
+  workers: availableParallelism?.() ?? cpus().length,
+  loadModule: async () => WebAssembly.compile(await readFile(new URL('./lamella.wasm', import.meta.url))),
+  startWorker(module, onMessage, onFailure) {
+    const worker = new Worker(new URL('./worker.js', import.meta.url), { workerData: module });
+    worker.on('message', onMessage);
+    worker.on('error', onFailure);
+    worker.unref();
+    return {
+      post: (message, transfer) => worker.postMessage(message, transfer),
+      // A program ends once nothing is computed.
+      hold: (busy) => (busy ? worker.ref() : worker.unref()),
+      end: () => worker.terminate(),
+    };
+  },
+});
+
+export * from './api.js';

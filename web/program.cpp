@@ -1,0 +1,147 @@
+// The program in WebAssembly: `main`, the command `read` for JavaScript, and what the program needs of an
+// operating system where there is none. JavaScript ends a run by ending its worker (web/jobs.js), so nothing
+// waits for signals.
+
+#include "program.hpp"
+
+#include "lamella/core/error.hpp"
+#include "lamella/pipeline/plate.hpp"
+#include "lamella/read/any_file.hpp"
+
+#include "command_line.hpp"
+#include "commands.hpp"
+#include "crash.hpp"
+#include "figures.hpp"
+#include "heap.hpp"
+#include "interrupt.hpp"
+#include "options.hpp"
+#include "standard_streams.hpp"
+#include "worker_team.hpp"
+
+#include <emscripten/emscripten.h>
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace lamella::app {
+
+sigset_t interrupts() noexcept {
+    return {};
+}
+
+Interrupt::Interrupt(const Messages& messages, const sigset_t& /*signals*/) : messages_(messages) {}
+Interrupt::~Interrupt() = default;
+
+void leave_at_once(std::string_view /*last_words*/, int exit_code) noexcept {
+    std::_Exit(exit_code);
+}
+
+void report_crashes(ProgressStyle /*style*/) noexcept {}
+
+void keep_freed_memory() noexcept {}
+void return_freed_memory() noexcept {}
+
+WorkerTeam::WorkerTeam(std::size_t /*size*/, Work /*work*/) {
+    throw Error(ErrorKind::usage,
+                "--batch starts processes, and there are none in WebAssembly: slice the files one by one");
+}
+WorkerTeam::~WorkerTeam() = default;
+void WorkerTeam::start(const WorkerTask& /*task*/) {}
+void WorkerTeam::stop() noexcept {}
+bool WorkerTeam::is_busy() const noexcept {
+    return false;
+}
+std::vector<WorkerAnswer> WorkerTeam::wait() {
+    return {};
+}
+
+namespace {
+
+struct ReadArguments {
+    std::string input;
+    PlacementOptions placement; ///< only the unit is used
+    ReadLimits limits;
+    RunOptions run;
+};
+
+Json described(const MeshFile& file, const Plate& plate) {
+    Json bodies = Json::array();
+    for (const PlatePart& part : plate.parts)
+        bodies.push_back({{"label", part.label}, {"support", part.support}, {"box", box_json(part.box)}});
+    return {{"kind", "mesh"},
+            {"format", file.format},
+            {"name", file.name},
+            {"triangles", file.stored_triangles},
+            {"unit", unit_name(plate.files.front().unit_mm)},
+            {"box", box_json(plate.box)},
+            {"parts", std::move(bodies)}};
+}
+
+Json described(const LayerFile& file) {
+    Json parts = Json::array();
+    for (const LayerPart& part : file.parts)
+        parts.push_back(
+            {{"label", part.label}, {"support", part.support}, {"vectors", part.exposure.has_value()}});
+    return {{"kind", "layers"},
+            {"format", file.format},
+            {"layers", file.parts.front().layers.size()},
+            {"parts", std::move(parts)}};
+}
+
+int run_read(const ReadArguments& arguments, const Context& context) {
+    const Execution execution = arguments.run.execution(context);
+    auto read = read_any(arguments.input, arguments.limits.of_meshes(), execution);
+    Json facts;
+    if (auto* const mesh = std::get_if<MeshFile>(&read)) {
+        context.messages.warn_of(input_name(mesh->path), mesh->warnings);
+        facts = described(*mesh, load_plate({.path = mesh->path, .unit_mm = arguments.placement.unit_mm()},
+                                            *mesh, execution));
+    } else {
+        const auto& layers = std::get<LayerFile>(read);
+        context.messages.warn_of(input_name(layers.path), layers.warnings);
+        facts = described(layers);
+    }
+    context.messages.result(json_text(facts));
+    return 0;
+}
+
+/// A command that describes a file without a diagnosis. It is not in the help, because people have `info`.
+Command read_command() {
+    const auto arguments = std::make_shared<ReadArguments>();
+    return {.name = "read",
+            .summary = "describe a file as JSON, without a diagnosis",
+            .description = "Reads a mesh or a slice file.",
+            .operands = {{.placeholder = "FILE",
+                          .help = "a mesh or a slice file",
+                          .set =
+                              [arguments](const std::string& text) {
+                                  arguments->input = text;
+                              }}},
+            .groups = {{"Input", {unit_option(arguments->placement.unit)}},
+                       run_options(arguments->run, {include_option(arguments->limits),
+                                                    max_triangles_option(arguments->limits)}),
+                       common_options(false)},
+            .run = [arguments](const Context& context) {
+                return run_read(*arguments, context);
+            }};
+}
+
+} // namespace
+
+} // namespace lamella::app
+
+/// Runs the program with `count` words, each of which ends with a zero, and returns its exit code. May be
+/// called any number of times in one instance.
+extern "C" EMSCRIPTEN_KEEPALIVE int lamella_run(const char* words, int count) {
+    std::vector<std::string> given;
+    for (int i = 0; i < count; ++i)
+        words += given.emplace_back(words).size() + 1;
+    std::vector<lamella::app::Command> commands = lamella::app::all_commands();
+    commands.push_back(lamella::app::read_command());
+    return lamella::app::run_program(std::move(commands), given);
+}
