@@ -160,6 +160,8 @@ test('errors have the texts of the program, and kinds', async () => {
   await assert.rejects(slice(box, { layerHight: 1 }), { kind: 'usage', message: /--layer-height/ });
   await assert.rejects(sliceToFile(box, 'png', { maxOutput: 10, layerHeight: 1 }), { kind: 'limit' });
   await assert.rejects(readMesh({}, 'x.stl'), TypeError);
+  const strategy = { scan: true, hatchDistance: 0.001, maxMemory: '1M' };
+  await assert.rejects(slice(await makeBody('rook'), strategy), { kind: 'limit', message: /memory.*WebAssembly can use 4 GB at most/ });
 });
 
 test('a call reports progress and ends when its signal is aborted', async () => {

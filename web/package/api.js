@@ -115,6 +115,9 @@ async function runInWorker(words, inputs, signal, onLine) {
 const trapText = (trap) =>
   `stopped by WebAssembly (${trap}): most likely the 4 GB that it can use, or its stack, were not enough; the program for the computer itself has no such limit`;
 
+/** Where memory is the limit, the reason is named that the computer may not show. */
+const limitText = (text, code) => (code === 5 && /\bmemory\b/.test(text) ? `${text} (WebAssembly can use 4 GB at most)` : text);
+
 /**
  * Runs the program with a command line, on files given by name.
  * @param {string[]} words such as ['slice', 'part.stl', '-o', 'part.cli']
@@ -143,7 +146,7 @@ export async function run(words, files = {}, { signal, onProgress } = {}) {
     notes: texts,
     files: Object.fromEntries(written.map(({ name, bytes }) => [name, bytes])),
   };
-  if (failure !== undefined) throw Object.assign(new LamellaError(failure, code), { warnings });
+  if (failure !== undefined) throw Object.assign(new LamellaError(limitText(failure, code), code), { warnings });
   return result;
 }
 

@@ -11,6 +11,14 @@ function onWrite(FS, number, take) {
   stream.stream_ops = { ...stream.stream_ops, write: (_, buffer, offset, length) => (take(buffer.slice(offset, offset + length)), length) };
 }
 
+/** Gives a file in memory room for `bytes`, in place of Emscripten's function, which copies large files time and again. */
+function growFile(node, bytes) {
+  const { contents, usedBytes } = node;
+  if (contents && contents.length >= bytes) return;
+  node.contents = new Uint8Array(Math.max(bytes, 2 * (contents?.length ?? 0), 256));
+  if (usedBytes > 0) node.contents.set(contents.subarray(0, usedBytes));
+}
+
 function joined(chunks) {
   const all = new Uint8Array(chunks.reduce((sum, chunk) => sum + chunk.length, 0));
   let at = 0;
@@ -51,7 +59,10 @@ export class Program {
       WebAssembly.instantiate(this.#module, imports).then((instance) => done(instance, this.#module));
       return {};
     };
-    this.#instance ??= await this.#create({ instantiateWasm, preRun: [({ ENV }) => Object.assign(ENV, this.#environment)] });
+    if (!this.#instance) {
+      this.#instance = await this.#create({ instantiateWasm, preRun: [({ ENV }) => Object.assign(ENV, this.#environment)] });
+      this.#instance.MEMFS.expandFileStorage = growFile;
+    }
     return this.#instance;
   }
 
