@@ -5,6 +5,7 @@ PREFIX ?= /usr/local
 JOBS := $(shell nproc)
 # One more than the number of processors: some tests mostly wait.
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
+VERSION := $(shell sed -n 's/^\#define LAMELLA_VERSION "\(.*\)"/\1/p' include/lamella/core/version.hpp)
 MODULES := core mesh parts contour slicing polygon scan system container read raster write pipeline
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include parts python src tests web -name '*.[ch]pp' 2>/dev/null)
@@ -51,7 +52,7 @@ test: packages  ## build everything and run the tests: a few minutes
 	$(CTEST) --test-dir build $(TESTS)
 	$(if $(TESTS),,@touch build/tests/passed)
 
-test-all: test-large test-asan test-tsan test-arm64 test-shared test-web fresh  ## run the long suites: large programs, sanitizers, ARM64, web, fresh
+test-all: test-large test-asan test-tsan test-arm64 test-windows test-shared test-web fresh  ## run the long suites: large programs, sanitizers, ARM64, Windows, web, fresh
 
 # The targets from here to `fresh` are parts of test-all.
 packages-all: packages packages-viewer
@@ -78,6 +79,25 @@ test-arm64: packages-all
 	cmake --preset arm64
 	cmake --build build-arm64
 	$(CTEST) --test-dir build-arm64
+
+packages-windows: packages-viewer
+	@tools/install_packages.sh tools/packages-windows.txt
+	@tools/build_libraries.sh mingw
+
+# The archive contains the installed folder.
+windows: packages-windows  ## build the program and the libraries for Windows: a zip archive in build-windows/
+	cmake --preset windows -D LAMELLA_TESTS=OFF
+	cmake --build build-windows --target lamella lamella-io lamella_app lamella_app_files
+	@rm -rf build-windows/package
+	cmake --install build-windows --strip --prefix build-windows/package >/dev/null
+	cd build-windows/package && cmake -E tar cf ../lamella-$(VERSION)-windows-x86_64.zip --format=zip .
+	@ls -l build-windows/lamella.exe build-windows/lamella-$(VERSION)-windows-x86_64.zip
+
+# The suites of the modules and of the program. Its output is compared with that of the program for this system.
+test-windows: packages-windows build
+	cmake --preset windows -D LAMELLA_TESTS=ON
+	cmake --build build-windows
+	$(CTEST) --test-dir build-windows
 
 # The shared library reuses the objects of the static one; only installation and linking differ. Two compilers are
 # tested, since they apply visibility to different entities.
@@ -198,6 +218,6 @@ clean:  ## remove all build and output folders
 	rm -rf build build-* dist out
 
 .NOTPARALLEL:
-.PHONY: help packages packages-viewer build demo test test-all packages-all test-large test-asan test-tsan \
-        test-arm64 test-shared web test-web fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin \
+.PHONY: help packages packages-viewer packages-windows windows test-windows build demo test test-all packages-all test-large test-asan \
+        test-tsan test-arm64 test-shared web test-web fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin \
         out-of-core python-bench page-bench paper format format-check lint install dist clean

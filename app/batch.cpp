@@ -158,6 +158,21 @@ void make_folders(const std::vector<BatchItem>& items) {
     }
 }
 
+/// Returns all items as a text for workers, which must not look for the files again, and back.
+std::string introduction_of(const std::vector<BatchItem>& items) {
+    Json rows = Json::array();
+    for (const BatchItem& item : items)
+        rows.push_back({item.input, item.output, item.stats});
+    return rows.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::vector<BatchItem> introduced_items(const std::string& text) {
+    std::vector<BatchItem> items;
+    for (const Json& row : Json::parse(text))
+        items.push_back({row[0], row[1], row[2]});
+    return items;
+}
+
 /// Slices the files in order, several at the same time as far as there are threads.
 class Batch {
   public:
@@ -165,10 +180,12 @@ class Batch {
           const Execution& execution, Messages& messages)
         : items_(items), most_(execution.threads == 0 ? threads : std::min(threads, execution.threads)),
           threads_(threads), free_(threads), messages_(messages), progress_(execution.progress),
-          starts_(items.size()), team_(std::min<std::size_t>(threads, items.size()),
-                                       [&items, &slice](const WorkerTask& task, const CancelFlag& cancel) {
-                                           return lines_of(task, items, slice, cancel);
-                                       }) {}
+          starts_(items.size()), team_(
+                                     std::min<std::size_t>(threads, items.size()),
+                                     [&items, &slice](const WorkerTask& task, const CancelFlag& cancel) {
+                                         return lines_of(task, items, slice, cancel);
+                                     },
+                                     introduction_of(items)) {}
 
     bool run(const Execution& execution) {
         while (reported_ < items_.size() && !execution.cancelled()) {
@@ -285,7 +302,7 @@ class Batch {
         } else if (!stopping_) {
             const BatchItem& item = items_[task.first];
             waiting_.emplace(task.first,
-                             short_line(record_of(item, failure_of_process(answer.status, item.input),
+                             short_line(record_of(item, failure_of_process(answer.end, item.input),
                                                   seconds_since(starts_[task.first]))));
         }
     }
@@ -351,6 +368,8 @@ OptionGroup batch_options(BatchArguments& target) {
 std::vector<BatchItem> batch_items(const BatchArguments& arguments, const std::string& output,
                                    std::string_view extension, const std::string& stats,
                                    std::span<const NamedFile> read) {
+    if (const std::optional<std::string> introduction = introduction_to_worker())
+        return introduced_items(*introduction);
     const std::string results = has_placeholder(output) ? std::string() : output;
     const std::vector<std::string> inputs = batch_inputs(arguments.source, results);
     std::vector<std::string> kept = inputs;

@@ -7,14 +7,13 @@
 #include "names.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
+#include "system/program_start.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
-#include <climits>
 #include <cstddef>
 #include <filesystem>
 #include <map>
@@ -101,7 +100,7 @@ std::vector<std::string> lines_of(const std::string& list, std::string_view text
             line.remove_suffix(1);
         if (line.empty() || (separator == '\n' && line.starts_with('#')))
             continue;
-        if (line.size() >= PATH_MAX)
+        if (line.size() >= longest_path())
             refuse(list, fmt::format("line {} is longer than any path; expected one path a line", number));
         lines.emplace_back(line);
     }
@@ -177,25 +176,18 @@ std::vector<std::string> batch_inputs(const std::string& source, const std::stri
 }
 
 void check_distinct(std::span<const std::string> inputs, std::span<const std::string> outputs) {
-    using Identity = std::pair<dev_t, ino_t>;
-    const auto identity = [](const std::string& path) -> std::optional<Identity> {
-        struct stat status {};
-        if (stat(path.c_str(), &status) != 0)
-            return std::nullopt;
-        return Identity{status.st_dev, status.st_ino};
-    };
     std::map<fs::path, const std::string*> places;
     for (const std::string& output : outputs)
         if (const auto [other, is_new] = places.emplace(place_of(output), &output); !is_new)
             throw Error(ErrorKind::usage,
                         fmt::format("{} and {} are one file, through a link; choose another folder",
                                     *other->second, output));
-    std::map<Identity, const std::string*> known;
+    std::map<FileIdentity, const std::string*> known;
     for (const std::string& input : inputs)
-        if (const auto file = identity(input))
+        if (const auto file = identity_of(input))
             known.emplace(*file, &input);
     for (const std::string& output : outputs) {
-        const auto file = identity(output);
+        const auto file = identity_of(output);
         if (!file)
             continue;
         if (const auto found = known.find(*file); found != known.end())

@@ -3,11 +3,8 @@
 #include "lamella/core/error.hpp"
 
 #include <fmt/format.h>
-#include <sys/wait.h>
 
 #include <array>
-#include <csignal>
-#include <cstring>
 #include <new>
 #include <string>
 #include <string_view>
@@ -107,27 +104,25 @@ Failure failure_of(const std::exception_ptr& error) {
     }
 }
 
-Failure failure_of_process(int status, const std::string& path) {
-    if (WIFEXITED(status) && WEXITSTATUS(status) == limit_exit_code)
+Failure failure_of_process(const ProcessEnd& end, const std::string& path) {
+    using Kind = ProcessEnd::Kind;
+    if (end.kind == Kind::exited && end.exit_code == limit_exit_code)
         return failure(ErrorKind::limit, fmt::format("{}: stopped by --timeout while it was stuck", path));
-    if (WIFEXITED(status) && WEXITSTATUS(status) == 130)
+    if (end.kind == Kind::exited && end.exit_code == 130)
         return failure(ErrorKind::cancelled, "cancelled");
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)
+    if (end.kind == Kind::time_is_up)
         return failure(
             ErrorKind::limit,
             fmt::format("{}: the processor time that a process may take is used up (see ulimit -t)", path));
-    if (WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL)
+    if (end.kind == Kind::killed)
         return failure(
             ErrorKind::limit,
             fmt::format("{}: the process that worked on it was killed, as systems do with what takes "
                         "too much memory",
                         path));
-    const std::string how = WIFSIGNALED(status)
-                                ? fmt::format("signal {}, {}", WTERMSIG(status), strsignal(WTERMSIG(status)))
-                                : fmt::format("exit code {}", WEXITSTATUS(status));
     return {"crash", 1,
             fmt::format("{}: the process that worked on it crashed ({}); please report this with the file",
-                        path, how)};
+                        path, end.reason)};
 }
 
 } // namespace lamella::app

@@ -4,6 +4,8 @@
 
 #include "lamella/core/error.hpp"
 
+#include "system/program_workers.hpp"
+
 #include <fmt/format.h>
 
 #include <exception>
@@ -30,9 +32,8 @@ struct Failure {
 
 [[nodiscard]] Failure failure_of(const std::exception_ptr& error);
 
-/// Returns the failure of a process that ended without a report. `status` is that of waitpid, `path` the file
-/// that the process was working on.
-[[nodiscard]] Failure failure_of_process(int status, const std::string& path);
+/// Returns the failure of a process that ended without a report; `path` is the file that it was working on.
+[[nodiscard]] Failure failure_of_process(const ProcessEnd& end, const std::string& path);
 
 /// Does the work that remains after `output` is complete. If the work throws an Error, adds to its text that
 /// the output is complete, unless this is standard output or there is no output.

@@ -8,9 +8,9 @@
 #include "repair_options.hpp"
 #include "scan_figures.hpp"
 #include "strategy_file.hpp"
+#include "system/program_start.hpp"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cassert>
@@ -48,19 +48,6 @@ std::string typeset(std::string text) {
         for (auto at = text.find(plain); at != std::string::npos; at = text.find(plain))
             text.replace(at, 3, sign);
     return text;
-}
-
-/// Returns the peak memory of this program. (The value of getrusage includes the process that started it.)
-std::uint64_t peak_rss_bytes() {
-    std::ifstream status("/proc/self/status");
-    for (std::string line; std::getline(status, line);) {
-        constexpr std::string_view key = "VmHWM:";
-        if (line.starts_with(key))
-            return std::stoull(line.substr(key.size())) * 1024;
-    }
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
 /// Returns the rows of the 4 by 4 matrix from the file's coordinates to those of the layers.
@@ -374,7 +361,7 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
     stats.update(as_json(picked(run, {"engine", "threads"})));
     stats["seconds"] =
         as_json(picked(run, {"read", "weld", "link", "slice", "polygon", "scan", "write", "total"}));
-    stats["peak_rss_bytes"] = peak_rss_bytes();
+    stats["peak_rss_bytes"] = peak_memory();
     stats.update(as_json(picked(run, {"points", "contours", "open_chains", "volume_mm3"})));
     if (result.ranges != 0)
         stats["ranges"] = result.ranges;

@@ -5,21 +5,14 @@
 #include "lamella/core/execution.hpp"
 
 #include "messages.hpp"
+#include "system/program_ending.hpp"
 
-#include <csignal>
 #include <latch>
 #include <thread>
 
 namespace lamella::app {
 
-/// Returns SIGINT, SIGTERM and SIGHUP, except those that were ignored when the program started.
-[[nodiscard]] sigset_t interrupts() noexcept;
-
-/// Blocks these signals for this thread and all threads that it starts. Signals stay pending until an
-/// Interrupt exists.
-void block_interrupts();
-
-/// While this object exists, these signals request cancellation instead of ending the program, so that
+/// While this object exists, interrupts request cancellation instead of ending the program, so that
 /// temporary files are removed. Must be created before any other thread. If the program has not ended a short
 /// while after the signal (for example because it waits for standard input), or if another signal arrives,
 /// its temporary files are removed and it is ended at once with exit code 130.
@@ -27,7 +20,7 @@ void block_interrupts();
 /// Its thread only waits between the end of the constructor and a signal, so the process may be forked.
 class Interrupt {
   public:
-    explicit Interrupt(const Messages& messages, const sigset_t& signals = interrupts());
+    explicit Interrupt(const Messages& messages, Interrupts kind = Interrupts::of_user);
     ~Interrupt();
     Interrupt(const Interrupt&) = delete;
     Interrupt& operator=(const Interrupt&) = delete;
@@ -39,8 +32,7 @@ class Interrupt {
 
     const Messages& messages_;
     CancelFlag flag_;
-    int signals_ = -1; ///< becomes readable when a signal arrives
-    int ending_ = -1;  ///< becomes readable when the watcher is no longer needed
+    InterruptWatch watch_;
     std::latch watching_{1};
     std::thread watcher_;
 };

@@ -1,16 +1,14 @@
 #include "commands.hpp"
 #include "crash.hpp"
-#include "interrupt.hpp"
 #include "program.hpp"
-#include "standard_streams.hpp"
-
-#include <string>
-#include <vector>
+#include "system/program_ending.hpp"
+#include "system/program_start.hpp"
+#include "system/program_workers.hpp"
 
 int main(int argc, char** argv) {
-    lamella::app::block_interrupts(); // from here on, interrupts end the program in an orderly manner
-    lamella::app::reserve_standard_streams();
+    lamella::block_interrupts(); // from here on, interrupts end the program in an orderly manner
+    lamella::prepare_standard_streams();
     lamella::app::prepare_for_crashes();
-    return lamella::app::run_program(lamella::app::all_commands(),
-                                     std::vector<std::string>(argv + 1, argv + argc));
+    return lamella::app::run_program(lamella::app::all_commands(), lamella::program_arguments(argc, argv),
+                                     !lamella::is_started_as_worker());
 }

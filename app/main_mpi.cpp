@@ -2,24 +2,22 @@
 
 #include "commands.hpp"
 #include "crash.hpp"
-#include "interrupt.hpp"
 #include "mpi_processes.hpp"
 #include "program.hpp"
-#include "standard_streams.hpp"
+#include "system/program_ending.hpp"
+#include "system/program_start.hpp"
 
 #include <chrono>
-#include <string>
-#include <vector>
 
 using namespace lamella::app;
 
 int main(int argc, char** argv) {
-    block_interrupts(); // from here on, interrupts end the program in an orderly manner, even if threads of
-                        // MPI receive them
-    reserve_standard_streams();
+    lamella::block_interrupts(); // from here on, interrupts end the program in an orderly manner, even if
+                                 // threads of MPI receive them
+    lamella::prepare_standard_streams();
     prepare_for_crashes();
     MpiProcesses processes;
-    const int code = run_program({slice_command(&processes)}, std::vector<std::string>(argv + 1, argv + argc),
+    const int code = run_program({slice_command(&processes)}, lamella::program_arguments(argc, argv),
                                  processes.process() == 0);
     // All processes fail together, except for unforeseen errors, after which the others would wait for this
     // one in vain.

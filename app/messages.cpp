@@ -4,6 +4,7 @@
 
 #include "failure.hpp"
 #include "standard_streams.hpp"
+#include "system/program_start.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
@@ -85,6 +86,8 @@ std::string compact_json(const Json& value) {
     }
     return result;
 }
+
+Messages::Messages() : on_terminal_(errors_are_on_terminal()) {}
 
 void Messages::progress(const Progress& progress) {
     if (style_ == ProgressStyle::none || is_silent())

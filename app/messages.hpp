@@ -6,7 +6,6 @@
 #include "lamella/core/execution.hpp"
 
 #include <nlohmann/json_fwd.hpp>
-#include <unistd.h>
 
 #include <atomic>
 #include <chrono>
@@ -35,7 +34,7 @@ enum class ProgressStyle {
 
 class Messages {
   public:
-    Messages() = default;
+    Messages();
     ~Messages() { clear_bar(); }
     Messages(const Messages&) = delete;
     Messages& operator=(const Messages&) = delete;
@@ -77,7 +76,7 @@ class Messages {
 
     std::atomic<ProgressStyle> style_ = ProgressStyle::none;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    const bool on_terminal_ = isatty(STDERR_FILENO) != 0;
+    const bool on_terminal_;
     bool bar_drawn_ = false;
     std::optional<Progress> last_; ///< the last report in the style for programs
 };

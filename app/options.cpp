@@ -8,6 +8,7 @@
 #include "names.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
+#include "system/program_start.hpp"
 #include "viewer_page.hpp"
 
 #include <fmt/format.h>

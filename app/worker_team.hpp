@@ -4,7 +4,7 @@
 
 #include "lamella/core/execution.hpp"
 
-#include <sys/types.h>
+#include "system/program_workers.hpp"
 
 #include <cstddef>
 #include <functional>
@@ -25,13 +25,16 @@ struct WorkerTask {
 struct WorkerAnswer {
     WorkerTask task;
     std::optional<std::string> text; ///< result of the work; unset if the process ended before
-    int status = 0;                  ///< exit status, as of waitpid
+    ProcessEnd end;                  ///< how the process ended
     bool begun = true; ///< false if the process ended before it could work; others may do the task
 };
 
-/// Worker processes, which are forks of this process, each of which does one task after the other. A worker
-/// is started when a task needs it, and restarted for a later task if it has died. So a task costs two
-/// messages, not a process.
+/// Worker processes, each of which does one task after the other. A worker is started when a task needs it,
+/// and restarted for a later task if it has died. So a task costs two messages, not a process.
+///
+/// Workers are forks of this process where the system has them. Elsewhere they are this program, started
+/// again with the same arguments, and `introduction` is what they get to know from this process: they must
+/// call `introduction_to_worker`, and then make the same team, which serves its owner and ends the process.
 ///
 /// Workers stop on request, and when this process dies for any reason. They do not receive the signals that
 /// Interrupt handles, because a terminal sends these to all processes at once, and a worker that is stopped
@@ -41,9 +44,9 @@ class WorkerTeam {
     /// The work, which runs in a worker. Must not throw. A request on the flag means that it should stop. The
     /// result is truncated to `longest_answer` bytes.
     using Work = std::function<std::string(const WorkerTask&, const CancelFlag&)>;
-    static constexpr std::size_t longest_answer = std::size_t{1} << 16; ///< well below the limit of a socket
+    static constexpr std::size_t longest_answer = std::size_t{1} << 16;
 
-    WorkerTeam(std::size_t size, Work work);
+    WorkerTeam(std::size_t size, Work work, std::string introduction);
     /// Ends the workers; busy ones are asked to stop and waited for.
     ~WorkerTeam();
     WorkerTeam(const WorkerTeam&) = delete;
@@ -62,18 +65,18 @@ class WorkerTeam {
     [[nodiscard]] std::vector<WorkerAnswer> wait();
 
   private:
-    struct Worker {
-        pid_t process = -1;
-        int socket = -1;
-        std::optional<WorkerTask> task;
-    };
-
-    void launch(Worker& worker);
-    [[noreturn]] void serve(int socket) const;
-    [[nodiscard]] WorkerAnswer answer_of(Worker& worker);
+    void launch(std::size_t worker);
+    [[nodiscard]] int serve(const WorkerChannel& channel) const;
+    [[nodiscard]] WorkerAnswer answer_of(std::size_t worker);
 
     Work work_;
-    std::vector<Worker> workers_;
+    std::string introduction_;
+    std::vector<WorkerProcess> processes_;
+    std::vector<std::optional<WorkerTask>> tasks_; ///< of each process
 };
+
+/// In a process that was started as a worker of a WorkerTeam, returns the introduction of its owner; none
+/// elsewhere.
+[[nodiscard]] std::optional<std::string> introduction_to_worker();
 
 } // namespace lamella::app

@@ -23,6 +23,12 @@ if(LAMELLA_VIEWER_HTML)
     install(FILES ${LAMELLA_VIEWER_HTML} DESTINATION ${CMAKE_INSTALL_DATADIR}/lamella RENAME viewer.html OPTIONAL)
 endif()
 
+# A system without packages of its own gets the libraries that ours need, too.
+if(WIN32)
+    get_filename_component(expat_folder ${EXPAT_LIBRARY} DIRECTORY)
+    install(DIRECTORY ${expat_folder}/../include ${expat_folder}/../lib ${expat_folder}/../share DESTINATION .)
+endif()
+
 set(LAMELLA_IS_STATIC FALSE)
 if(NOT BUILD_SHARED_LIBS)
     set(LAMELLA_IS_STATIC TRUE)

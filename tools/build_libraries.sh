@@ -28,7 +28,7 @@ apt=$folder/apt
 say() { echo "build_libraries: $*"; }
 
 # One directory for each source package: the package, and the directory in which it is unpacked.
-packages="expat zlib libdeflate fmtlib"
+packages="expat zlib libdeflate fmtlib libpng1.6"
 
 # Fetches and unpacks the sources, once for all targets.
 fetch() {

@@ -56,7 +56,10 @@ THIRD_PARTY_OF_CONSUMERS = {
     "toml++/toml.h": "app/toml_file.cpp",
 }
 
-# The only consumer that may include private headers: it measures the kernels alone.
+# Private headers that the programs may include: what they need of the operating system apart from the library.
+SYSTEM_OF_PROGRAMS = re.compile(r"^src/system/program_[a-z_]+\.hpp$")
+
+# The only other consumer that may include private headers: it measures the kernels alone.
 KERNEL_BENCHMARK = "bench/kernels.cpp"
 
 STANDARD = set(
@@ -73,7 +76,7 @@ STANDARD = set(
 
 # Headers of the operating system, which only the sources of one module may include.
 SYSTEM = re.compile(r"^((sys|linux|net|netinet|arpa)/.*|(unistd|fcntl|sched|pthread|poll|signal|spawn|dirent|dlfcn|"
-                    r"malloc|errno|limits|stdlib|stdint|windows|io|shellapi|psapi)(\.h)?)$")
+                    r"malloc|errno|limits|stdlib|stdint|windows|winioctl|aclapi|shellapi|psapi|io)(\.h)?)$")
 SYSTEM_MODULE = "src/system/"
 
 # Types at namespace level, as headers lay them out.
@@ -196,6 +199,8 @@ class Architecture:
                 return f"{user} may not include {target}: {used} is not below it"
             return self.judge_folder(name, target)
         if public or not target.startswith("src/") or name == KERNEL_BENCHMARK:
+            return None
+        if parts[0] == "app" and SYSTEM_OF_PROGRAMS.match(target):
             return None
         if parts[0] == "tests" and user in MODULES:
             if used == user or used in MODULES[user]:

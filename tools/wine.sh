@@ -19,4 +19,8 @@ if [ ! -f "$WINEPREFIX/prepared" ]; then
         fi
     ) 9>"$WINEPREFIX/.lock" </dev/null
 fi
+# Services of Wine that start with the first program would keep its output open.
+if ! pgrep -x 'wineserver(64)?' >/dev/null; then
+    "$wine" cmd.exe /c exit </dev/null >/dev/null 2>&1
+fi
 exec "$wine" "$@"

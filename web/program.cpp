@@ -22,6 +22,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -30,11 +31,7 @@
 
 namespace lamella::app {
 
-sigset_t interrupts() noexcept {
-    return {};
-}
-
-Interrupt::Interrupt(const Messages& messages, const sigset_t& /*signals*/) : messages_(messages) {}
+Interrupt::Interrupt(const Messages& messages, Interrupts kind) : messages_(messages), watch_(kind) {}
 Interrupt::~Interrupt() = default;
 
 void leave_at_once(std::string_view /*last_words*/, int exit_code) noexcept {
@@ -46,7 +43,7 @@ void report_crashes(ProgressStyle /*style*/) noexcept {}
 void keep_freed_memory() noexcept {}
 void return_freed_memory() noexcept {}
 
-WorkerTeam::WorkerTeam(std::size_t /*size*/, Work /*work*/) {
+WorkerTeam::WorkerTeam(std::size_t /*size*/, Work /*work*/, std::string /*introduction*/) {
     throw Error(ErrorKind::usage,
                 "--batch starts processes, and there are none in WebAssembly: slice the files one by one");
 }
@@ -58,6 +55,9 @@ bool WorkerTeam::is_busy() const noexcept {
 }
 std::vector<WorkerAnswer> WorkerTeam::wait() {
     return {};
+}
+std::optional<std::string> introduction_to_worker() {
+    return std::nullopt;
 }
 
 namespace {

@@ -87,6 +87,10 @@ Error output_error(const std::string& path, int system_error) {
         return text("the name is too long; choose a shorter one");
     case ELOOP:
         return text("its symbolic links run in a circle");
+    case ETXTBSY:
+        return text("another program has the file open; close it there or choose another name");
+    case EILSEQ:
+        return text("the name has characters that this system does not permit; choose another one");
     case EPIPE:
         return text("the reader of the pipe has gone");
     case EBADF:

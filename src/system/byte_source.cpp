@@ -32,12 +32,15 @@ namespace {
     switch (code) {
     case ENOENT:
     case ENOTDIR:
+    case EILSEQ: // the name has characters that this system does not permit
         fail(name, "there is no such file");
     case EACCES:
     case EPERM:
         fail(name, "no permission to read this file");
     case EISDIR:
         fail(name, "is a folder, expected a file");
+    case ETXTBSY:
+        fail(name, "another program has locked this file; close it there");
     case EBADF:
         fail(name, "is closed, or not open for reading");
     default:

@@ -10,7 +10,8 @@
 namespace lamella {
 
 /// A mapped file, to be read from front to back. No other process may be able to shorten the file, because
-/// access to bytes that no longer exist ends the process. The file need not stay open. Throws std::bad_alloc.
+/// access to bytes that no longer exist ends the process. The file need not stay open by
+/// its owner. Throws std::bad_alloc.
 class MappedFile {
   public:
     /// `bytes` must be the size of the file, and not 0.
@@ -24,6 +25,7 @@ class MappedFile {
   private:
     std::byte* data_;
     std::size_t size_;
+    NativeFile kept_open_; ///< where the file must not be closed before it is unmapped
 };
 
 /// Frees the memory of a range of a mapped file; if accessed again, it is read from the file again.

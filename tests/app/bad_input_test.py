@@ -5,7 +5,7 @@ import resource
 import subprocess
 import unittest
 
-from program import OTHER_USER, PROGRAM, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main
+from program import COMMAND, OTHER_USER, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main, needs_posix
 
 
 class BadInput(ProgramTest):
@@ -94,6 +94,7 @@ class BadInput(ProgramTest):
             with self.subTest(output):
                 self.fail_with(6, output.split("/")[0], "slice", "box.stl", "-o", output)
 
+    @needs_posix("permissions")
     def test_a_folder_without_permission(self):
         self.box()
         locked = self.path("locked")
@@ -101,6 +102,7 @@ class BadInput(ProgramTest):
         locked.chmod(0o500)
         self.fail_with(6, "locked", "slice", "box.stl", "-o", "locked/out.cli", **UNPRIVILEGED)
 
+    @needs_posix("pipes and devices with names")
     @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full here")
     def test_a_full_disk(self):
         self.box()
@@ -108,17 +110,19 @@ class BadInput(ProgramTest):
         self.fail_with(6, "/dev/full", "slice", "box.stl", "--stats", "/dev/full")
         self.fail_with(6, "/dev/full", "make", "box", "-o", "/dev/full")
 
+    @needs_posix("pipes and devices with names")
     @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full here")
     def test_standard_output_that_is_full(self):
         self.box()
         for arguments in [["info", "box.stl"], ["--help"], ["slice", "box.stl", "--stats", "-"],
                           ["slice", "box.stl", "-o", "-", "--format", "svg"]]:
             with self.subTest(arguments[0]), open("/dev/full", "wb") as full:
-                done = subprocess.run([PROGRAM] + arguments, cwd=self.folder, stdout=full, stderr=subprocess.PIPE,
+                done = subprocess.run([*COMMAND, *arguments], cwd=self.folder, stdout=full, stderr=subprocess.PIPE,
                                       timeout=60)
                 self.assertEqual(done.returncode, 6, done.stderr)
                 self.assertIn(b"lamella: error: ", done.stderr)
 
+    @needs_posix("limits of processes")
     def test_a_disk_that_fills_up_on_the_way_leaves_nothing(self):
         self.box()
         limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
@@ -186,6 +190,7 @@ class BadInput(ProgramTest):
         self.fail_with(2, "overwrite", "slice", "box.stl", "--stats", "box.stl")
         self.assertEqual(self.bytes_of("box.stl"), before)
 
+    @needs_posix("limits of processes")
     def test_threads_and_files_that_the_system_refuses_are_limits(self):
         if "LAMELLA_SANITIZED" in os.environ:
             self.skipTest("the sanitizer needs threads and files of its own at the end")
@@ -195,6 +200,7 @@ class BadInput(ProgramTest):
                 self.fail_with(5, "no further threads or files", "info", "box.stl",
                                preexec_fn=lambda: resource.setrlimit(limit[0], (limit[1], limit[1])), **OTHER_USER)
 
+    @needs_posix("limits of processes")
     def test_names_that_the_system_cannot_follow_are_not_one_file(self):
         inner = self.path("locked/inner")
         inner.mkdir(parents=True)

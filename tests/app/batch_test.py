@@ -9,7 +9,7 @@ import subprocess
 import time
 from pathlib import Path
 
-from program import PROGRAM, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main, open_box
+from program import COMMAND, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main, needs_posix, open_box
 
 
 class Batch(ProgramTest):
@@ -66,6 +66,7 @@ class Batch(ProgramTest):
         self.assertEqual(records[1]["warnings"],
                          ["parts/box01.stl: byte 684: left out 4 bytes that follow the 12 triangles of the count"])
 
+    @needs_posix("symbolic links")
     def test_hidden_files_and_linked_folders_are_left_out_of_a_folder(self):
         names = self.boxes("parts", 1)
         self.boxes("elsewhere", 1)
@@ -165,6 +166,7 @@ class Batch(ProgramTest):
         self.fail_with(2, "list.toml: this output would overwrite the input list.toml", "slice", "--batch", "list",
                        "--config", "list.toml", "--stats", "{name}.toml")
 
+    @needs_posix("symbolic links")
     def test_results_that_links_make_one_file_are_refused(self):
         self.boxes("parts", 2)
         self.path("out").mkdir()
@@ -178,6 +180,7 @@ class Batch(ProgramTest):
                        "cli", "--stats", "linked/{name}")
         self.batch(0, "parts", "-o", "out", "--format", "cli", "--stats", "linked")
 
+    @needs_posix("limits of processes")
     def test_a_working_folder_that_is_gone_is_reported(self):
         self.boxes("parts", 2)
         self.write("list", "box00.stl\n")
@@ -224,6 +227,7 @@ class Batch(ProgramTest):
         self.fail_with(3, "no file in this folder", "slice", "--batch", "empty", "-o", "out", "--format", "cli")
         self.fail_with(6, "cannot be made", "slice", "--batch", "parts", "-o", "parts/box00.stl", "--format", "cli")
 
+    @needs_posix("pipes and devices with names")
     def test_pipes_and_sockets_in_a_folder_are_no_meshes(self):
         self.boxes("parts", 2)
         os.mkfifo(self.path("parts/box00a.stl"))
@@ -234,6 +238,7 @@ class Batch(ProgramTest):
             records = self.batch(0, "parts", "-o", "out", "--format", "cli")
         self.assertEqual([r["path"] for r in records], ["parts/box00.stl", "parts/box01.stl"])
 
+    @needs_posix("permissions")
     def test_a_folder_that_cannot_be_listed_fails_like_a_file(self):
         self.boxes("parts/a", 1)
         self.boxes("parts/locked", 1)
@@ -283,7 +288,7 @@ class Workers(ProgramTest):
 
     def start_list(self, names, *arguments, **keywords):
         self.write("list", "".join(f"in/{name}.stl\n" for name in names))
-        process = subprocess.Popen([PROGRAM, "slice", "--batch", "list", "-o", "out", "--format", "cli", *arguments],
+        process = subprocess.Popen([*COMMAND, "slice", "--batch", "list", "-o", "out", "--format", "cli", *arguments],
                                    cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **keywords)
         self.addCleanup(process.kill)
         return process
@@ -313,6 +318,7 @@ class Workers(ProgramTest):
         out, err = process.communicate(timeout=120)
         return [json.loads(line) for line in out.splitlines()], err.decode()
 
+    @needs_posix("pipes and devices with names")
     def test_one_that_dies_takes_nobody_along(self):
         deaths = [(signal.SIGSEGV, "crash", 1), (signal.SIGKILL, "limit", 5), (signal.SIGXCPU, "limit", 5)]
         for number, kind, code in deaths:
@@ -329,6 +335,7 @@ class Workers(ProgramTest):
             self.doCleanups()
             self.setUp()
 
+    @needs_posix("pipes and devices with names")
     def test_small_files_that_go_together_are_distinguished(self):
         names = [f"box{i:02}" for i in range(50)]
         self.path("in").mkdir()
@@ -348,6 +355,7 @@ class Workers(ProgramTest):
         self.assertEqual([r["path"] for r in records], [f"in/{name}.stl" for name in names])
         self.assertEqual([r["path"] for r in records if not r["ok"]], ["in/box05.stl"])
 
+    @needs_posix("pipes and devices with names")
     def test_one_that_is_stuck_is_ended_by_its_timeout(self):
         process = self.start(["box1", "pipe1", "box2", "pipe2", "box3"], "--jobs", "1", "--timeout", "0.3")
         records, _ = self.end_of(process)
@@ -357,6 +365,7 @@ class Workers(ProgramTest):
             self.assertEqual(record["error"]["kind"], "limit")
             self.assertIn("--timeout", record["error"]["text"])
 
+    @needs_posix("pipes and devices with names")
     def test_progress_is_reported_where_there_is_any(self):
         process = self.start(["box1", "pipe", "box2"], "--jobs", "2", "--progress", "json", "--timeout", "1")
         _, err = self.end_of(process)
@@ -364,6 +373,7 @@ class Workers(ProgramTest):
         self.assertEqual(done, sorted(set(done)))
         self.assertEqual(done[-1], 3)
 
+    @needs_posix("pipes and devices with names")
     def test_a_batch_that_is_stopped_leaves_neither_files_nor_processes(self):
         for number in [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]:
             with self.subTest(number):
@@ -379,6 +389,7 @@ class Workers(ProgramTest):
             self.doCleanups()
             self.setUp()
 
+    @needs_posix("signals")
     def test_what_was_done_is_reported_of_a_batch_that_is_stopped(self):
         self.path("in").mkdir()
         names = [f"box{i:02}" for i in range(50)]
@@ -403,6 +414,7 @@ class Workers(ProgramTest):
             self.setUp()
         self.fail("results were lost each time")
 
+    @needs_posix("pipes and devices with names")
     def test_results_behind_one_that_never_comes_are_reported_of_a_batch_that_is_stopped(self):
         def attempt():
             process = self.start(["pipe", "box1", "box2"], "--jobs", "2")
@@ -418,6 +430,7 @@ class Workers(ProgramTest):
 
         self.soon(attempt)
 
+    @needs_posix("pipes and devices with names")
     def test_a_signal_that_workers_get_as_well_loses_no_result(self):
         # As Ctrl-C in a terminal, and the end of a service.
         def attempt(number):
@@ -445,6 +458,7 @@ class Workers(ProgramTest):
             self.doCleanups()
             self.setUp()
 
+    @needs_posix("pipes and devices with names")
     def test_a_batch_that_is_stopped_while_workers_are_started_reports_its_results(self):
         def attempt():
             names = [f"box{i:03}" for i in range(400)]
@@ -463,6 +477,7 @@ class Workers(ProgramTest):
 
         self.soon(attempt)
 
+    @needs_posix("limits of processes")
     def test_a_batch_goes_on_with_fewer_workers_where_no_more_can_be_started(self):
         names = [f"box{i:02}" for i in range(60)]
         self.path("in").mkdir()
@@ -485,6 +500,7 @@ class Workers(ProgramTest):
         self.assertEqual([r["path"] for r in records], [f"{deep}/open.stl", f"{deep}/wrong.stl"])
         self.assertEqual(records[0]["warnings"], ["the warnings are too long to be listed here"])
 
+    @needs_posix("pipes and devices with names")
     def test_workers_end_with_a_program_that_is_killed(self):
         process = self.start(["pipe1", "pipe2"], "--jobs", "2")
         workers = [self.wait_for_reader(process, name) for name in ["pipe1", "pipe2"]]
@@ -505,6 +521,7 @@ class Workers(ProgramTest):
         except (FileNotFoundError, ProcessLookupError):
             return False
 
+    @needs_posix("pipes and devices with names")
     def test_nobody_reads_the_results(self):
         process = self.start(["box%d" % i for i in range(50)])
         process.stdout.close()

@@ -6,7 +6,7 @@ import os
 import zipfile
 
 from png_image import Image
-from program import UNPRIVILEGED, ProgramTest, binary_stl, main, open_box
+from program import UNPRIVILEGED, ProgramTest, binary_stl, main, needs_posix, open_box
 
 
 class Images(ProgramTest):
@@ -174,6 +174,7 @@ class Images(ProgramTest):
         self.assertIn("open chain", result.err)
         self.assertEqual(Image(self.archive("part.zip").read("00000.png")).covered(), 0)
 
+    @needs_posix("permissions")
     def test_what_cannot_be_looked_at_is_not_removed(self):
         self.box()
         for name in ["png", "svg-layers"]:
@@ -188,6 +189,7 @@ class Images(ProgramTest):
                 self.assertIn("holds something else", result.err)
                 self.assertEqual((out / "thesis.txt").read_text(), "years")
 
+    @needs_posix("permissions")
     def test_a_folder_that_may_not_be_searched(self):
         self.box()
         locked = self.path("locked")

@@ -7,16 +7,17 @@ import signal
 import subprocess
 import time
 
-from program import PROGRAM, ProgramTest, binary_stl, box_triangles, main
+from program import COMMAND, ProgramTest, binary_stl, box_triangles, main, needs_posix
 
 
 class Interrupt(ProgramTest):
     def start(self, *arguments):
-        process = subprocess.Popen([PROGRAM] + list(arguments), cwd=self.folder, stdin=subprocess.PIPE,
+        process = subprocess.Popen([*COMMAND, *arguments], cwd=self.folder, stdin=subprocess.PIPE,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(process.kill)
         return process
 
+    @needs_posix("signals")
     def test_a_run_that_is_stopped_leaves_nothing(self):
         self.succeed("make", "rook")
         for number in [signal.SIGINT, signal.SIGTERM]:
@@ -40,7 +41,7 @@ class Interrupt(ProgramTest):
         self.succeed("make", "rook")
         error_read, error_write = os.pipe()
         fcntl.fcntl(error_write, fcntl.F_SETPIPE_SZ, 4096)
-        process = subprocess.Popen([PROGRAM, "slice", "rook.stl", "-o", "rook.svg", "--layer-height", "0.0001",
+        process = subprocess.Popen([*COMMAND, "slice", "rook.stl", "-o", "rook.svg", "--layer-height", "0.0001",
                                     "--progress", "json"], cwd=self.folder, stdout=subprocess.DEVNULL,
                                    stderr=error_write)
         self.addCleanup(process.kill)
@@ -73,12 +74,14 @@ class Interrupt(ProgramTest):
             user, system = stat.read().rpartition(")")[2].split()[11:13]
         return int(user) + int(system)
 
+    @needs_posix("pipes and devices with names")
     def test_a_run_that_is_stuck_leaves_nothing_either(self):
         process = self.start_and_get_stuck()
         process.send_signal(signal.SIGINT)
         self.assertEqual(process.wait(timeout=60), 130)
         self.assertEqual(self.listing(), ["rook.stl"])
 
+    @needs_posix("signals")
     def test_processor_time_that_is_used_up_is_a_limit_and_leaves_nothing(self):
         self.succeed("make", "rook")
         process = self.start("slice", "rook.stl", "-o", "rook", "--format", "png", "--layer-height", "0.001", "--progress", "json")
@@ -92,6 +95,7 @@ class Interrupt(ProgramTest):
         self.assertIn("processor time", last["error"])
         self.assertEqual(self.listing(), ["rook.stl"])
 
+    @needs_posix("pipes and devices with names")
     def test_a_second_signal_leaves_nothing_either(self):
         process = self.start_and_get_stuck()
         process.send_signal(signal.SIGINT)
@@ -100,6 +104,7 @@ class Interrupt(ProgramTest):
         self.assertEqual(process.wait(timeout=60), 130)
         self.assertEqual(self.listing(), ["rook.stl"])
 
+    @needs_posix("pipes and devices with names")
     def test_whoever_does_not_read_what_is_reported_keeps_no_run_from_ending(self):
         self.box()
         reading, writing = os.pipe()
@@ -110,7 +115,7 @@ class Interrupt(ProgramTest):
         for arguments, stuck in [(["info", "box.stl"], "stdout"), (["slice", "box.stl", "-o", "box.cli"], "stdout"),
                                  (["--help"], "stdout"), (missing, "stderr")]:
             with self.subTest(arguments):
-                process = subprocess.Popen([PROGRAM, *arguments], cwd=self.folder,
+                process = subprocess.Popen([*COMMAND, *arguments], cwd=self.folder,
                                            **{"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, stuck: writing})
                 self.addCleanup(process.kill)
                 self.wait_until_it_hears(process, signal.SIGTERM)
@@ -118,6 +123,7 @@ class Interrupt(ProgramTest):
                 process.send_signal(signal.SIGTERM)
                 self.assertEqual(process.wait(timeout=60), 130)
 
+    @needs_posix("pipes and devices with names")
     def test_waiting_for_a_configuration_file_can_be_stopped(self):
         os.mkfifo(self.path("pipe"))
         process = self.start("slice", "box.stl", "-o", "box.cli", "--config", "pipe")
@@ -137,6 +143,7 @@ class Interrupt(ProgramTest):
             time.sleep(0.01)
         self.fail("it hears no signal")
 
+    @needs_posix("signals")
     def test_waiting_for_standard_input_can_be_stopped(self):
         process = self.start("slice", "-", "-o", "out.cli")
         # More than a pipe holds: once it is written, the program is known to be reading.

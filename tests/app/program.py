@@ -12,12 +12,20 @@ from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parent.parent.parent
 PROGRAM = os.environ.get("LAMELLA_PROGRAM", str(SOURCE / "build" / "lamella"))
+# A program for another system runs in an emulator.
+COMMAND = [*os.environ.get("LAMELLA_EMULATOR", "").split(), PROGRAM]
+ON_WINDOWS = PROGRAM.endswith(".exe")
 # Permissions hold for the program also where root runs the tests: it stays root, which may enter the folder of a private
 # checkout, but lacks the capabilities that let root read and write everything.
 UNPRIVILEGED = {"launcher": ["setpriv", "--bounding-set=-dac_override,-dac_read_search"]} if os.geteuid() == 0 else {}
 # Limits on processes hold for other users than root only. This one may still enter the folder of a private checkout.
 OTHER_USER = {"launcher": ["setpriv", "--reuid=65534", "--regid=65534", "--clear-groups", "--inh-caps=+dac_read_search",
                            "--ambient-caps=+dac_read_search"]} if os.geteuid() == 0 else {}
+
+
+def needs_posix(what):
+    """For tests that need something that only POSIX has."""
+    return unittest.skipIf(ON_WINDOWS, f"needs POSIX: {what}")
 
 
 class Result:
@@ -44,7 +52,7 @@ class ProgramTest(unittest.TestCase):
         self.folder = Path(folder.name)
 
     def run_program(self, *arguments, stdin=b"", launcher=(), **keywords):
-        command = [*launcher, PROGRAM] + [str(a) for a in arguments]
+        command = [*launcher, *COMMAND] + [str(a) for a in arguments]
         return Result(subprocess.run(command, input=stdin, capture_output=True, timeout=240,
                                      **{"cwd": self.folder, **keywords}))
 

@@ -5,7 +5,7 @@ import os
 import resource
 import zipfile
 
-from program import ProgramTest, main
+from program import ProgramTest, main, needs_posix
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 RELATIONSHIPS = (
@@ -184,6 +184,7 @@ class Roles(ProgramTest):
         self.assertEqual(layers["above"], layers["none"])
         self.assertGreater(len(layers["inside"]), 2 * len(layers["none"]))
 
+    @needs_posix("limits of processes")
     def test_instances_that_double_stay_within_the_memory_that_is_allowed(self):
         if "LAMELLA_SANITIZED" in os.environ:
             self.skipTest("what a sanitizer takes is not the program's")
@@ -203,6 +204,7 @@ class Roles(ProgramTest):
                        preexec_fn=allowed)
 
 
+    @needs_posix("limits of processes")
     def test_items_of_the_build_are_counted_before_they_take_memory(self):
         if "LAMELLA_SANITIZED" in os.environ:
             self.skipTest("what a sanitizer takes is not the program's")

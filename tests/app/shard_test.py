@@ -6,7 +6,7 @@ import os
 import shutil
 import subprocess
 
-from program import PROGRAM, SOURCE, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main, open_box
+from program import PROGRAM, SOURCE, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main, needs_posix, open_box
 
 CLUSTER = SOURCE / "examples" / "cluster"
 
@@ -144,6 +144,7 @@ class Shard(ProgramTest):
         self.write("a.json", "{}")
         self.assertIn("sliced", self.succeed(*shard, "--stats", "a.json").text)
 
+    @needs_posix("pipes and devices with names")
     def test_a_shard_whose_statistics_failed_is_not_finished(self):
         self.lattice()
         shard = ["slice", "part.stl", "-o", "a.cli", "--shard", "2/4", "--resume", "--stats"]
@@ -161,6 +162,7 @@ class Shard(ProgramTest):
         self.fail_with(6, "cannot write 'c.cli.shard': it is a folder", *shard, "c.cli")
         self.fail_with(6, r"cannot write '.*\.cli\.shard': the name is too long", *shard, "d" * 247 + ".cli")
 
+    @needs_posix("permissions")
     def test_merge_reports_what_is_missing_or_cannot_be_read(self):
         self.lattice()
         a, b = self.slice_all(2, "cli")
@@ -363,6 +365,7 @@ class Shard(ProgramTest):
         self.fail_with(2, "--resume goes with --output", "slice", "part.stl", "--stats", "a.json", "--shard", "1/2", "--resume")
         self.fail_with(2, "from a file", "slice", "-", "-o", "a.cli", "--shard", "1/2")
 
+    @needs_posix("symbolic links")
     def test_the_array_script_slices_and_merges(self):
         """The script of the Slurm example, with the variables that Slurm sets."""
         self.lattice()
@@ -379,6 +382,7 @@ class Shard(ProgramTest):
                        env=environment)
         self.assertEqual(self.bytes_of("part.cli"), self.bytes_of("whole.cli"))
 
+    @needs_posix("symbolic links")
     def test_the_indexed_job_slices_and_merges(self):
         """The commands of the Kubernetes example, with the variable that it sets."""
         self.lattice()

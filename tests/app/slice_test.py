@@ -5,7 +5,7 @@ import math
 import os
 import re
 
-from program import ProgramTest, binary_stl, box_triangles, main, open_box
+from program import ProgramTest, binary_stl, box_triangles, main, needs_posix, open_box
 
 STATS_KEYS = ["lamella", "options", "input", "engine", "threads", "seconds", "peak_rss_bytes", "points",
               "contours", "open_chains", "volume_mm3", "layers"]
@@ -341,6 +341,7 @@ class Slice(ProgramTest):
         for words in [["--units-mm", "3"], ["--short"], ["--max-output", "1"], ["--antialias", "3"], ["--format", "cli"]]:
             self.fail_with(2, f"{words[0]} goes with --output", "slice", "box.stl", "--stats", "s.json", *words)
 
+    @needs_posix("symbolic links")
     def test_two_results_do_not_go_to_one_file(self):
         self.box()
         for other in ["./x.json", str(self.path("x.json"))]:
@@ -368,6 +369,7 @@ class Slice(ProgramTest):
         self.assertEqual(len(json.loads(self.bytes_of("box.json"))["layers"]), 100)
         self.assertEqual(self.listing(), ["box.cli", "box.json", "box.stl"])
 
+    @needs_posix("permissions")
     def test_statistics_follow_links_and_keep_permissions_as_results_do(self):
         self.box()
         self.path("kept").mkdir()
@@ -387,6 +389,7 @@ class Slice(ProgramTest):
         self.fail_with(6, "it is a folder", "slice", "box.stl", "-o", "box.cli", "--stats", str(self.folder))
         self.assertEqual(self.bytes_of("box.cli"), b"old")
 
+    @needs_posix("pipes and devices with names")
     def test_statistics_that_fail_at_the_end_leave_a_complete_slice_file_and_say_so(self):
         self.box()
         self.box("page.stl")

@@ -7,7 +7,7 @@ import re
 import resource
 import unittest
 
-from program import ProgramTest, binary_stl, box_triangles, main
+from program import ProgramTest, binary_stl, box_triangles, main, needs_posix
 
 ODD = b"b\xe4r\x1b[31m\x7f\xc2\x85"
 ESCAPED = "b\\xe4r\\x1b[31m\\x7f\\xc2\\x85"
@@ -120,6 +120,7 @@ class Texts(ProgramTest):
         self.assertIn("Files that overlap, leave gaps or come from different jobs are refused. An exposure may be missing in some; "
                       "in ilt, ovf and 3mf-toolpath a whole part.", merge)
 
+    @needs_posix("limits of processes")
     @unittest.skipIf("LAMELLA_SANITIZED" in os.environ, "a sanitizer needs more address space")
     def test_copies_that_exhaust_memory_are_named_as_what_to_reduce(self):
         self.write("box.stl", binary_stl(box_triangles(1, 1, 1)))

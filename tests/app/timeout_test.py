@@ -4,7 +4,7 @@ import json
 import os
 import subprocess
 
-from program import PROGRAM, ProgramTest, main
+from program import COMMAND, ProgramTest, main, needs_posix
 
 
 class Timeout(ProgramTest):
@@ -36,7 +36,7 @@ class Timeout(ProgramTest):
 
     def stuck(self, *arguments):
         """What a program says on standard error that waits for standard input, until its time is up."""
-        process = subprocess.Popen([PROGRAM, "slice", "-", "-o", "out.cli", "--timeout", "0.1", *arguments],
+        process = subprocess.Popen([*COMMAND, "slice", "-", "-o", "out.cli", "--timeout", "0.1", *arguments],
                                    cwd=self.folder, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
         self.addCleanup(process.kill)
         self.assertEqual(process.wait(timeout=60), 5)
@@ -51,6 +51,7 @@ class Timeout(ProgramTest):
         self.assertEqual(last["exit_code"], 5)
         self.assertIn("stopped after 0.1 s (--timeout)", last["error"])
 
+    @needs_posix("pipes and devices with names")
     def test_waiting_for_a_list_or_a_configuration_file_is_stopped(self):
         self.box()
         os.mkfifo(self.path("pipe"))
@@ -66,6 +67,7 @@ class Timeout(ProgramTest):
                 with open(self.path("pipe"), "r+b", buffering=0):  # the other end is open, and nothing comes
                     is_stopped(option)
 
+    @needs_posix("pipes and devices with names")
     def test_whoever_does_not_take_the_figures_is_not_waited_for(self):
         self.box()
         os.mkfifo(self.path("pipe"))
@@ -79,7 +81,7 @@ class Timeout(ProgramTest):
         os.set_blocking(writing, True)
         for more, stdout in [(["--stats", "pipe"], subprocess.DEVNULL), (["--stats", "-"], writing), ([], writing)]:
             with self.subTest(more):
-                process = subprocess.Popen([PROGRAM, "slice", "box.stl", "-o", "box.cli", "--timeout", "2", "--progress", "json",
+                process = subprocess.Popen([*COMMAND, "slice", "box.stl", "-o", "box.cli", "--timeout", "2", "--progress", "json",
                                             *more], cwd=self.folder, stdout=stdout, stderr=subprocess.PIPE)
                 self.addCleanup(process.kill)
                 err = process.communicate(timeout=60)[1].decode()

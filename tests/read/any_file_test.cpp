@@ -5,9 +5,7 @@
 #include "read/packages.hpp"
 #include "temporary_folder.hpp"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/stat.h>
 
 #include <fstream>
 #include <span>
@@ -111,18 +109,6 @@ TEST(ReadAny, LooksIntoWhatIsPackedWithGzip) {
     EXPECT_TRUE(std::holds_alternative<MeshFile>(read_text(compressed(mesh_as_text))));
     for (std::size_t length = 1; length < layers.size(); ++length)
         EXPECT_NE(refusal_of(std::string_view(layers).substr(0, length)), "") << length;
-}
-
-TEST(ReadAny, ReadsAPipeFromItsFirstByte) {
-    const TemporaryFolder folder;
-    for (const std::string_view text : {layers_as_text, mesh_as_text}) {
-        const std::string path = folder.file(text == mesh_as_text ? "mesh" : "layers");
-        ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-        std::thread writer([&] { std::ofstream(path, std::ios::binary) << text; });
-        const auto read = read_any(path);
-        writer.join();
-        EXPECT_EQ(std::holds_alternative<MeshFile>(read), text == mesh_as_text);
-    }
 }
 
 } // namespace

@@ -8,9 +8,6 @@
 #include "read/stl_text.hpp"
 #include "temporary_folder.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <limits>
 #include <map>
 #include <mutex>
@@ -209,51 +206,6 @@ TEST(MeshInput, GivesOnWhatTheSinkThrows) {
         };
         EXPECT_THROW(input.stream(sink, {}, {.threads = 2}), std::runtime_error);
     }
-}
-
-/// Standard input is a pipe that delivers these bytes.
-class PipedInput {
-  public:
-    explicit PipedInput(std::string bytes) : saved_(dup(STDIN_FILENO)) {
-        int ends[2];
-        EXPECT_EQ(pipe(ends), 0);
-        dup2(ends[0], STDIN_FILENO);
-        close(ends[0]);
-        writer_ = std::thread([to = ends[1], sent = std::move(bytes)] {
-            for (std::size_t at = 0; at < sent.size();) {
-                const ssize_t written = write(to, sent.data() + at, sent.size() - at);
-                if (written <= 0)
-                    break;
-                at += static_cast<std::size_t>(written);
-            }
-            close(to);
-        });
-    }
-    ~PipedInput() {
-        writer_.join();
-        dup2(saved_, STDIN_FILENO);
-        close(saved_);
-    }
-    PipedInput(const PipedInput&) = delete;
-    PipedInput& operator=(const PipedInput&) = delete;
-
-  private:
-    int saved_;
-    std::thread writer_;
-};
-
-TEST(MeshInput, SpoolsWhatComesThroughAPipe) {
-    const Triangles many =
-        some_triangles(test::slowed ? 25'000 : 60'000); // more than the limit of 2^20 bytes
-    for (const std::string& bytes : {binary(many), solid(many)})
-        for (const std::uint64_t most : {std::uint64_t{0}, std::uint64_t{1} << 20, std::uint64_t{1} << 40}) {
-            const PipedInput piped(bytes);
-            const MeshInput input("-", most);
-            EXPECT_EQ(input.bytes(), bytes.size());
-            EXPECT_EQ(stream(input, {}, 2).triangles, many);
-            EXPECT_EQ(stream(input, {}, 2).triangles, many); // as often as wished
-            EXPECT_EQ(triangles_of(input.read()), many);
-        }
 }
 
 } // namespace

@@ -13,7 +13,6 @@
 #include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>

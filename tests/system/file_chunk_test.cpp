@@ -34,11 +34,5 @@ TEST(FileChunk, OfAFileThatIsNotThereIsRefused) {
     test::expect_error(ErrorKind::output, {"part.cli"}, [&] { FileChunk(path, 0, "part.cli"); });
 }
 
-TEST(FileChunk, CallsTheFileByTheNameThatItWillHave) {
-    FileChunk chunk("/dev/full", 0, "part.cli");
-    EXPECT_EQ(test::error_of(ErrorKind::output, [&] { chunk.append("x"); }),
-              "cannot write 'part.cli': the disk is full; free some space or choose another place");
-}
-
 } // namespace
 } // namespace lamella

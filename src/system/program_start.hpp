@@ -1,0 +1,46 @@
+#pragma once
+
+// What the program needs of the system apart from the library: arguments, standard streams, memory. Programs
+// include these headers (program_*.hpp); their sources are no part of the library.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lamella {
+
+/// Returns the arguments after the name of the program, in UTF-8 where the system has an encoding.
+[[nodiscard]] std::vector<std::string> program_arguments(int argc, char** argv);
+
+/// Prepares the standard streams; must be called before any file is opened. A closed stream must not get the
+/// number of the next file that is opened, which would be read or written instead; reading or writing it
+/// remains an error. Streams carry bytes unchanged, and UTF-8 to a terminal.
+void prepare_standard_streams() noexcept;
+
+/// Returns whether standard output was closed when the program started, which means that no output is wanted.
+[[nodiscard]] bool output_is_closed() noexcept;
+/// Returns whether standard error is a terminal that can draw a progress bar.
+[[nodiscard]] bool errors_are_on_terminal() noexcept;
+
+/// Reads a file, or standard input if the path is "-", to its end. Returns an errno, or 0.
+[[nodiscard]] int read_text(const std::string& path, std::string& text);
+
+/// Identifies a file, whatever its path is.
+using FileIdentity = std::pair<std::uint64_t, std::uint64_t>;
+[[nodiscard]] std::optional<FileIdentity> identity_of(const std::string& path);
+
+/// Returns the peak memory of this program in bytes.
+[[nodiscard]] std::uint64_t peak_memory();
+
+/// Sets two thresholds of the allocator, if the system has them. Freed memory of at least `own_pages` bytes
+/// is returned to the system at once, smaller amounts if more than `kept` bytes are free. By default the
+/// allocator adapts both thresholds to the sizes that it encounters, and never lowers them again.
+void set_heap(int own_pages, int kept) noexcept;
+
+/// Returns the most bytes that a path can have.
+[[nodiscard]] std::size_t longest_path() noexcept;
+
+} // namespace lamella
