@@ -9,16 +9,15 @@ const [packageFolder, tree, viewerPackages, output] = process.argv.slice(2);
 const esbuild = createRequire(resolve(viewerPackages, 'package.json'))('esbuild');
 const source = (name) => join(tree, 'web/playground', name);
 
-function bundled(name) {
+function bundled(path) {
   const { outputFiles } = esbuild.buildSync({
-    entryPoints: [source(name)],
+    entryPoints: [resolve(path)],
     bundle: true,
     minify: true,
     format: 'iife',
     target: 'es2022',
     write: false,
     logLevel: 'error',
-    alias: { 'lamella.js': resolve(packageFolder, 'lamella.js') },
   });
   return outputFiles[0].text.trim().replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
 }
@@ -29,8 +28,8 @@ const page = readFileSync(source('index.html'), 'utf8')
   .replace('<!--styles-->', () => `<style>\n${readFileSync(source('styles.css'), 'utf8')}</style>`)
   .replace(
     '<!--script-->',
-    () => `<script type="text/plain" id="worker">${bundled('worker.js')}</script>
-    <script>${bundled('playground.js')}</script>
+    () => `<script type="text/plain" id="worker">${bundled(join(packageFolder, 'browser_worker.js'))}</script>
+    <script>${bundled(source('playground.js'))}</script>
     <script type="text/plain" id="wasm">${wasm}</script>
     <!-- Licences of what is in this page:\n\n${licences}\n-->`,
   );

@@ -176,6 +176,17 @@ test('a call reports progress and ends when its signal is aborted', async () => 
   assert.ok((await slice(mesh, { layerHeight: 10 })).layers.length > 0);
 });
 
+test('a mesh and a stack give up their memory', async () => {
+  const mesh = await makeBody('box');
+  const stack = await slice(mesh, { layerHeight: 1 });
+  for (const one of [mesh, stack]) {
+    one.dispose();
+    assert.equal(one.bytes.length, 0);
+    if (Symbol.dispose) assert.equal(one[Symbol.dispose], one.dispose);
+  }
+  assert.deepEqual(stack.layers, []);
+});
+
 test('a thousand slices leave no memory behind', async () => {
   const box = await makeBody('sphere', { size: 20, detail: 3 });
   const some = async (count) => {

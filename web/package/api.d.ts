@@ -33,6 +33,8 @@ export type Box = [min: [number, number, number], max: [number, number, number]]
 /** A mesh file that was read without an error. */
 export class Mesh {
   private constructor();
+  /** Gives up the memory of this object, which must not be used afterwards. Not necessary: the garbage collector does it, too. */
+  dispose(): void;
   readonly name: string;
   /** The file. */
   readonly bytes: Uint8Array;
@@ -221,6 +223,8 @@ export class Layer {
 /** Layers in ascending z. */
 export class Stack {
   private constructor();
+  /** Gives up the memory of this object, which must not be used afterwards. Not necessary: the garbage collector does it, too. */
+  dispose(): void;
   readonly layers: Layer[];
   /** Of the parts. */
   readonly labels: string[];

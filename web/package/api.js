@@ -199,9 +199,19 @@ function fileName(name, files) {
 
 // ---- Meshes -----------------------------------------------------------------------------------------------------------
 
-/** A mesh file that was read without an error. It is bytes: memory is given back when nothing refers to it. */
-export class Mesh {
+/** Memory is given back when nothing refers to bytes any more; `dispose` ends the reference of a mesh or a stack to its own. */
+class Disposable {
+  dispose() {
+    this.bytes = new Uint8Array();
+    this.layers &&= [];
+  }
+}
+if (Symbol.dispose) Disposable.prototype[Symbol.dispose] = Disposable.prototype.dispose;
+
+/** A mesh file that was read without an error. */
+export class Mesh extends Disposable {
   constructor(bytes, facts, warnings) {
+    super();
     Object.assign(this, facts, { bytes, warnings });
   }
 }
@@ -379,8 +389,9 @@ function statisticsOf({ index, z, contours, points, ...rest }) {
 }
 
 /** Layers in ascending z. `bytes` are an NPZ file of them. */
-export class Stack {
+export class Stack extends Disposable {
   constructor(file, { statistics = null, warnings = [], source = null } = {}) {
+    super();
     const { bytes, arrays } = arraysOf(file);
     this.bytes = bytes;
     this.labels = arrays.labels;

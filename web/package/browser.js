@@ -6,7 +6,7 @@ usePlatform({
   workers: navigator.hardwareConcurrency || 1,
   loadModule: () => WebAssembly.compileStreaming(fetch(new URL('./lamella.wasm', import.meta.url))),
   startWorker(module, onMessage, onFailure) {
-    const worker = new Worker(new URL('./worker.js', import.meta.url), { type: 'module' });
+    const worker = new Worker(new URL('./browser_worker.js', import.meta.url), { type: 'module' });
     worker.onmessage = ({ data }) => onMessage(data);
     worker.onerror = (event) => onFailure(new Error(event.message || 'the worker could not be started'));
     worker.postMessage({ module });

@@ -10,7 +10,7 @@ usePlatform({
   workers: availableParallelism?.() ?? cpus().length,
   loadModule: async () => WebAssembly.compile(await readFile(new URL('./lamella.wasm', import.meta.url))),
   startWorker(module, onMessage, onFailure) {
-    const worker = new Worker(new URL('./worker.js', import.meta.url), { workerData: module });
+    const worker = new Worker(new URL('./node_worker.js', import.meta.url), { workerData: module });
     worker.on('message', onMessage);
     worker.on('error', onFailure);
     worker.unref();

@@ -1,7 +1,7 @@
-// The worker of the playground, one script.
+// The worker in which the program runs, of a browser. Its first message is the module of WebAssembly.
 
-import createLamellaIn from 'lamella.js';
-import { answering } from '../package/program.js';
+import createLamellaIn from './lamella.js';
+import { answering } from './program.js';
 
 let answer;
 self.onmessage = ({ data }) => {
