@@ -52,29 +52,37 @@ TEST(JobPlan, WritesEveryPlaneUnlessSomeAreSelected) {
     EXPECT_EQ(whole.written, (PlaneRange{0, 20}));
 }
 
+/// Returns a job that writes some layers, with or without skins that depend on these numbers of neighbours.
+FileJob job_of(std::uint64_t begin, std::uint64_t end, bool scans, std::uint32_t below, std::uint32_t above) {
+    FileJob job;
+    job.layering.cut = UniformLayers{.layer_height = 0.5};
+    job.layering.only = {.index_range = {{begin, end}}};
+    if (scans) {
+        ScanStrategy strategy;
+        strategy.downskin.layers = below;
+        strategy.upskin.layers = above;
+        job.scan = std::move(strategy);
+    }
+    return job;
+}
+
 TEST(JobPlan, OfSelectedPlanesHasThoseOfTheWholeJobAndTheNeighboursThatSkinsDependOn) {
-    Sphere sphere;
+    const Sphere sphere;
     const Plan whole = plan_job(sphere.job, sphere.plate, {}).plan;
     for (const std::uint32_t below : {0U, 1U, 4U})
         for (const std::uint32_t above : {0U, 2U, 30U})
             for (const bool scans : {false, true})
                 for (const auto& [begin, end] : {std::pair(0U, 20U), {0U, 3U}, {7U, 8U}, {18U, 20U}}) {
                     SCOPED_TRACE(testing::Message() << below << ' ' << above << ' ' << begin << ' ' << scans);
-                    sphere.job.layering.only = {.index_range = {{begin, end}}};
-                    sphere.job.scan.reset();
-                    if (scans) {
-                        sphere.job.scan.emplace();
-                        sphere.job.scan->downskin.layers = below;
-                        sphere.job.scan->upskin.layers = above;
-                    }
-                    const JobPlan some = plan_job(sphere.job, sphere.plate, {});
+                    const FileJob job = job_of(begin, end, scans, below, above);
+                    const JobPlan some = plan_job(job, sphere.plate, {});
                     ASSERT_EQ(some.written.size(), end - begin);
                     const std::uint32_t first = begin - (scans ? std::min(begin, below) : 0);
                     EXPECT_EQ(some.written.begin, begin - first);
                     ASSERT_EQ(some.plan.layers.size(), end - first + (scans ? std::min(above, 20 - end) : 0));
                     for (std::size_t i = 0; i < some.plan.layers.size(); ++i)
                         expect_same(some.plan.layers[i], whole.layers[first + i]);
-                    EXPECT_EQ(with_neighbours(sphere.job, some.written, some.plan.layers.size()),
+                    EXPECT_EQ(with_neighbours(job, some.written, some.plan.layers.size()),
                               (PlaneRange{0, static_cast<std::uint32_t>(some.plan.layers.size())}));
                 }
 }
