@@ -19,7 +19,7 @@ Interrupt::Interrupt(const Messages& messages, Interrupts kind) : messages_(mess
     watcher_ = std::thread([this] { watch(); });
     // Wait until the thread has started. While it starts, it may hold locks of the allocator, and a fork of
     // the process would copy these in the locked state.
-    watching_.wait();
+    watching_.get_future().wait();
 }
 
 Interrupt::~Interrupt() {
@@ -29,7 +29,7 @@ Interrupt::~Interrupt() {
 
 void Interrupt::watch() {
     using Event = InterruptWatch::Event;
-    watching_.count_down();
+    watching_.set_value();
     if (watch_.wait(InterruptWatch::for_ever) == Event::end)
         return;
     flag_.request();

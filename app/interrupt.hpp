@@ -7,7 +7,7 @@
 #include "messages.hpp"
 #include "system/program_ending.hpp"
 
-#include <latch>
+#include <future>
 #include <thread>
 
 namespace lamella::app {
@@ -33,7 +33,7 @@ class Interrupt {
     const Messages& messages_;
     CancelFlag flag_;
     InterruptWatch watch_;
-    std::latch watching_{1};
+    std::promise<void> watching_;
     std::thread watcher_;
 };
 

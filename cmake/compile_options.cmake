@@ -19,6 +19,9 @@ target_compile_options(
               # Never fuses a*b+c, so that every processor computes the same bits (docs/conventions.md).
               -ffp-contract=off)
 # GCC warns of uninitialised values in the code that its own sanitizers add, so warnings are no errors there.
+if(MINGW)
+    target_compile_options(lamella_options INTERFACE -include ${PROJECT_SOURCE_DIR}/src/system/windows/utf8_paths.hpp)
+endif()
 if(LAMELLA_WERROR AND NOT (LAMELLA_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU"))
     target_compile_options(lamella_options INTERFACE -Werror)
 endif()

@@ -64,6 +64,8 @@ Error output_error(const std::string& path, int system_error) {
         return text("the disk quota is used up; free some space or choose another place");
     switch (system_error) {
     case ENOENT:
+        if (std::error_code ignored; fs::is_regular_file(first_bad_folder(path), ignored)) // as on Windows
+            return output_error(path, ENOTDIR);
         return text(fmt::format("the folder '{}' does not exist; create it first", first_bad_folder(path)));
     case ENOTDIR:
         return text(

@@ -19,6 +19,14 @@ std::span<const std::byte> bytes(const std::string& text) {
     return std::as_bytes(std::span(text));
 }
 
+TEST(SpillFile, HasNoName) {
+    const TemporaryFolder folder;
+    const test::ScratchFolder spill(folder.path().string());
+    SpillFile file(4096);
+    file.write(0, bytes("data"));
+    EXPECT_TRUE(folder.entries().empty());
+}
+
 TEST(SpillFile, SaysThatItMayNotGrow) {
     const TemporaryFolder folder;
     const test::ScratchFolder spill(folder.path().string());

@@ -35,14 +35,6 @@ TEST(SpillFile, GivesBackWhatWasWrittenAnywhere) {
     }
 }
 
-TEST(SpillFile, HasNoName) {
-    const TemporaryFolder folder;
-    const test::ScratchFolder spill(folder.path().string());
-    SpillFile file(4096);
-    file.write(0, bytes("data"));
-    EXPECT_TRUE(folder.entries().empty());
-}
-
 TEST(SpillFile, NamesAFolderThatIsNotThere) {
     const TemporaryFolder folder;
     const test::ScratchFolder spill(folder.file("nowhere"));

@@ -217,6 +217,14 @@ bool synchronise(const NativeFile& file) {
 }
 
 bool reserve_space(const NativeFile& file, std::uint64_t bytes) {
+    std::wstring path(std::size_t{1} << 15, L'\0');
+    path.resize(GetFinalPathNameByHandleW(handle_of(file), path.data(), static_cast<DWORD>(path.size()), 0));
+    ULARGE_INTEGER free{};
+    if (GetDiskFreeSpaceExW(path.substr(0, path.find_last_of(L'\\')).c_str(), &free, nullptr, nullptr) != 0 &&
+        free.QuadPart < bytes) {
+        errno = ENOSPC;
+        return false;
+    }
     FILE_ALLOCATION_INFO size{};
     size.AllocationSize.QuadPart = static_cast<LONGLONG>(bytes);
     if (SetFileInformationByHandle(handle_of(file), FileAllocationInfo, &size, sizeof size) != 0)

@@ -38,6 +38,9 @@ OutputTarget find_target(const std::string& path) {
     const std::wstring name = wide_path(path);
     if (is_device(name))
         return {.path = {}, .in_place = true};
+    constexpr std::size_t longest_name = 255; // of all file systems of Windows
+    if (name.size() - (name.find_last_of(L'\\') + 1) > longest_name)
+        return {.path = {}, .error = ENAMETOOLONG};
     const DWORD attributes = GetFileAttributesW(name.c_str());
     const bool exists = attributes != INVALID_FILE_ATTRIBUTES;
     if (exists && (attributes & FILE_ATTRIBUTE_DIRECTORY) != 0)
