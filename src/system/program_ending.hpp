@@ -1,6 +1,6 @@
 #pragma once
 
-// How the program ends before its time: interrupts and crashes.
+// Ends of the program before its time: interrupts and crashes.
 
 #include <cstdint>
 #include <string_view>

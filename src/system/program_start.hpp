@@ -1,6 +1,6 @@
 #pragma once
 
-// What the program needs of the system apart from the library: arguments, standard streams, memory. Programs
+// The needs of the program apart from the library: arguments, standard streams, memory. Programs
 // include these headers (program_*.hpp); their sources are no part of the library.
 
 #include <cstddef>

@@ -35,7 +35,7 @@ class WorkerChannel {
     std::intptr_t out_ = -1;
 };
 
-/// How a process ended.
+/// The end of a process.
 struct ProcessEnd {
     enum class Kind : std::uint8_t { exited, time_is_up, killed, crashed };
     Kind kind = Kind::exited;

@@ -94,7 +94,7 @@ InterruptWatch::InterruptWatch(Interrupts kind) {
     // Threads started later inherit the mask, so only the descriptor receives the signals.
     const sigset_t signals = signals_of(kind);
     ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-    // What is written to one end of the pipe ends all waiting at the other.
+    // A byte written to one end of the pipe ends all waiting at the other.
     std::array<int, 2> ends{-1, -1};
     interrupts_ = open_signals(signals);
     if (interrupts_ < 0 || ::pipe(ends.data()) != 0)

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the program needs of the system that POSIX does not offer. program_kernel_linux.cpp implements it for
+// Functions for the program that POSIX does not offer. program_kernel_linux.cpp implements it for
 // Linux, program_kernel_unix.cpp for macOS and other systems.
 
 #include <csignal>
