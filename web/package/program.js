@@ -108,8 +108,16 @@ export class Program {
   #collect(folder, known) {
     return this.#children(folder).flatMap(([path, isFolder]) => {
       if (isFolder) return this.#collect(path, known);
-      return known.has(path) ? [] : [{ name: path.slice('/job/'.length), bytes: this.#instance.FS.readFile(path) }];
+      return known.has(path) ? [] : [{ name: path.slice('/job/'.length), bytes: this.#bytesOf(path) }];
     });
+  }
+
+  /** The bytes themselves, unless much of their memory is room that the file did not use. */
+  #bytesOf(path) {
+    const { contents, usedBytes } = this.#instance.FS.lookupPath(path).node;
+    if (!contents || usedBytes === 0) return new Uint8Array();
+    const bytes = new Uint8Array(contents.buffer, contents.byteOffset, usedBytes); // of signed bytes, sometimes
+    return usedBytes > 0.75 * contents.length ? bytes : bytes.slice();
   }
 
   #empty(folder) {
