@@ -19,8 +19,15 @@ if [ ! -f "$WINEPREFIX/prepared" ]; then
         fi
     ) 9>"$WINEPREFIX/.lock" </dev/null
 fi
-# Services of Wine that start with the first program would keep its output open.
+# The server of Wine must outlive each program: one that starts while the server ends would wait for ever. Services that
+# start with the first program would keep its output open.
 if ! pgrep -x 'wineserver(64)?' >/dev/null; then
-    "$wine" cmd.exe /c exit </dev/null >/dev/null 2>&1
+    (
+        flock 9
+        if ! pgrep -x 'wineserver(64)?' >/dev/null; then
+            wineserver --persistent=60 9>&- </dev/null >/dev/null 2>&1
+            "$wine" cmd.exe /c exit 9>&- </dev/null >/dev/null 2>&1
+        fi
+    ) 9>"$WINEPREFIX/.lock"
 fi
 exec "$wine" "$@"

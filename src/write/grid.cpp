@@ -33,7 +33,12 @@ void check_units(double units) {
 }
 
 double round_step(double least) noexcept {
-    const double decade = std::pow(10, std::floor(std::log10(least)));
+    // Not std::pow, because the last bit of its result differs between systems.
+    const double exponent = std::floor(std::log10(least));
+    double power = 1; // exact up to 10^22
+    for (double i = 0; i < std::abs(exponent); ++i)
+        power *= 10;
+    const double decade = exponent < 0 ? 1 / power : power;
     for (const double digit : {1.0, 2.0, 5.0})
         if (digit * decade >= least)
             return digit * decade;

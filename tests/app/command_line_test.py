@@ -2,7 +2,7 @@
 
 import re
 
-from program import ProgramTest, main
+from program import ProgramTest, main, needs_posix
 
 
 class CommandLine(ProgramTest):
@@ -92,6 +92,7 @@ class CommandLine(ProgramTest):
         self.succeed("slice", "box.stl", "--config", "job.toml")
         self.assertEqual(self.bytes_of("out.cli"), written)
 
+    @needs_posix("names of files of any bytes")
     def test_a_configuration_keeps_where_each_file_stands(self):
         self.box("a.stl", size="4,6,2")
         self.box('b "2"\x7f.stl', size="2,2,3")
@@ -124,6 +125,7 @@ class CommandLine(ProgramTest):
                                                               "-").json()["input"]["bbox"])
         self.assertNotIn("parts", alone)
 
+    @needs_posix("names of files of any bytes")
     def test_a_name_that_no_configuration_can_hold(self):
         self.fail_with(2, "not UTF-8", "slice", b"\xff.stl".decode("utf-8", "surrogateescape"), "--dump-config")
 

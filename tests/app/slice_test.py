@@ -437,6 +437,7 @@ class Slice(ProgramTest):
         self.assertIn("\nchanged  2 layers by --offset: area 1200 to 0 mm2 in all; 2 rings lost\n", text)
         self.assertIn("\nchanged  0 layers by --fill\n", self.succeed(*command, "--fill", "nonzero").text)
 
+    @needs_posix("TMPDIR")
     def test_a_missing_folder_of_temporary_files_is_named(self):
         self.box()
         self.fail_with(6, r"temporary file in the folder '/nonexist'.*TMPDIR", "slice", "box.stl", "-o", "-", "--format", "npz",
@@ -508,6 +509,7 @@ class Slice(ProgramTest):
     def test_there_is_no_progress_where_standard_error_is_no_terminal(self):
         self.assertEqual(self.succeed("slice", self.box(), "-o", "box.cli", "--layer-height=0.001").err, "")
 
+    @needs_posix("names of files with quotes and line breaks")
     def test_names_of_files_may_be_anything(self):
         for name in ["čřšřěá.stl", "with blanks.stl", "-dash.stl", "new\nline.stl", "quote\"'.stl"]:
             with self.subTest(name):

@@ -3,6 +3,7 @@
 #include "fixtures/expect_error.hpp"
 #include "fixtures/rounds.hpp"
 #include "system/atomic_file.hpp"
+#include "system/file_chunk.hpp"
 #include "system/nameless_file.hpp"
 #include "temporary_folder.hpp"
 
@@ -67,7 +68,9 @@ TEST(AtomicFile, LeavesNothingBehindWhenItIsNotEnded) {
 TEST(AtomicFile, TakesBytesFromOthersOnceItIsShared) {
     const TemporaryFolder folder;
     AtomicFile file(folder.file("a.cli"));
-    std::ofstream(file.share(), std::ios::binary) << "theirs";
+    FileChunk chunk(file.share(), 0, "a.cli");
+    chunk.append("theirs");
+    chunk.finish();
     EXPECT_EQ(file.share(), folder.file(folder.entries().at(0)));
     file.commit();
     EXPECT_EQ(file_bytes(folder.file("a.cli")), "theirs");

@@ -110,7 +110,8 @@ TEST(AtomicFile, IsNamedInAnyScriptAndOverLongPaths) {
             EXPECT_EQ(open_bytes(path).text(), "bytes") << path;
         }
     EXPECT_EQ(folder.entries().size(), 5U);
-    fs::remove_all(fs::path(L"\\\\?\\" + (folder.path() / folder.entries().front()).wstring()));
+    std::error_code ignored; // the standard library cannot remove paths that are so long
+    fs::remove_all(fs::path(L"\\\\?\\" + (folder.path() / folder.entries().front()).wstring()), ignored);
 }
 
 TEST(AtomicFile, ReplacesAFileThatOthersReadAndPermitToReplace) {

@@ -116,6 +116,14 @@ TEST(WriterGrid, RefusesWhatItCannotHold) {
     EXPECT_EQ(snapped(1, {{0, 0}, {0x1p51, 0}, {0, -0x1p51}})[1].x, std::int64_t{1} << 51);
 }
 
+TEST(RoundStep, IsTheNearestDoubleOfOneTwoOrFiveTimesAPowerOfTen) {
+    for (const double step : {1e-6, 2e-6, 1e-4, 1e-3, 2e-3, 5e-3, 1e-2, 0.1, 0.5, 1.0, 20.0, 500.0})
+        EXPECT_EQ(round_step(step), step);
+    EXPECT_EQ(round_step(0.0015), 0.002);
+    EXPECT_EQ(round_step(0.006), 0.01);
+    EXPECT_EQ(round_step(70), 100);
+}
+
 TEST(GridArea, IsExactForWholeNumbers) {
     EXPECT_EQ(grid_area(std::vector<GridPoint>{{0, 0}, {10, 0}, {10, 10}, {0, 10}}), 100);
     EXPECT_EQ(grid_area(std::vector<GridPoint>{{0, 0}, {0, 10}, {10, 10}, {10, 0}}), -100);
