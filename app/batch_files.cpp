@@ -53,7 +53,7 @@ void find_meshes(const fs::path& folder, const fs::path& apart, std::vector<std:
     fs::directory_iterator entries(folder, error);
     for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
         const fs::path& path = entries->path();
-        if (path.filename().string().starts_with('.'))
+        if (path.filename().generic_string().starts_with('.'))
             continue;
         std::error_code ignored;
         if (entries->is_directory(ignored)) {
@@ -61,8 +61,8 @@ void find_meshes(const fs::path& folder, const fs::path& apart, std::vector<std:
             if (!entries->is_symlink(ignored) &&
                 (apart.empty() || fs::weakly_canonical(path, ignored) != apart))
                 find_meshes(path, apart, found, fail);
-        } else if (is_mesh_name(path.string()) && !is_stream(path)) {
-            found.push_back(path.string());
+        } else if (is_mesh_name(path.generic_string()) && !is_stream(path)) {
+            found.push_back(path.generic_string());
         }
     }
     if (error)
@@ -79,7 +79,7 @@ std::vector<std::string> files_in(const std::string& folder, const std::string& 
         if (at == folder)
             refuse(folder, fmt::format("the folder cannot be listed: {}", why.message()));
         // The folder is added to the files; opening it will give the same error.
-        found.push_back(at.string());
+        found.push_back(at.generic_string());
     });
     if (found.empty())
         refuse(folder, fmt::format("no file in this folder has a name as of a mesh (.{}); other names can be "
@@ -165,7 +165,8 @@ std::string filled(std::string_view pattern, const std::array<std::string, 3>& v
 
 /// Returns "out/a.obj.cli" for "out/a.cli" and ".obj".
 std::string with_tag(const fs::path& name, const std::string& tag) {
-    return (name.parent_path() / (name.stem().string() + tag + name.extension().string())).string();
+    return (name.parent_path() / (name.stem().generic_string() + tag + name.extension().generic_string()))
+        .generic_string();
 }
 
 } // namespace
@@ -208,11 +209,11 @@ bool OutputNames::take(const std::string& name) {
 void OutputNames::note_folders(const fs::path& name) {
     for (fs::path folder = name.parent_path(); !folder.empty() && folder != folder.parent_path();
          folder = folder.parent_path()) {
-        if (taken_.contains(folder.string()))
+        if (taken_.contains(folder.generic_string()))
             throw Error(ErrorKind::usage,
                         fmt::format("{}: would lie within the result {}; choose another folder",
-                                    name.string(), folder.string()));
-        if (!folders_.insert(folder.string()).second)
+                                    name.generic_string(), folder.generic_string()));
+        if (!folders_.insert(folder.generic_string()).second)
             return; // its parent folders are known, too
     }
 }
@@ -231,17 +232,18 @@ std::vector<std::string> OutputNames::give(std::span<const std::string> inputs, 
     std::vector<fs::path> wanted;
     for (std::size_t i = 0; i < paths.size(); ++i) {
         const fs::path folder = paths[i].parent_path().lexically_relative(shared);
-        const std::string stem = stem_of(paths[i]).string();
-        const fs::path named = has_placeholder(pattern)
-                                   ? fs::path(filled(pattern, {stem, folder.string(), std::to_string(i)}))
-                                   : fs::path(pattern) / folder / (stem + std::string(extension));
+        const std::string stem = stem_of(paths[i]).generic_string();
+        const fs::path named =
+            has_placeholder(pattern)
+                ? fs::path(filled(pattern, {stem, folder.generic_string(), std::to_string(i)}))
+                : fs::path(pattern) / folder / (stem + std::string(extension));
         wanted.push_back(named.lexically_normal());
         note_folders(wanted.back());
     }
     std::vector<std::string> names;
     for (std::size_t i = 0; i < paths.size(); ++i) {
-        std::string name = wanted[i].string();
-        const std::string own = paths[i].extension().string();
+        std::string name = wanted[i].generic_string();
+        const std::string own = paths[i].extension().generic_string();
         for (std::size_t number = 1; !take(name); ++number)
             name = with_tag(wanted[i], number == 1 ? own : fmt::format("{}-{}", own, number));
         names.push_back(std::move(name));

@@ -105,6 +105,7 @@ class Batch(ProgramTest):
         self.assertEqual([r["ok"] for r in records], [True, True, False, True])
         self.assertEqual(records[2]["error"]["kind"], "limit")
 
+    @needs_posix("names of files with line breaks")
     def test_a_list_in_its_order(self):
         self.boxes("a", 2)
         self.boxes("b", 2)
@@ -488,6 +489,7 @@ class Workers(ProgramTest):
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (20, 20)))
         self.assertEqual(len(result.out.splitlines()), len(names))
 
+    @needs_posix("names of files of any bytes")
     def test_results_fit_a_message_whatever_names_and_texts_there_are(self):
         deep = "/".join(["in"] + 31 * [120 * "\u0001"])
         self.path(deep).mkdir(parents=True)

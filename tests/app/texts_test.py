@@ -47,6 +47,7 @@ class Texts(ProgramTest):
         self.assertEqual(self.run_program("info", "odd.json", "--json").json()["label"],
                          "a\\x00b\\x1b\\x7f\\xc2\\x85")
 
+    @needs_posix("names of files of any bytes")
     def test_names_of_files_that_are_no_text(self):
         name = self.folder.as_posix().encode() + b"/" + ODD + b".stl"
         with open(name, "wb") as file:
