@@ -2,6 +2,7 @@
 
 #include "container/deflate.hpp"
 #include "container/inflate.hpp"
+#include "container/zip_samples.hpp"
 #include "container/zip_writer.hpp"
 #include "temporary_folder.hpp"
 
@@ -17,61 +18,8 @@
 namespace lamella::zip_writer_posix_cases {
 namespace {
 
-// What a Python program prints to whom the path is given. Python's zip reader is another than ours.
-std::string python(const std::string& program, const std::string& path) {
-    const std::string command = "python3 -c '" + program + "' '" + path + "' 2>&1";
-    std::FILE* const pipe = popen(command.c_str(), "r");
-    if (pipe == nullptr)
-        return "no python3";
-    std::string output;
-    char part[4096];
-    while (const std::size_t size = std::fread(part, 1, sizeof part, pipe))
-        output.append(part, size);
-    pclose(pipe);
-    return output;
-}
-
-// Checks every CRC, then prints name, size and method of each entry.
-const std::string list = R"(
-import sys, zipfile
-z = zipfile.ZipFile(sys.argv[1])
-print(z.testzip())
-for i in z.infolist():
-    print(i.filename, i.file_size, i.compress_type, i.date_time, i.extract_version)
-)";
-
-std::string described(const std::string& path) {
-    return python(list, path);
-}
-
-std::string line(const std::string& name, std::uint64_t size, int method, int version = 20) {
-    return name + ' ' + std::to_string(size) + ' ' + std::to_string(method) + " (1980, 1, 1, 0, 0, 0) " +
-           std::to_string(version) + '\n';
-}
-
-void write_sample(const std::string& path) {
-    ZipWriter zip(path, Overwriting::yes);
-    zip.add("plain", "content");
-    zip.add("folder/empty", "");
-    zip.add("d\xc3\xa9j\xc3\xa0", std::string(10'000, 'x'), ZipMethod::deflated);
-    zip.add("none", "", ZipMethod::deflated);
-    zip.begin("stream", ZipMethod::deflated);
-    Deflater deflater;
-    for (int i = 0; i < 10; ++i) {
-        const std::string text(static_cast<std::size_t>(i) * 1000, static_cast<char>('a' + i));
-        std::string chunk;
-        deflater.append_chunk(text, chunk);
-        zip.append({chunk, text.size(), crc32_of(text)});
-    }
-    zip.end();
-    zip.begin("stored stream", ZipMethod::stored);
-    zip.append_stored("in two ");
-    zip.append_stored("pieces");
-    zip.end();
-    zip.begin("empty stream", ZipMethod::deflated);
-    zip.end();
-    zip.finish();
-}
+using zip_test::python;
+using zip_test::write_sample;
 
 TEST(ZipWriter, EqualContentsGiveEqualBytesAlsoThroughAPipe) {
     const TemporaryFolder folder;
