@@ -6,6 +6,7 @@
 #include "fixtures/rounds.hpp"
 #include "parts/shapes.hpp"
 #include "read/stl_text.hpp"
+#include "read/streamed_mesh.hpp"
 #include "temporary_folder.hpp"
 
 #include <limits>
@@ -17,30 +18,6 @@
 
 namespace lamella::stl_test {
 namespace {
-
-/// The triangles that a file streams, in the order of its batches.
-struct Streamed {
-    Triangles triangles;
-    MeshFile file;
-};
-
-Streamed stream(const MeshInput& input, const MeshReadOptions& options = {}, unsigned threads = 1,
-                const std::optional<RecordRange>& share = {}) {
-    std::mutex mutex;
-    std::map<std::uint64_t, Triangles> batches;
-    const TriangleSink sink = [&](const TriangleSoup& batch, std::uint64_t number) {
-        Triangles triangles;
-        for (std::size_t i = 0; i < batch.size(); ++i)
-            triangles.push_back(batch.stored(i));
-        const std::lock_guard lock(mutex);
-        EXPECT_TRUE(batches.emplace(number, std::move(triangles)).second) << "batch " << number << " twice";
-    };
-    Streamed streamed;
-    streamed.file = input.stream(sink, options, {.threads = threads}, share);
-    for (const auto& [number, triangles] : batches)
-        streamed.triangles.insert(streamed.triangles.end(), triangles.begin(), triangles.end());
-    return streamed;
-}
 
 std::string error_text(const std::function<void()>& action) {
     try {
