@@ -21,7 +21,8 @@ class TemporaryFolder {
     TemporaryFolder() {
         std::random_device random;
         do
-            path_ = std::filesystem::temp_directory_path() / ("lamella-test-" + std::to_string(random()));
+            path_ = std::filesystem::temp_directory_path() /
+                    ("lamella-test-" + std::to_string(random() % 1'000'000));
         while (!std::filesystem::create_directory(path_));
         std::filesystem::permissions(path_, std::filesystem::perms::owner_all);
     }

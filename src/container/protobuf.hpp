@@ -48,7 +48,7 @@ class ProtobufMessage {
         if (single == 0)
             return;
         append(protobuf_tag(field, ProtobufType::bits_32));
-        const auto bits = bit_cast<std::uint32_t>(single);
+        const auto bits = lamella::bit_cast<std::uint32_t>(single);
         bytes_.append(reinterpret_cast<const char*>(&bits), sizeof bits);
     }
     void text(std::uint32_t field, std::string_view value) {

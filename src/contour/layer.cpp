@@ -28,12 +28,12 @@ namespace {
 /// Compares absolute values as integers, which ascend with them, NaN beyond all: no branches, and several
 /// numbers at a time.
 bool any_too_far(std::span<const Point2> points) {
-    constexpr std::uint64_t farthest = bit_cast<std::uint64_t>(farthest_mm);
+    constexpr std::uint64_t farthest = lamella::bit_cast<std::uint64_t>(farthest_mm);
     constexpr std::uint64_t absolute = ~(std::uint64_t{1} << 63);
     std::uint64_t below_0 = 0;
     for (const Point2& p : points)
-        below_0 |= (farthest - (bit_cast<std::uint64_t>(p.x) & absolute)) |
-                   (farthest - (bit_cast<std::uint64_t>(p.y) & absolute));
+        below_0 |= (farthest - (lamella::bit_cast<std::uint64_t>(p.x) & absolute)) |
+                   (farthest - (lamella::bit_cast<std::uint64_t>(p.y) & absolute));
     return (below_0 >> 63) != 0;
 }
 

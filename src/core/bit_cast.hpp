@@ -1,6 +1,7 @@
 #pragma once
 
-// std::bit_cast, which libc++ has from version 14 on.
+// std::bit_cast, which libc++ has from version 14 on. Calls name the namespace: without it they would be
+// ambiguous where there is std::bit_cast and an argument has a type of the standard library.
 
 namespace lamella {
 

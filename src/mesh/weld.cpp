@@ -58,20 +58,22 @@ std::uint64_t hash(const DoubleKey& key) noexcept {
 }
 
 Point3 point(const SingleKey& key) noexcept {
-    return {bit_cast<float>(key.x), bit_cast<float>(key.y), bit_cast<float>(key.z)};
+    return {lamella::bit_cast<float>(key.x), lamella::bit_cast<float>(key.y),
+            lamella::bit_cast<float>(key.z)};
 }
 
 Point3 point(const DoubleKey& key) noexcept {
-    return {bit_cast<double>(key.x), bit_cast<double>(key.y), bit_cast<double>(key.z)};
+    return {lamella::bit_cast<double>(key.x), lamella::bit_cast<double>(key.y),
+            lamella::bit_cast<double>(key.z)};
 }
 
 /// Returns the corners of triangle i.
 template <class Key>
 std::array<Key, 3> keys_of(const TriangleSoup& soup, std::size_t i) noexcept {
     if constexpr (std::is_same_v<Key, SingleKey>)
-        return bit_cast<std::array<Key, 3>>(soup.stored(i));
+        return lamella::bit_cast<std::array<Key, 3>>(soup.stored(i));
     else
-        return bit_cast<std::array<Key, 3>>(soup.placed(i));
+        return lamella::bit_cast<std::array<Key, 3>>(soup.placed(i));
 }
 
 /// One worker's range of triangles and the local vertices that it found there.
@@ -234,7 +236,7 @@ std::optional<IndexedMesh> joined_vertices(const IndexedMesh& mesh, const Execut
     executor.for_chunks(vertices, block, [&](std::size_t begin, std::size_t end, unsigned) {
         for (std::size_t i = begin; i < end; ++i) {
             const Point3& p = mesh.vertices[i];
-            keys[i] = bit_cast<DoubleKey>(Point3{p.x + 0.0, p.y + 0.0, p.z + 0.0});
+            keys[i] = lamella::bit_cast<DoubleKey>(Point3{p.x + 0.0, p.y + 0.0, p.z + 0.0});
         }
     });
     const std::array<std::span<const DoubleKey>, 1> all{keys.span()};

@@ -25,7 +25,7 @@ constexpr bool without_gaps_between_members() noexcept {
     if constexpr (!std::has_unique_object_representations_v<T> && !std::is_floating_point_v<T>) {
         static_assert(sizeof(T) % sizeof(std::uint32_t) == 0);
         [[maybe_unused]] constexpr auto words =
-            bit_cast<std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)>>(T{});
+            lamella::bit_cast<std::array<std::uint32_t, sizeof(T) / sizeof(std::uint32_t)>>(T{});
     }
     return true;
 }

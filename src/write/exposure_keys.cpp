@@ -18,7 +18,7 @@ namespace {
 /// no order; -0 becomes 0.
 auto key_of(const Exposure& exposure) {
     const auto bits = [](auto... numbers) {
-        return std::array{bit_cast<std::uint64_t>(numbers + 0.0)...};
+        return std::array{lamella::bit_cast<std::uint64_t>(numbers + 0.0)...};
     };
     const auto& [name, power, speed, jump_speed, focus, spot, mark_delay, jump_delay] = exposure.parameters;
     return std::tuple(exposure.region, exposure.kind, exposure.contour, std::string_view(name),

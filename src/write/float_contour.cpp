@@ -125,7 +125,7 @@ using StoredPoint = std::array<char, float_point_size>;
 // Removes points that rounding made equal to the previous point. Returns the number of remaining points.
 std::size_t without_repeats(std::span<StoredPoint> points, bool repeats, bool closed) {
     const auto equal = [](const StoredPoint& a, const StoredPoint& b) { // operator== would be a function call
-        return bit_cast<std::uint64_t>(a) == bit_cast<std::uint64_t>(b);
+        return lamella::bit_cast<std::uint64_t>(a) == lamella::bit_cast<std::uint64_t>(b);
     };
     const auto end = repeats ? std::unique(points.begin(), points.end(), equal) : points.end();
     auto kept = static_cast<std::size_t>(end - points.begin());

@@ -70,8 +70,8 @@ void WriterGrid::round(std::span<const Point2> points, std::uint64_t layer, Grid
     std::size_t beyond = 0;
     const auto whole = [](double v) {
         // The subtraction is unsigned, because values that are rejected below may wrap around.
-        return static_cast<std::int64_t>(bit_cast<std::uint64_t>(v + round_to_whole) -
-                                         bit_cast<std::uint64_t>(round_to_whole));
+        return static_cast<std::int64_t>(lamella::bit_cast<std::uint64_t>(v + round_to_whole) -
+                                         lamella::bit_cast<std::uint64_t>(round_to_whole));
     };
     for (std::size_t i = 0; i < points.size(); ++i) {
         const double x = points[i].x * per_step_;

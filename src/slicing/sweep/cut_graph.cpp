@@ -68,7 +68,8 @@ struct FloatCorners {
             std::array<float, 2> xy;
             std::memcpy(&xy, triangle + 12 * k, 8);
             xy = {xy[0] + 0.0F, xy[1] + 0.0F}; // -0 becomes +0
-            corners[k] = {bit_cast<std::uint64_t>(xy), bit_cast<std::uint32_t>(z[k] + 0.0F)};
+            corners[k] = {lamella::bit_cast<std::uint64_t>(xy),
+                          lamella::bit_cast<std::uint32_t>(z[k] + 0.0F)};
         }
         return true;
     }
@@ -76,11 +77,12 @@ struct FloatCorners {
     [[nodiscard]] static bool is(const Point3f& stored, const Corner& c) {
         std::uint64_t xy;
         std::memcpy(&xy, &stored, sizeof xy);
-        return static_cast<int>(xy == c.xy) & static_cast<int>(bit_cast<std::uint32_t>(stored.z) == c.z);
+        return static_cast<int>(xy == c.xy) &
+               static_cast<int>(lamella::bit_cast<std::uint32_t>(stored.z) == c.z);
     }
     static void store(const Corner& c, Point3f& to) {
         std::memcpy(static_cast<void*>(&to), &c.xy, sizeof c.xy);
-        to.z = bit_cast<float>(c.z);
+        to.z = lamella::bit_cast<float>(c.z);
     }
 
   private:
@@ -102,8 +104,8 @@ struct PlacedCorners {
         return !(rank[0] == rank[1] && rank[1] == rank[2]);
     }
     [[nodiscard]] static std::uint64_t hash(const Corner& c) {
-        return mix(mix(bit_cast<std::uint64_t>(c.x), bit_cast<std::uint64_t>(c.y)),
-                   bit_cast<std::uint64_t>(c.z));
+        return mix(mix(lamella::bit_cast<std::uint64_t>(c.x), lamella::bit_cast<std::uint64_t>(c.y)),
+                   lamella::bit_cast<std::uint64_t>(c.z));
     }
     [[nodiscard]] static bool is(const Point3& stored, const Corner& c) { return stored == c; }
     static void store(const Corner& c, Point3& to) { to = c; }
