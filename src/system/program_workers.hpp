@@ -67,7 +67,7 @@ class WorkerProcess {
 
   private:
     std::intptr_t process_ = -1;
-    std::intptr_t stop_ = -1; ///< if the request to stop needs a handle
+    [[maybe_unused]] std::intptr_t stop_ = -1; ///< if the request to stop needs a handle
     WorkerChannel channel_;
 };
 
