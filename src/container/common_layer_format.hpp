@@ -20,34 +20,37 @@ enum class CommonLayerCommand : std::uint16_t {
     hatches_long = 132,
 };
 
-/// Returns the size in bytes of the command at the beginning of `bytes`; 16-bit numbers take two bytes each.
-/// Returns nullopt if there is no command or if it is truncated.
-[[nodiscard]] inline std::optional<std::uint64_t> common_layer_command_size(std::string_view bytes) noexcept {
+/// Returns the size in bytes of the command at the beginning of `bytes`. 16-bit numbers take two bytes each,
+/// or four if the file is aligned, except coordinates. Returns nullopt if there is no command or if it is
+/// truncated.
+[[nodiscard]] inline std::optional<std::uint64_t> common_layer_command_size(std::string_view bytes,
+                                                                            bool aligned = false) noexcept {
     const auto number = [&]<class T>(std::size_t at, T value) -> std::uint64_t {
         if (bytes.size() < at + sizeof value)
             return bytes.size(); // the number is truncated
         std::memcpy(&value, bytes.data() + at, sizeof value);
         return value;
     };
+    const std::size_t word = aligned ? 4 : 2;
     std::uint64_t size = 0;
     switch (static_cast<CommonLayerCommand>(number(0, std::uint16_t{}))) {
     case CommonLayerCommand::layer_long:
-        size = 6;
+        size = word + 4;
         break;
     case CommonLayerCommand::layer_short:
-        size = 4;
+        size = 2 * word;
         break;
     case CommonLayerCommand::polyline_long:
-        size = 14 + 8 * number(10, std::uint32_t{});
+        size = word + 12 + 8 * number(word + 8, std::uint32_t{});
         break;
     case CommonLayerCommand::polyline_short:
-        size = 8 + 4 * number(6, std::uint16_t{});
+        size = 4 * word + 4 * number(3 * word, std::uint16_t{});
         break;
     case CommonLayerCommand::hatches_long:
-        size = 10 + 16 * number(6, std::uint32_t{});
+        size = word + 8 + 16 * number(word + 4, std::uint32_t{});
         break;
     case CommonLayerCommand::hatches_short:
-        size = 6 + 8 * number(4, std::uint16_t{});
+        size = 3 * word + 8 * number(2 * word, std::uint16_t{});
         break;
     default:
         return std::nullopt;

@@ -2,16 +2,21 @@
 
 #include "lamella/core/error.hpp"
 
+#include "container/deflate.hpp"
 #include "container/inflate.hpp"
+#include "core/lower_case.hpp"
 #include "system/growing_memory.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <new>
+#include <string>
+#include <string_view>
 
 namespace lamella {
 
@@ -136,6 +141,24 @@ std::string first_inflated(std::string_view compressed, std::size_t most) {
     bytes.resize(most - stream.avail_out);
     inflateEnd(&stream);
     return bytes;
+}
+
+bool has_gzip_extension(std::string_view path) noexcept {
+    constexpr std::string_view extension = ".gz";
+    return path.size() >= extension.size() &&
+           begins_with_keyword(path.substr(path.size() - extension.size()), extension);
+}
+
+std::string gzip_member(std::string_view bytes) {
+    if (bytes.empty())
+        return {};
+    // Deflate; no flags, no time, no level, and an unknown system, so that equal bytes give equal members.
+    std::string member("\x1f\x8b\x08\x00\x00\x00\x00\x00\x00\xff", 10);
+    member += deflated(bytes);
+    for (const std::uint32_t value : {crc32_of(bytes), static_cast<std::uint32_t>(bytes.size())})
+        for (const int shift : {0, 8, 16, 24})
+            member += static_cast<char>(value >> shift & 0xff);
+    return member;
 }
 
 } // namespace lamella

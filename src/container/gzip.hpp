@@ -1,12 +1,14 @@
 #pragma once
 
-// Decompression of gzip files.
+// Decompression and compression of gzip files.
 
 #include "system/byte_source.hpp"
 
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
+#include <string_view>
 
 namespace lamella {
 
@@ -20,5 +22,12 @@ namespace lamella {
 /// Error{cancelled} soon after a stop is requested.
 [[nodiscard]] ByteSource unpacked(const ByteSource& source, std::uint64_t max_bytes,
                                   const Execution& execution = {});
+
+/// Returns whether a path ends with ".gz", in any case.
+[[nodiscard]] bool has_gzip_extension(std::string_view path) noexcept;
+
+/// Returns the bytes as a member of a gzip file, without a name and a time; "" if there are no bytes. Members
+/// are joined by concatenation. Equal bytes give equal members.
+[[nodiscard]] std::string gzip_member(std::string_view bytes);
 
 } // namespace lamella

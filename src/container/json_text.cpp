@@ -68,6 +68,14 @@ bool JsonText::closes(char bracket, bool first) {
     return false;
 }
 
+bool JsonText::next_element() {
+    if (is_next(']'))
+        return false;
+    expect(',');
+    skip_blanks();
+    return true;
+}
+
 unsigned JsonText::hex4() {
     unsigned value = 0;
     const std::string_view digits = text_.substr(std::min(at_, text_.size()), 4);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace lamella {
 
@@ -12,9 +13,10 @@ namespace lamella {
 /// number of the line.
 class JsonText {
   public:
-    /// Reads the text from byte `begin` on; lines and `at` count from the first byte of the text.
-    JsonText(std::string_view text, std::string name, std::size_t begin = 0)
-        : text_(text), name_(std::move(name)), at_(begin) {}
+    /// Reads the text from byte `begin` on; lines and `at` count from the first byte of the text. `depth` is
+    /// the number of objects and arrays around it.
+    JsonText(std::string_view text, std::string name, std::size_t begin = 0, int depth = 0)
+        : text_(text), name_(std::move(name)), at_(begin), depth_(depth) {}
 
     /// Calls member(key) for each member of the next value, an object. `member` must read the member's value.
     template <class Member>
@@ -35,6 +37,10 @@ class JsonText {
             element();
     }
 
+    /// Moves from the end of an element of an array to the next element. Returns false at the end of the
+    /// array, which is not read.
+    bool next_element();
+
     /// Reads the next value, which must be a string or a number.
     std::string string();
     double number();
@@ -45,14 +51,17 @@ class JsonText {
     void end();
     /// Returns the offset of the next byte.
     [[nodiscard]] std::size_t at() const noexcept { return at_; }
+    void move_to(std::size_t at) noexcept { at_ = at; }
+    [[nodiscard]] int depth() const noexcept { return depth_; }
 
     /// Throws Error{input} with the number of the line of the next value.
     [[noreturn]] void fail(const std::string& found, const std::string& expected) const;
     /// Describes the text at the cursor, for error messages.
     [[nodiscard]] std::string here() const;
 
-  private:
     void skip_blanks();
+
+  private:
     /// Skips blanks first.
     [[nodiscard]] bool is_next(char c);
     void open(char bracket);
@@ -63,8 +72,8 @@ class JsonText {
 
     std::string_view text_;
     std::string name_;
-    std::size_t at_ = 0;
-    int depth_ = 0;
+    std::size_t at_;
+    int depth_;
 };
 
 } // namespace lamella

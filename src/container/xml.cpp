@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <exception>
 #include <memory>
 #include <new>
@@ -58,12 +59,30 @@ class Parse {
         feed(bytes_.size(), true);
     }
 
+    /// See parse_xml_elements.
+    std::size_t run_between(std::size_t begin, std::size_t limit, std::string_view parent) {
+        at_ = reported_ = begin;
+        not_fed_ = static_cast<XML_Index>(begin) - static_cast<XML_Index>(parent.size());
+        fed_ = parsed_ = static_cast<XML_Index>(parent.size());
+        limit_ = fed_ + static_cast<XML_Index>(limit - begin);
+        if (XML_Parse(parser_.get(), parent.data(), static_cast<int>(parent.size()), XML_FALSE) !=
+            XML_STATUS_OK)
+            fail("the element around has no usable name");
+        constexpr std::size_t step = std::size_t{1} << 14;
+        for (std::size_t to = limit; stop_ < 0; to = at_ + step) {
+            if (at_ == bytes_.size())
+                fail("the document ends within an element");
+            feed(std::min(to, bytes_.size()), false);
+        }
+        return begin + static_cast<std::size_t>(stop_) - parent.size();
+    }
+
   private:
     /// Callback of Expat: call(parse), unless a call has thrown before.
     template <class Call>
     static void guarded(void* data, const Call& call) {
         Parse& parse = *static_cast<Parse*>(data);
-        if (parse.error_)
+        if (parse.error_ || parse.stop_ >= 0)
             return;
         try {
             call(parse);
@@ -90,7 +109,16 @@ class Parse {
                 static_cast<std::size_t>(XML_GetSpecifiedAttributeCount(parse.parser_.get())) / 2 >
                     most_attributes)
                 parse.fail(fmt::format("found an element of more than {} attributes", most_attributes));
+            if (parse.limit_ >= 0 && parse.depth_ <= 2) {
+                if (parse.depth_ == 1)
+                    return; // the parent
+                if (XML_GetCurrentByteIndex(parse.parser_.get()) >= parse.limit_)
+                    return parse.stop();
+            }
             parse.declared_ = 0;
+            if (parse.depth_ == 2 && parse.handlers_.element)
+                parse.handlers_.element(
+                    static_cast<std::size_t>(XML_GetCurrentByteIndex(parse.parser_.get()) + parse.not_fed_));
             parse.note_tag();
             parse.handlers_.start(split(name), XmlAttributes(attributes), parse.line());
         });
@@ -98,7 +126,8 @@ class Parse {
 
     static void on_end(void* data, const XML_Char* name) {
         guarded(data, [&](Parse& parse) {
-            --parse.depth_;
+            if (--parse.depth_ == 0 && parse.limit_ >= 0)
+                return parse.stop();
             parse.note_tag();
             parse.handlers_.end(split(name));
         });
@@ -141,6 +170,12 @@ class Parse {
         });
     }
 
+    /// Ends parsing before the current tag.
+    void stop() {
+        stop_ = XML_GetCurrentByteIndex(parser_.get());
+        XML_StopParser(parser_.get(), XML_FALSE);
+    }
+
     /// Stores where a tag ends if skimming is in use.
     void note_tag() {
         if (handlers_.skim)
@@ -160,6 +195,8 @@ class Parse {
                                                 last && at_ == end ? XML_TRUE : XML_FALSE);
             if (error_)
                 std::rethrow_exception(error_);
+            if (stop_ >= 0)
+                return;
             if (status != XML_STATUS_OK) {
                 const XML_Error code = XML_GetErrorCode(parser_.get());
                 if (code == XML_ERROR_NO_MEMORY)
@@ -210,45 +247,45 @@ class Parse {
                 from = at_;
                 continue;
             }
-            std::size_t skimmed = 0;
+            XmlSkimmed skimmed;
             if (last_tag_end_ == fed_)
-                skimmed = std::min(handlers_.skim(bytes_, *tag), bytes_.size() - *tag);
-            if (skimmed == 0) {
+                skimmed = handlers_.skim(bytes_, *tag);
+            assert(skimmed.bytes <= bytes_.size() - *tag);
+            if (skimmed.bytes == 0) {
                 from = *tag + patience;
                 patience *= 2;
                 continue;
             }
-            count_lines(bytes_.substr(at_, *tag + skimmed - at_));
-            at_ = from = *tag + skimmed;
+            skimmed_lines_ += line_at(bytes_.substr(at_), *tag - at_) - 1;
+            skimmed_lines_ +=
+                skimmed.lines ? *skimmed.lines : line_at(bytes_.substr(*tag), skimmed.bytes) - 1;
+            at_ = from = *tag + skimmed.bytes;
+            not_fed_ = static_cast<XML_Index>(at_) - fed_;
             report_progress(at_);
         }
     }
 
-    /// Returns the nearest tag of `many`.
-    [[nodiscard]] std::optional<std::size_t> find_tag(std::size_t from) {
-        next_tags_.resize(handlers_.many.size());
-        std::size_t nearest = std::string_view::npos;
-        for (std::size_t i = 0; i < next_tags_.size(); ++i) {
-            const std::string_view tag = handlers_.many[i];
-            std::size_t& next = next_tags_[i];
-            // A tag that was found is not searched for again. "<triangle" must not match "<triangles".
-            for (next = std::max(next, from); next < bytes_.size(); ++next) {
-                next = bytes_.find(tag, next);
-                if (next == std::string_view::npos || next + tag.size() == bytes_.size() ||
-                    ends_name(bytes_[next + tag.size()]))
-                    break;
-            }
-            nearest = std::min(nearest, next);
+    /// Returns the nearest tag of `many`. All of them are searched for in one window after the other, because
+    /// one of them may be far away.
+    [[nodiscard]] std::optional<std::size_t> find_tag(std::size_t from) const {
+        constexpr std::size_t window = std::size_t{1} << 14;
+        for (std::size_t begin = from; begin < bytes_.size(); begin += window) {
+            std::size_t nearest = begin + window;
+            for (const std::string_view tag : handlers_.many)
+                nearest = std::min(nearest, find_tag(tag, begin, nearest));
+            if (nearest < begin + window)
+                return nearest;
         }
-        return nearest < bytes_.size() ? std::optional(nearest) : std::nullopt;
+        return std::nullopt;
     }
 
-    void count_lines(std::string_view text) {
-        const auto count = [&](char end) {
-            return static_cast<std::size_t>(std::count(text.begin(), text.end(), end));
-        };
-        const std::size_t lines = count('\n');
-        skimmed_lines_ += lines != 0 ? lines : count('\r');
+    /// Returns where a tag begins in [from, limit), or `limit`. "<triangle" does not match "<triangles".
+    [[nodiscard]] std::size_t find_tag(std::string_view tag, std::size_t from, std::size_t limit) const {
+        const std::string_view text = bytes_.substr(0, limit - 1 + tag.size());
+        for (std::size_t at = text.find(tag, from); at != std::string_view::npos; at = text.find(tag, at + 1))
+            if (at + tag.size() == bytes_.size() || ends_name(bytes_[at + tag.size()]))
+                return at;
+        return limit;
     }
 
     static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
@@ -266,8 +303,10 @@ class Parse {
     XML_Index fed_ = 0;           ///< bytes fed to the parser
     XML_Index parsed_ = 0;        ///< bytes fed that the parser has consumed
     XML_Index last_tag_end_ = -1; ///< counts bytes fed
+    XML_Index not_fed_ = 0;       ///< offset in the document minus that in the bytes fed
+    XML_Index limit_ = -1;        ///< for elements of a parent: parsing ends at the first one from here on
+    XML_Index stop_ = -1;         ///< where it ended
     std::size_t skimmed_lines_ = 0;
-    std::vector<std::size_t> next_tags_; ///< for each tag of `many`, the offset of its next occurrence
     std::size_t reported_ = 0;
 };
 
@@ -297,6 +336,12 @@ std::string_view trimmed(std::string_view text) noexcept {
 void parse_xml(std::string_view bytes, const std::string& name, const XmlHandlers& handlers,
                const XmlRules& rules) {
     Parse(bytes, name, handlers, rules).run();
+}
+
+std::size_t parse_xml_elements(std::string_view document, std::size_t begin, std::size_t limit,
+                               std::string_view parent, const std::string& name, const XmlHandlers& handlers,
+                               const XmlRules& rules) {
+    return Parse(document, name, handlers, rules).run_between(begin, limit, parent);
 }
 
 } // namespace lamella

@@ -3,7 +3,9 @@
 // Reads XML as a stream of elements.
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,6 +37,12 @@ class XmlAttributes {
     const char** pairs_; // name, value, ..., null
 };
 
+/// The elements that a handler has read.
+struct XmlSkimmed {
+    std::size_t bytes = 0;
+    std::optional<std::uint64_t> lines = {}; ///< number of line ends in them; if unknown, they are counted
+};
+
 /// Callbacks of the parser. Those with a default may be omitted.
 struct XmlHandlers {
     /// `line` counts from 1. Views are valid during the call.
@@ -51,13 +59,17 @@ struct XmlHandlers {
     /// element that declares them.
     std::function<void(std::string_view prefix, std::string_view space)> declare = {};
 
+    /// Called before `start` of each element within the root, or, by parse_xml_elements, within the parent,
+    /// with its offset in the document, which must be UTF-8.
+    std::function<void(std::size_t position)> element = {};
+
     /// Tags of numerous elements, such as "<vertex", which a handler can read faster than the parser. If such
     /// a tag follows another tag, with only blanks between them, `skim` is called with the whole document and
-    /// the offset of the tag. It returns the number of bytes that the parser must skip from there, and
-    /// guarantees that these are whole, well-formed elements. If it returns 0, the parser reads the elements,
-    /// and `skim` may not be called again for a while.
+    /// the offset of the tag. It returns the bytes that the parser must skip from there, and guarantees that
+    /// these are whole, well-formed elements. If there are none, the parser reads the elements, and `skim`
+    /// may not be called again for a while.
     std::vector<std::string_view> many = {};
-    std::function<std::size_t(std::string_view document, std::size_t position)> skim = {};
+    std::function<XmlSkimmed(std::string_view document, std::size_t position)> skim = {};
 };
 
 struct XmlRules {
@@ -77,5 +89,13 @@ struct XmlRules {
 /// an element of more than 1000 attributes, or a tag or comment longer than 64 MB.
 void parse_xml(std::string_view bytes, const std::string& name, const XmlHandlers& handlers,
                const XmlRules& rules = {});
+
+/// Parses elements of a document in UTF-8 that follow each other within one element, their parent: those from
+/// `begin`, where an element begins, up to the first one at or after `limit`, or to the end of the parent.
+/// Returns the offset of either. `parent` is the parent's start tag, with all namespaces that are declared
+/// there. Lines count from `begin`. Otherwise like parse_xml.
+[[nodiscard]] std::size_t parse_xml_elements(std::string_view document, std::size_t begin, std::size_t limit,
+                                             std::string_view parent, const std::string& name,
+                                             const XmlHandlers& handlers, const XmlRules& rules = {});
 
 } // namespace lamella

@@ -5,8 +5,10 @@
 
 #include "lamella/core/error.hpp"
 
+#include "container/deflate.hpp"
 #include "container/inflate.hpp"
 #include "container/text_position.hpp"
+#include "core/executor.hpp"
 #include "core/lower_case.hpp"
 #include "core/pages.hpp"
 
@@ -162,6 +164,19 @@ class DirectoryFinder {
     std::string_view bytes_;
     const std::string& name_;
 };
+
+/// Returns the CRC-32, which all threads compute.
+std::uint32_t crc32_by_all(std::string_view bytes, Executor& executor) {
+    constexpr std::size_t chunk = std::size_t{1} << 20;
+    std::vector<std::uint32_t> crcs(bytes.size() / chunk + 1);
+    executor.for_chunks(crcs.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        crcs[i] = crc32_of(bytes.substr(static_cast<std::size_t>(i) * chunk, chunk));
+    });
+    std::uint32_t crc = 0;
+    for (std::size_t i = 0; i < crcs.size(); ++i)
+        crc = crc32_joined(crc, crcs[i], bytes.substr(i * chunk, chunk).size());
+    return crc;
+}
 
 bool before_in_any_case(std::string_view a, std::string_view b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end(),
@@ -333,7 +348,8 @@ const ZipEntry* ZipReader::find(std::string_view name) const noexcept {
     return similar != nullptr && !before_in_any_case(name, similar->name) ? similar : nullptr;
 }
 
-ByteSource ZipReader::read(const ZipEntry& entry, const std::function<void(std::uint64_t)>& count) const {
+ByteSource ZipReader::read(const ZipEntry& entry, const std::function<void(std::uint64_t)>& count,
+                           Executor* helpers) const {
     const std::string shown = printable(entry.name, longest_shown_name);
     const auto fail = [&](const std::string& what) {
         throw Error(ErrorKind::input, fmt::format("{}: zip entry '{}' {}", source_.name, shown, what));
@@ -363,6 +379,8 @@ ByteSource ZipReader::read(const ZipEntry& entry, const std::function<void(std::
         if (count)
             count(entry.size);
         const auto room = std::make_shared<PageArray<std::byte>>(entry.size);
+        if (helpers != nullptr && helpers->workers() > 1)
+            make_pages_ready(*helpers, room->data(), room->size());
         const Inflated inflated =
             inflate(source_.text().substr(entry.offset, entry.compressed_size), room->span());
         release(source_, compressed);
@@ -381,7 +399,9 @@ ByteSource ZipReader::read(const ZipEntry& entry, const std::function<void(std::
         content.bytes = room->span();
         content.owner = room;
     }
-    if (const std::uint32_t crc = crc32_of(content.text()); crc != entry.crc)
+    const std::uint32_t crc =
+        helpers == nullptr ? crc32_of(content.text()) : crc32_by_all(content.text(), *helpers);
+    if (crc != entry.crc)
         fail(fmt::format("is damaged: its checksum is {:08x}, expected {:08x}", crc, entry.crc));
     return content;
 }

@@ -15,12 +15,14 @@
 
 namespace lamella {
 
+class Executor;
+
 /// Returns whether the bytes begin with a signature of zip archives.
 [[nodiscard]] bool is_zip(std::string_view bytes) noexcept;
 
 /// The entries of a zip archive, with or without zip64; sizes may precede or follow the compressed bytes. An
 /// entry is decompressed only when it is read. Its claimed size is accepted only if Deflate can produce it
-/// from the available bytes, and pages of memory are used only when they are filled.
+/// from the available bytes, and pages of memory are used only when they are filled (by one thread).
 ///
 /// Throws Error{input} for archives that two readers could interpret differently: with several discs, entries
 /// that overlap or exceed the file, duplicate names, or a name or size that differs between the directory and
@@ -42,9 +44,10 @@ class ZipReader {
     /// entry are a view of the archive. The name of the source contains those of archive and entry. May be
     /// called from several threads. Throws Error{input} if the entry is damaged or differs from its record,
     /// and Error{limit} if the bytes exceed the limit. `count` is called with the number of bytes before
-    /// memory is allocated for them.
-    [[nodiscard]] ByteSource read(const ZipEntry& entry,
-                                  const std::function<void(std::uint64_t)>& count = {}) const;
+    /// memory is allocated for them. Several threads of `helpers` provide all of this memory at once, which
+    /// may take one thread longer than decompression, and verify the CRC.
+    [[nodiscard]] ByteSource read(const ZipEntry& entry, const std::function<void(std::uint64_t)>& count = {},
+                                  Executor* helpers = nullptr) const;
 
     /// Returns at most `most` of the first bytes of an entry, to detect its format; "" if the entry cannot be
     /// read. They are not verified and do not count towards the limit.

@@ -91,15 +91,15 @@ std::string header_of(const ZipEntry& entry, bool room = false) {
 
 } // namespace
 
-ZipWriter::ZipWriter(std::string path, Overwriting overwriting) : file_(std::move(path), overwriting) {}
+ZipWriter::ZipWriter(std::string path, Overwriting overwriting, std::string* memory)
+    : file_(std::move(path), overwriting, memory) {}
 
 void ZipWriter::add(std::string_view name, std::string_view content, ZipMethod method) {
     const std::uint32_t crc = crc32_of(content);
-    if (method == ZipMethod::stored) {
-        add_ready(name, method, {content, content.size(), crc});
-        return;
-    }
-    add_ready(name, method, {deflated(content), content.size(), crc});
+    const std::string compressed = method == ZipMethod::stored ? std::string() : deflated(content);
+    const std::string_view bytes = method == ZipMethod::stored ? content : compressed;
+    append_header(name, method, {bytes, content.size(), crc});
+    file_.append(bytes);
 }
 
 ZipEntry& ZipWriter::add_entry(std::string_view name, ZipMethod method, bool sizes_behind) {
@@ -115,13 +115,18 @@ ZipEntry& ZipWriter::add_entry(std::string_view name, ZipMethod method, bool siz
     return entry;
 }
 
-void ZipWriter::add_ready(std::string_view name, ZipMethod method, const ZipChunk& content) {
+void ZipWriter::append_header(std::string_view name, ZipMethod method, const ZipChunk& content) {
     ZipEntry& entry = add_entry(name, method, false);
     entry.size = content.size;
     entry.compressed_size = content.bytes.size();
     entry.crc = content.crc;
     file_.append(header_of(entry));
-    file_.append(content.bytes);
+}
+
+void ZipWriter::add_ready(std::string_view name, ZipMethod method, const ZipChunk& content,
+                          std::shared_ptr<const void> owner, Completions& after) {
+    append_header(name, method, content);
+    file_.append(content.bytes, std::move(owner), after);
 }
 
 void ZipWriter::begin(std::string_view name, ZipMethod method, std::size_t header_size) {
@@ -132,21 +137,46 @@ void ZipWriter::begin(std::string_view name, ZipMethod method, std::size_t heade
     file_.append(std::string(header_size, '\0'));
 }
 
+void ZipWriter::add_sum(const ZipChunk& chunk) {
+    sums_.push_back({chunk.crc, chunk.size});
+    entries_.back().compressed_size += chunk.bytes.size();
+}
+
 void ZipWriter::append(const ZipChunk& chunk) {
-    ZipEntry& entry = entries_.back();
-    entry.crc = crc32_joined(entry.crc, chunk.crc, chunk.size);
-    entry.compressed_size += chunk.bytes.size();
-    entry.size += chunk.size;
+    add_sum(chunk);
     file_.append(chunk.bytes);
+}
+
+void ZipWriter::append(const ZipChunk& chunk, std::shared_ptr<const void> owner, Completions& after) {
+    add_sum(chunk);
+    file_.append(chunk.bytes, std::move(owner), after);
 }
 
 void ZipWriter::append_stored(std::string_view content) {
     append({content, content.size(), crc32_of(content)});
 }
 
+void ZipWriter::append_stored(std::string_view content, std::shared_ptr<const void> owner,
+                              Completions& after) {
+    Completions writes;
+    file_.append(content, owner, writes);
+    if (writes.empty())
+        return add_sum({content, content.size(), crc32_of(content)});
+    add_sum({content, content.size(), 0});
+    after.emplace_back([&sum = sums_.back(), content, owner = std::move(owner), writes = std::move(writes)] {
+        sum.crc = crc32_of(content);
+        for (const auto& write : writes)
+            write();
+    });
+}
+
 void ZipWriter::end(std::string_view header) {
     open_ = false;
     ZipEntry& entry = entries_.back();
+    for (const Sum& sum : std::exchange(sums_, {})) {
+        entry.crc = crc32_joined(entry.crc, sum.crc, sum.size);
+        entry.size += sum.size;
+    }
     if (entry.method == ZipMethod::stored) {
         entry.crc = crc32_joined(crc32_of(header), entry.crc, entry.size);
         entry.size += header.size();

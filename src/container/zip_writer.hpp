@@ -2,10 +2,14 @@
 
 // Writes zip archives sequentially.
 
+#include "lamella/core/commit.hpp"
+
 #include "container/zip_format.hpp"
 #include "system/atomic_file.hpp"
 
 #include <cstdint>
+#include <deque>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,22 +31,30 @@ struct ZipChunk {
 /// Only if an entry is deflated in chunks, sizes follow (as a data descriptor), because the end of a Deflate
 /// stream can be recognised. 64-bit sizes and offsets (zip64) are used only where 32 bits do not suffice.
 ///
-/// For one thread at a time, except `bytes`. Failures are Error{output}.
+/// For one thread at a time, except `bytes` and the completions. Failures are Error{output}.
 class ZipWriter {
   public:
-    /// Without Overwriting::yes no byte is written twice, so the output can be a pipe.
-    explicit ZipWriter(std::string path, Overwriting overwriting = Overwriting::no);
+    /// Without Overwriting::yes no byte is written twice, so the output can be a pipe. `memory` as for
+    /// AtomicFile.
+    explicit ZipWriter(std::string path, Overwriting overwriting = Overwriting::no,
+                       std::string* memory = nullptr);
 
     /// Adds a whole entry, and compresses it if the method is deflated.
     void add(std::string_view name, std::string_view content, ZipMethod method = ZipMethod::stored);
     /// Adds a whole entry that was prepared beforehand. If it is deflated, `bytes` is a stream with its end.
-    void add_ready(std::string_view name, ZipMethod method, const ZipChunk& content);
+    /// `owner` keeps the bytes alive until the completions are done, which may write them.
+    void add_ready(std::string_view name, ZipMethod method, const ZipChunk& content,
+                   std::shared_ptr<const void> owner, Completions& after);
 
     /// begin() and end() enclose an entry that is written in chunks. A stored entry requires
-    /// Overwriting::yes; `end` may then replace its first `header_size` bytes.
+    /// Overwriting::yes; `end` may then replace its first `header_size` bytes. Completions must be done
+    /// before `end`.
     void begin(std::string_view name, ZipMethod method, std::size_t header_size = 0);
     void append(const ZipChunk& chunk);
+    void append(const ZipChunk& chunk, std::shared_ptr<const void> owner, Completions& after);
     void append_stored(std::string_view content);
+    /// Also leaves the CRC to the completions.
+    void append_stored(std::string_view content, std::shared_ptr<const void> owner, Completions& after);
     void end(std::string_view header = {});
 
     /// Writes the directory and gives the file its name. Must be called once, after the last entry.
@@ -52,12 +64,21 @@ class ZipWriter {
     [[nodiscard]] std::uint64_t bytes() const noexcept { return file_.bytes(); }
 
   private:
+    /// CRC and number of uncompressed bytes of a chunk.
+    struct Sum {
+        std::uint32_t crc = 0;
+        std::uint64_t size = 0;
+    };
+
+    void add_sum(const ZipChunk& chunk);
     ZipEntry& add_entry(std::string_view name, ZipMethod method, bool sizes_behind);
+    void append_header(std::string_view name, ZipMethod method, const ZipChunk& content);
     void append_directory();
 
     AtomicFile file_;
     std::vector<ZipEntry> entries_;
-    bool open_ = false; ///< an entry has begun and not ended
+    bool open_ = false;    ///< an entry has begun and not ended
+    std::deque<Sum> sums_; ///< of the chunks of the open entry; completions set the CRC of some
 };
 
 } // namespace lamella

@@ -4,7 +4,10 @@
 
 #include "core/machine.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <atomic>
 #include <system_error>
 #include <utility>
 
@@ -17,7 +20,7 @@ unsigned thread_count(const Execution& execution) noexcept {
 }
 
 Executor::Executor(const Execution& execution)
-    : workers_(thread_count(execution)), cancel_(execution.cancel) {}
+    : workers_(thread_count(execution)), cancel_(execution.cancel), run_tasks_(execution.run_tasks) {}
 
 Executor::~Executor() {
     {
@@ -67,9 +70,32 @@ void Executor::start_threads() {
 }
 
 void Executor::run(const std::function<void(unsigned)>& body) {
+    failed_.store(false, std::memory_order_relaxed);
+    if (run_tasks_)
+        run_as_tasks(body);
+    else
+        run_here(body);
+    if (error_)
+        std::rethrow_exception(std::exchange(error_, nullptr));
+    check_cancelled();
+}
+
+void Executor::run_as_tasks(const std::function<void(unsigned)>& body) {
+    body_ = &body;
+    std::atomic<unsigned> done{0};
+    run_tasks_(workers_, [&](unsigned worker) {
+        guarded(worker);
+        ++done;
+    });
+    body_ = nullptr;
+    if (done != workers_)
+        throw Error(ErrorKind::usage,
+                    fmt::format("run_tasks of an Execution ran {} of {} tasks", done.load(), workers_));
+}
+
+void Executor::run_here(const std::function<void(unsigned)>& body) {
     start_threads();
     body_ = &body;
-    failed_.store(false, std::memory_order_relaxed);
     {
         const std::lock_guard lock(mutex_);
         running_ = workers_ - 1;
@@ -82,9 +108,6 @@ void Executor::run(const std::function<void(unsigned)>& body) {
         idle_.wait(lock, [&] { return running_ == 0; });
     }
     body_ = nullptr;
-    if (error_)
-        std::rethrow_exception(std::exchange(error_, nullptr));
-    check_cancelled();
 }
 
 void Executor::for_chunks(std::uint64_t n, std::uint64_t chunk,

@@ -20,8 +20,10 @@ namespace lamella {
 [[nodiscard]] unsigned thread_count(const Execution& execution) noexcept;
 
 /// A team of workers. Worker 0 is the calling thread; the others are started at the first parallel region and
-/// sleep between regions. If the system starts fewer threads than requested, the team is smaller. Only the
-/// thread that created a team may use it, and parallel regions must not be nested.
+/// sleep between regions. If the execution runs tasks on threads of the caller, each worker is one of these
+/// tasks, and workers may also run one after the other. If the system starts fewer threads than requested,
+/// the team is smaller. Only the thread that created a team may use it, and parallel regions must not be
+/// nested.
 ///
 /// If the body throws, the others are asked to stop at their next chunk, and the first exception is rethrown
 /// after all of them have returned.
@@ -35,7 +37,7 @@ class Executor {
     /// Returns the largest number of workers. A parallel region may have fewer.
     [[nodiscard]] unsigned workers() const noexcept { return workers_; }
 
-    /// Calls body(worker) once for each worker, at the same time.
+    /// Calls body(worker) once for each worker, at the same time if there are threads for it.
     void run(const std::function<void(unsigned worker)>& body);
 
     /// Calls body(begin, end, worker) for consecutive chunks of [0, n) of at most `chunk`, which idle workers
@@ -52,12 +54,16 @@ class Executor {
     }
 
   private:
+    void run_here(const std::function<void(unsigned worker)>& body);
+    void run_as_tasks(const std::function<void(unsigned worker)>& body);
     void start_threads();
     void work(unsigned worker);
     void guarded(unsigned worker) noexcept;
 
     unsigned workers_;
     const CancelFlag* cancel_;
+    std::function<void(unsigned, const std::function<void(unsigned)>&)>
+        run_tasks_; ///< of the caller; may be empty
     std::vector<std::thread> threads_;
     std::mutex mutex_;
     std::condition_variable wake_;

@@ -19,7 +19,7 @@ auto naming(const std::string& name, const Work& work) -> decltype(work()) {
     } catch (const Error& error) {
         if (name.empty() || error.kind() == ErrorKind::cancelled)
             throw;
-        throw Error(error.kind(), fmt::format("{}: {}", name, error.what()));
+        throw Error(error.kind(), fmt::format("{}: {}", name, error.what()), error.system_error());
     }
 }
 

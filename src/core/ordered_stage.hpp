@@ -1,7 +1,7 @@
 #pragma once
 
-// Accepts planes in any order and calls their commits in ascending order. Workers can wait here, so that
-// they do not get too far ahead.
+// Accepts planes in any order and calls their commits in ascending order, and completions on all threads.
+// Workers can wait here, so that they do not get too far ahead.
 
 #include "lamella/core/commit.hpp"
 
@@ -12,13 +12,19 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <mutex>
+#include <utility>
 
 namespace lamella {
 
-/// Calls the commits of planes one at a time and in the order of planes. The thread that delivers the next
-/// plane in order makes the calls that are then due. No commit is called once the executor is stopping.
+/// Calls the commits of planes one at a time and in the order of planes, and their completions on all
+/// threads. The thread that delivers the next plane in order calls the commits that are then due, and
+/// afterwards the completions, its own first. Before a thread continues with another plane, it calls all
+/// completions that are due, so that few of them wait. Nothing is called once the executor is stopping.
 class OrderedStage {
   public:
     OrderedStage(const Executor& executor, ProgressMeter& progress)
@@ -30,18 +36,43 @@ class OrderedStage {
         std::unique_lock lock(mutex_);
         assert(plane >= next_ && !waiting_.contains(plane)); // no layer is delivered twice
         waiting_.emplace(plane, std::move(commit));
-        if (draining_)
-            return; // the draining thread will run it
+        if (!draining_) // otherwise the draining thread will run it
+            drain(lock);
+        complete(lock);
+    }
+
+    /// Waits until all planes before `plane` are delivered. Returns false if slicing stops.
+    [[nodiscard]] bool wait_for(std::uint64_t plane) {
+        std::unique_lock lock(mutex_);
+        while (next_ < plane) {
+            if (failed_ || executor_.stopping())
+                return false;
+            if (complete(lock))
+                continue;
+            moved_.wait_for(lock, std::chrono::milliseconds(50)); // a stop request does not notify
+        }
+        return true;
+    }
+
+    /// Returns the number of planes that are committed. Must not be called during a delivery.
+    [[nodiscard]] std::uint64_t delivered() const noexcept { return next_; }
+
+  private:
+    /// Calls the commits that are due. The lock is released during each call.
+    void drain(std::unique_lock<std::mutex>& lock) {
         draining_ = true;
         try {
             while (!waiting_.empty() && waiting_.begin()->first == next_ && !executor_.stopping()) {
                 const Commit ready = std::move(waiting_.begin()->second);
                 waiting_.erase(waiting_.begin());
                 lock.unlock();
+                Completions after;
                 if (ready)
-                    ready();
+                    ready.in_order(after);
                 progress_.add(1);
                 lock.lock();
+                completions_.insert(completions_.end(), std::make_move_iterator(after.begin()),
+                                    std::make_move_iterator(after.end()));
                 ++next_;
                 moved_.notify_all();
             }
@@ -55,26 +86,27 @@ class OrderedStage {
         draining_ = false;
     }
 
-    /// Waits until all planes before `plane` are delivered. Returns false if slicing stops.
-    [[nodiscard]] bool wait_for(std::uint64_t plane) {
-        std::unique_lock lock(mutex_);
-        while (next_ < plane) {
-            if (failed_ || executor_.stopping())
-                return false;
-            moved_.wait_for(lock, std::chrono::milliseconds(50)); // a stop request does not notify
+    /// Calls completions until none are left, and returns whether there were any. The lock is released during
+    /// each call.
+    bool complete(std::unique_lock<std::mutex>& lock) {
+        bool any = false;
+        while (!completions_.empty() && !executor_.stopping()) {
+            any = true;
+            const std::function<void()> completion = std::move(completions_.front());
+            completions_.pop_front();
+            lock.unlock();
+            completion();
+            lock.lock();
         }
-        return true;
+        return any;
     }
 
-    /// Returns the number of planes that are committed. Must not be called during a delivery.
-    [[nodiscard]] std::uint64_t delivered() const noexcept { return next_; }
-
-  private:
     const Executor& executor_;
     ProgressMeter& progress_;
     std::mutex mutex_;
     std::condition_variable moved_;
     std::map<std::uint64_t, Commit> waiting_;
+    std::deque<std::function<void()>> completions_;
     std::uint64_t next_ = 0;
     bool draining_ = false;
     bool failed_ = false;

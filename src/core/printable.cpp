@@ -32,6 +32,16 @@ std::size_t utf8_length(std::string_view text, std::size_t i) {
 
 } // namespace
 
+bool is_utf8(std::string_view text) noexcept {
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = utf8_length(text, i);
+        if (length == 0)
+            return false;
+        i += length;
+    }
+    return true;
+}
+
 std::string printable(std::string_view text, std::size_t max_bytes) {
     constexpr std::string_view digits = "0123456789abcdef";
     std::string line;

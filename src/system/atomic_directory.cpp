@@ -20,7 +20,7 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
     std::error_code error;
     if (!path_.empty())                               // standard libraries differ for an empty path
         target_ = fs::weakly_canonical(path_, error); // follows symbolic links, which are kept
-    if (error)
+    if (error || target_.empty())                     // one that forgets its error has no result
         target_ = path_;
     if (!target_.has_filename()) // "out/"
         target_ = target_.parent_path();
@@ -94,7 +94,7 @@ void AtomicDirectory::write(const std::string& name, std::string_view bytes) {
         const std::string working = working_.string();
         for (std::size_t at = 0; (at = text.find(working, at)) != std::string::npos;)
             text.replace(at, working.size(), target_.string());
-        throw Error(error.kind(), text);
+        throw Error(error.kind(), text, error.system_error());
     }
     bytes_.fetch_add(bytes.size(), std::memory_order_relaxed);
 }

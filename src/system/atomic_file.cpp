@@ -7,12 +7,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
-#include <span>
 #include <system_error>
 #include <utility>
 
@@ -22,7 +22,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t buffer_size = std::size_t{1} << 18;
+constexpr std::size_t block_size = std::size_t{1} << 18;
+/// Fewer bytes are copied at once, which takes no longer than leaving them for later.
+constexpr std::size_t worth_a_completion = std::size_t{1} << 12;
 
 // Returns the first folder in `path` that is missing or is not a folder, which is the one that the user has
 // to examine.
@@ -55,7 +57,7 @@ std::string name_of_output(const std::string& path) {
 Error output_error(const std::string& path, int system_error) {
     const std::string what = path == "-" ? name_of_output(path) : "'" + path + "'";
     const auto text = [&](const std::string& reason) {
-        return Error(ErrorKind::output, fmt::format("cannot write {}: {}", what, reason));
+        return Error(ErrorKind::output, fmt::format("cannot write {}: {}", what, reason), system_error);
     };
     // The error for this differs between systems.
     if (path != "-" && fs::path(path).is_relative() && working_folder_is_gone())
@@ -107,8 +109,12 @@ Error output_error(const std::string& path, int system_error) {
     }
 }
 
-AtomicFile::AtomicFile(std::string path, Overwriting overwriting) : path_(std::move(path)) {
-    buffer_.reset(new char[buffer_size]); // unused pages take no memory
+AtomicFile::AtomicFile(std::string path, Overwriting overwriting, std::string* memory)
+    : path_(std::move(path)), memory_(memory) {
+    if (memory_ != nullptr) {
+        memory_->clear();
+        return;
+    }
     if (path_ == "-") {
         file_ = standard_output();
         owns_file_ = false;
@@ -144,13 +150,14 @@ void AtomicFile::spool() {
 }
 
 void AtomicFile::fail_spool(int system_error) {
-    discard();
+    discard_alone();
     throw Error(ErrorKind::output,
                 fmt::format("cannot write a temporary file in the folder '{}', where this output waits for "
                             "its end: {}; set the environment variable {} to a folder that can be "
                             "written and has room",
                             scratch_folder(), std::generic_category().message(system_error),
-                            scratch_variable()));
+                            scratch_variable()),
+                system_error);
 }
 
 void AtomicFile::open_unfinished() {
@@ -208,64 +215,151 @@ const std::string& AtomicFile::share() {
     return temporary_;
 }
 
-void AtomicFile::append(std::string_view bytes) {
-    if (!file_.is_open())
+void AtomicFile::check_open() {
+    if (const int error = error_.load(std::memory_order_relaxed))
+        fail(error);
+    if (!file_.is_open() && memory_ == nullptr)
         throw Error(ErrorKind::internal, fmt::format("'{}' was written to after its end", path_));
-    if (bytes.empty())
-        return; // an empty view may be a null pointer
-    bytes_.fetch_add(bytes.size(), std::memory_order_relaxed);
-    const std::size_t free = buffer_size - buffered_;
-    if (bytes.size() > free && buffered_ > 0) {
-        std::memcpy(buffer_.get() + buffered_, bytes.data(), free);
-        buffered_ = buffer_size;
-        flush();
-        bytes.remove_prefix(free);
-    }
-    // Whole buffers at a time, so that each write fills the pages that it touches.
-    if (const std::size_t whole = bytes.size() - bytes.size() % buffer_size; whole > 0) {
-        write_out(bytes.substr(0, whole));
-        bytes.remove_prefix(whole);
-    }
-    std::memcpy(buffer_.get() + buffered_, bytes.data(), bytes.size());
-    buffered_ += bytes.size();
-    assert(buffered_ < buffer_size + 1);
 }
 
+void AtomicFile::append(std::string_view bytes) {
+    check_open();
+    if (!bytes.empty()) // an empty view may be a null pointer
+        write(next_extent(bytes.size()), bytes);
+}
+
+void AtomicFile::append(std::string_view bytes, std::shared_ptr<const void> owner, Completions& after) {
+    if (!has_positions() || bytes.size() < worth_a_completion)
+        return append(bytes);
+    check_open();
+    promised_.fetch_add(1, std::memory_order_relaxed);
+    after.emplace_back([this, extent = next_extent(bytes.size()), bytes, owner = std::move(owner)] {
+        write(extent, bytes);
+        promised_.fetch_sub(1, std::memory_order_relaxed);
+    });
+}
+
+/// Returns a block from this offset to the next multiple of its size.
+std::shared_ptr<AtomicFile::Block> AtomicFile::new_block(std::uint64_t begin) {
+    auto block = std::make_shared<Block>();
+    block->begin = begin;
+    block->size = block_size - begin % block_size;
+    block->missing = block->size;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!idle_.empty()) {
+            block->bytes = std::move(idle_.back());
+            idle_.pop_back();
+        }
+    }
+    if (!block->bytes)
+        block->bytes.reset(new char[block_size]); // unused pages take no memory
+    return block;
+}
+
+/// Returns the place of the next `size` bytes, which then are appended.
+AtomicFile::Extent AtomicFile::next_extent(std::size_t size) {
+    Extent extent;
+    extent.begin = bytes_.fetch_add(size, std::memory_order_relaxed);
+    if (!last_ && extent.begin % block_size != 0)
+        last_ = new_block(extent.begin);
+    if (last_) {
+        extent.first = last_;
+        extent.in_first = std::min<std::size_t>(size, last_->begin + last_->size - extent.begin);
+        if (extent.begin + extent.in_first < last_->begin + last_->size)
+            return extent;
+        last_ = nullptr;
+    }
+    extent.whole = (size - extent.in_first) / block_size * block_size;
+    if (extent.in_first + extent.whole < size)
+        extent.last = last_ = new_block(extent.begin + extent.in_first + extent.whole);
+    return extent;
+}
+
+void AtomicFile::write(const Extent& extent, std::string_view bytes) {
+    if (extent.first)
+        fill(*extent.first, extent.begin, bytes.substr(0, extent.in_first));
+    if (extent.whole > 0)
+        write_out(extent.begin + extent.in_first, bytes.substr(extent.in_first, extent.whole));
+    if (extent.last)
+        fill(*extent.last, extent.last->begin, bytes.substr(extent.in_first + extent.whole));
+}
+
+/// Adds bytes at an offset of the file to their block, and writes it if it is complete.
+void AtomicFile::fill(Block& block, std::uint64_t at, std::string_view bytes) {
+    assert(block.begin <= at && at + bytes.size() <= block.begin + block.size);
+    std::memcpy(block.bytes.get() + (at - block.begin), bytes.data(), bytes.size());
+    // Whoever writes the block must see the bytes of all threads.
+    if (block.missing.fetch_sub(bytes.size(), std::memory_order_acq_rel) != bytes.size())
+        return;
+    write_out(block.begin, {block.bytes.get(), block.size});
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(block.bytes));
+}
+
+/// Writes all that was appended. Requires that all completions are done.
 void AtomicFile::flush() {
-    write_out({buffer_.get(), std::exchange(buffered_, 0)});
+    const std::uint64_t end = bytes();
+    if (const std::shared_ptr<Block> block = std::exchange(last_, nullptr)) {
+        const std::size_t used = end - block->begin;
+        if (block->missing == block->size - used)
+            write_out(block->begin, {block->bytes.get(), used});
+    }
+    if (written_ != end)
+        throw Error(ErrorKind::internal, fmt::format("bytes of '{}' were not written before its end", path_));
 }
 
 void AtomicFile::overwrite(std::uint64_t offset, std::string_view bytes) {
+    check_open();
     flush();
-    if (!write_all_at(spool_.is_open() ? spool_ : file_, offset, bytes))
+    if (!write_at(offset, bytes))
         fail(errno);
+}
+
+/// Writes bytes at an offset. Returns false if the system failed.
+bool AtomicFile::write_at(std::uint64_t offset, std::string_view bytes) {
+    if (memory_ == nullptr)
+        return write_all_at(spool_.is_open() ? spool_ : file_, offset, bytes);
+    if (memory_->size() < offset + bytes.size())
+        memory_->resize(offset + bytes.size());
+    bytes.copy(memory_->data() + offset, bytes.size());
+    return true;
 }
 
 // Copies the spool to the output; later writes go to the output directly.
 void AtomicFile::copy_spool() {
     const NativeFile from = std::move(spool_);
-    const std::span<std::byte> room(reinterpret_cast<std::byte*>(buffer_.get()), buffer_size);
+    const std::unique_ptr<char[]> buffer(new char[block_size]);
     std::uint64_t offset = 0;
     for (;;) {
-        const std::ptrdiff_t got = read_at(from, offset, room);
+        const std::ptrdiff_t got =
+            read_at(from, offset, {reinterpret_cast<std::byte*>(buffer.get()), block_size});
         if (got < 0)
             fail(errno);
         if (got == 0)
             return;
-        write_out({buffer_.get(), static_cast<std::size_t>(got)});
+        write_out(offset, {buffer.get(), static_cast<std::size_t>(got)});
         offset += static_cast<std::uint64_t>(got);
     }
 }
 
-void AtomicFile::write_out(std::string_view bytes) {
-    if (!write_all(spool_.is_open() ? spool_ : file_, bytes))
+/// Writes bytes at an offset, or to the end of what is written in place.
+void AtomicFile::write_out(std::uint64_t offset, std::string_view bytes) {
+    // The system lets one thread at a time write to a file, and the others would wait for it with busy
+    // processors.
+    const std::lock_guard lock(writing_);
+    if (!(has_positions() ? write_at(offset, bytes) : write_all(file_, bytes)))
         fail(errno);
+    written_.fetch_add(bytes.size(), std::memory_order_relaxed);
 }
 
 void AtomicFile::commit() {
-    if (!file_.is_open())
-        throw Error(ErrorKind::internal, fmt::format("'{}' was ended twice", path_));
+    check_open();
     flush();
+    if (memory_ != nullptr) {
+        memory_ = nullptr;
+        return;
+    }
     if (spool_.is_open())
         copy_spool();
     // Only a rename can take a name that is in use.
@@ -296,10 +390,18 @@ void AtomicFile::discard() noexcept {
     unfinished_.withdraw();
 }
 
+/// Discards the file, unless other threads may be writing it; then the destructor does.
+void AtomicFile::discard_alone() noexcept {
+    if (promised_ == 0)
+        discard();
+}
+
 void AtomicFile::fail(int system_error) {
+    int none = 0;
+    error_.compare_exchange_strong(none, system_error);
     if (spool_.is_open() && (system_error == ENOSPC || system_error == quota_error))
         fail_spool(system_error);
-    discard();
+    discard_alone();
     throw output_error(target_.empty() ? path_ : target_, system_error);
 }
 

@@ -24,8 +24,8 @@ namespace lamella {
 
 namespace {
 
-[[noreturn]] void fail(const std::string& name, const std::string& text) {
-    throw Error(ErrorKind::input, name + ": " + text);
+[[noreturn]] void fail(const std::string& name, const std::string& text, int system_error = 0) {
+    throw Error(ErrorKind::input, name + ": " + text, system_error);
 }
 
 [[noreturn]] void fail_with_errno(const std::string& name, int code) {
@@ -33,18 +33,18 @@ namespace {
     case ENOENT:
     case ENOTDIR:
     case EILSEQ: // the name has characters that this system does not permit
-        fail(name, "there is no such file");
+        fail(name, "there is no such file", code);
     case EACCES:
     case EPERM:
-        fail(name, "no permission to read this file");
+        fail(name, "no permission to read this file", code);
     case EISDIR:
-        fail(name, "is a folder, expected a file");
+        fail(name, "is a folder, expected a file", code);
     case ETXTBSY:
-        fail(name, "another program has locked this file; close it there");
+        fail(name, "another program has locked this file; close it there", code);
     case EBADF:
-        fail(name, "is closed, or not open for reading");
+        fail(name, "is closed, or not open for reading", code);
     default:
-        fail(name, "cannot be read: " + std::generic_category().message(code));
+        fail(name, "cannot be read: " + std::generic_category().message(code), code);
     }
 }
 

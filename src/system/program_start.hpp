@@ -22,8 +22,9 @@ void prepare_standard_streams() noexcept;
 
 /// Returns whether standard output was closed when the program started, which means that no output is wanted.
 [[nodiscard]] bool output_is_closed() noexcept;
-/// Returns whether standard error is a terminal that can draw a progress bar.
-[[nodiscard]] bool errors_are_on_terminal() noexcept;
+/// Returns the columns of the terminal on standard error, or nullopt if it is no terminal that can draw a
+/// progress bar. A terminal that does not know its size has 80.
+[[nodiscard]] std::optional<unsigned> terminal_columns() noexcept;
 
 /// Reads a file, or standard input if the path is "-", to its end. Returns an errno, or 0.
 [[nodiscard]] int read_text(const std::string& path, std::string& text);

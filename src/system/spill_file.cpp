@@ -53,7 +53,8 @@ void SpillFile::fail(int system_error) const {
     throw Error(ErrorKind::output,
                 text + fmt::format("; set the environment variable {} to a folder with more room, or raise "
                                    "`max_memory`",
-                                   scratch_variable()));
+                                   scratch_variable()),
+                system_error);
 }
 
 } // namespace lamella

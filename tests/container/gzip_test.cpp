@@ -124,5 +124,25 @@ TEST(Gzip, EndsWhenAskedTo) {
                    [&] { (void)unpacked(source(compressed("x")), 0, {.cancel = &stop}); });
 }
 
+TEST(Gzip, MembersAreReadBackAndJoinedByConcatenation) {
+    EXPECT_EQ(gzip_member(""), "");
+    std::string all;
+    std::string members;
+    for (const std::size_t size : {1U, 64U, 65U, 100'000U}) {
+        const std::string bytes(size, 'a');
+        EXPECT_EQ(content(gzip_member(bytes)), bytes);
+        EXPECT_EQ(gzip_member(bytes), gzip_member(bytes));
+        all += bytes;
+        members += gzip_member(bytes);
+    }
+    EXPECT_EQ(content(members), all);
+    EXPECT_LT(members.size(), all.size() / 10);
+}
+
+TEST(Gzip, NamesEndWithGzInAnyCase) {
+    EXPECT_TRUE(has_gzip_extension("part.svg.gz") && has_gzip_extension("PART.CLI.GZ"));
+    EXPECT_FALSE(has_gzip_extension("gz") || has_gzip_extension("part.gz.svg") || has_gzip_extension(""));
+}
+
 } // namespace
 } // namespace lamella::gzip_cases

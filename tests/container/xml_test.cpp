@@ -1,11 +1,15 @@
 #include "lamella/core/error.hpp"
 
+#include "container/text_position.hpp"
 #include "container/xml.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace lamella::xml_cases {
 namespace {
@@ -136,8 +140,8 @@ TEST(Xml, ReadsTokensOf64MBAndRefusesLongerOnes) {
         Told told;
         if (skim) { // the tag in the comment sends the parser there
             told.handlers.many = {"<v"};
-            told.handlers.skim = [](std::string_view, std::size_t) -> std::size_t {
-                return 0;
+            told.handlers.skim = [](std::string_view, std::size_t) -> XmlSkimmed {
+                return {};
             };
         }
         parse_xml(document(most), "x.xml", told.handlers);
@@ -167,12 +171,12 @@ struct Skimmer : Told {
 
     Skimmer() {
         handlers.many = {"<v"};
-        handlers.skim = [this](std::string_view document, std::size_t position) -> std::size_t {
+        handlers.skim = [this](std::string_view document, std::size_t position) -> XmlSkimmed {
             const std::size_t end = document.find("</", position);
             if (end == std::string_view::npos)
-                return 0;
+                return {};
             skimmed += fmt::format("[{}]", document.substr(position, end - position));
-            return end - position;
+            return {end - position};
         };
     }
 };
@@ -183,6 +187,21 @@ TEST(Xml, SkimmedElementsDoNotReachTheParserAndLinesAreStillRight) {
               skimmer.handlers);
     EXPECT_EQ(skimmer.events, "1:<a>2:<r></r>6:<r>6:<x></x></r>9:<vs></vs></a>");
     EXPECT_EQ(skimmer.skimmed, "[<v/>\n<v x='1'/>\n][<v\n/>]");
+}
+
+TEST(Xml, LinesAreRightBehindSkimmedElementsWithLineEndsOfEveryKind) {
+    for (const bool known : {false, true}) {
+        Skimmer skimmer;
+        const auto skim = skimmer.handlers.skim;
+        skimmer.handlers.skim = [&](std::string_view document, std::size_t position) {
+            XmlSkimmed skimmed = skim(document, position);
+            if (known)
+                skimmed.lines = line_at(document.substr(position), skimmed.bytes) - 1;
+            return skimmed;
+        };
+        parse_xml("<a>\r<r>\r\n<v/>\r\n<v/>\r<v/>\n\r</r>\n<x/></a>", "x.xml", skimmer.handlers);
+        EXPECT_EQ(skimmer.events, "1:<a>2:<r></r>8:<x></x></a>");
+    }
 }
 
 TEST(Xml, SkimsNothingInCommentsTextsAndOtherPlaces) {
@@ -206,6 +225,32 @@ TEST(Xml, TagsInALongCommentCostLittle) {
     parse_xml(document + "--></a>", "x.xml", skimmer.handlers);
     EXPECT_EQ(skimmer.skimmed, "");
     EXPECT_EQ(skimmer.events, "1:<a></a>");
+}
+
+TEST(Xml, ElementsOfTheRootReportWhereTheyBegin) {
+    const std::string text = "<a>\n<v/><b x='1'><c/></b><!-- <b> -->\n <v/><v/>\n<b/></a>";
+    const std::size_t first = text.find("<b");
+    for (const bool skim : {false, true}) {
+        Told told;
+        if (skim) {
+            told.handlers.many = {"<v"};
+            told.handlers.skim = [](std::string_view, std::size_t) -> XmlSkimmed {
+                return {std::string_view("<v/>").size()};
+            };
+        }
+        std::vector<std::size_t> found;
+        told.handlers.element = [&](std::size_t position) {
+            if (text.substr(position).starts_with("<b"))
+                found.push_back(position);
+            else
+                EXPECT_TRUE(text.substr(position).starts_with("<v")) << position;
+        };
+        parse_xml(text, "x.xml", told.handlers);
+        EXPECT_EQ(found, (std::vector{first, text.rfind("<b")})) << skim;
+        found.clear();
+        static_cast<void>(parse_xml_elements(text, first, text.size(), "<a>", "x.xml", told.handlers));
+        EXPECT_EQ(found, (std::vector{first, text.rfind("<b")})) << skim;
+    }
 }
 
 TEST(Xml, ProgressAddsUpToTheDocument) {

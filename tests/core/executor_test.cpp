@@ -48,6 +48,39 @@ TEST(Executor, ChunksCoverTheRangeExactlyOnce) {
     }
 }
 
+TEST(Executor, RunsOnThreadsOfTheCaller) {
+    std::set<std::thread::id> ids;
+    int regions = 0;
+    const auto backwards = [&](unsigned tasks, const std::function<void(unsigned)>& task) {
+        ++regions;
+        for (unsigned i = tasks; i > 0; --i)
+            task(i - 1);
+    };
+    Executor executor({.threads = 3, .run_tasks = backwards});
+    std::vector<int> seen(100);
+    executor.for_chunks(seen.size(), 1, [&](std::uint64_t begin, std::uint64_t, unsigned) {
+        ++seen[begin];
+        ids.insert(std::this_thread::get_id());
+    });
+    EXPECT_EQ(seen, std::vector<int>(seen.size(), 1));
+    EXPECT_EQ(ids, std::set<std::thread::id>{std::this_thread::get_id()});
+    EXPECT_EQ(regions, 1);
+    const auto fail_in_one = [](unsigned worker) {
+        if (worker == 1)
+            throw std::out_of_range("");
+    };
+    EXPECT_THROW(executor.run(fail_in_one), std::out_of_range);
+}
+
+TEST(Executor, NoticesThatTasksWereLeftOut) {
+    const auto first_only = [](unsigned, const std::function<void(unsigned)>& task) {
+        task(0);
+    };
+    Executor executor({.threads = 3, .run_tasks = first_only});
+    test::expect_error(ErrorKind::usage, {"run_tasks of an Execution ran 1 of 3 tasks"},
+                       [&] { executor.run([](unsigned) {}); });
+}
+
 TEST(Executor, ARangeOfOneChunkStaysOnTheCallingThread) {
     Executor executor({.threads = 3});
     const auto caller = std::this_thread::get_id();

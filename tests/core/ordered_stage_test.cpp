@@ -99,6 +99,72 @@ TEST(OrderedStage, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
         ASSERT_EQ(ordered[i], i);
 }
 
+TEST(OrderedStage, RunsEachCompletionOnceAfterItsCommit) {
+    for (const unsigned workers : {1U, 2U, 3U, 7U, 16U}) {
+        constexpr std::uint32_t planes = 300;
+        std::vector<std::atomic<int>> runs(planes);
+        std::atomic<std::uint32_t> committed{0};
+        const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
+            return [&, plane = static_cast<std::uint32_t>(layer.index)](Completions& after) {
+                EXPECT_EQ(committed++, plane);
+                if (plane % 3 != 0)
+                    after.emplace_back([&, plane] {
+                        EXPECT_GT(committed, plane);
+                        ++runs[plane];
+                    });
+            };
+        }};
+        Delivery all(planes, sink, {.threads = workers});
+        all.executor.for_chunks(planes, 1, [&](std::uint64_t plane, std::uint64_t, unsigned) {
+            all.deliver(static_cast<std::uint32_t>(plane));
+        });
+        for (std::uint32_t plane = 0; plane < planes; ++plane)
+            EXPECT_EQ(runs[plane], plane % 3 == 0 ? 0 : 1) << plane << ", workers " << workers;
+    }
+}
+
+TEST(OrderedStage, CommitsPlanesWhileACompletionRuns) {
+    std::atomic<bool> running{false};
+    std::atomic<bool> second{false};
+    const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
+        if (layer.index == 1)
+            return [&] {
+                second = true;
+            };
+        return [&](Completions& after) {
+            after.emplace_back([&] {
+                running = true;
+                while (!second)
+                    std::this_thread::yield();
+            });
+        };
+    }};
+    Delivery two(2, sink);
+    std::thread first([&] { two.deliver(0); });
+    while (!running)
+        std::this_thread::yield();
+    two.deliver(1);
+    first.join();
+    EXPECT_EQ(two.delivery.delivered(), 2U);
+}
+
+TEST(OrderedStage, PassesAnExceptionOfACompletionToTheCaller) {
+    const LayerSink sink{.prepare = [](Layer&& layer) -> Commit {
+        return [fails = layer.index == 5](Completions& after) {
+            after.emplace_back([fails] {
+                if (fails)
+                    throw std::runtime_error("no space");
+            });
+        };
+    }};
+    Delivery all(100, sink, {.threads = 3});
+    EXPECT_THROW(all.executor.for_chunks(100, 1,
+                                         [&](std::uint64_t plane, std::uint64_t, unsigned) {
+                                             all.deliver(static_cast<std::uint32_t>(plane));
+                                         }),
+                 std::runtime_error);
+}
+
 TEST(OrderedStage, CountsLayersWithoutAnOrderedPart) {
     Delivery delivery(3, nothing_in_order);
     for (const std::uint32_t plane : {0U, 1U, 2U})

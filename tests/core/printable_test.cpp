@@ -23,6 +23,14 @@ TEST(Printable, ShowsWhatIsNotTextAsBytes) {
     EXPECT_EQ(printable("\xC0\xAF\xED\xA0\x80", 100), "\\xc0\\xaf\\xed\\xa0\\x80") << "overlong, surrogate";
 }
 
+TEST(Utf8, IsWhatIsWellFormed) {
+    for (const char* text :
+         {"", "a", "\xC3\xA4", "\xE2\x82\xAC", "\xF0\x9F\x99\x82", "\x01\x7f\xC2\x85", "\xEF\xBF\xBF"})
+        EXPECT_TRUE(is_utf8(text)) << printable(text);
+    for (const char* text : {"\xff", "a\xC3", "\xC0\xAF", "\xED\xA0\x80", "\xF4\x90\x80\x80", "\x80"})
+        EXPECT_FALSE(is_utf8(text)) << printable(text);
+}
+
 TEST(Printable, CutsLongTextAtACharacter) {
     EXPECT_EQ(printable("abcdef", 6), "abcdef");
     EXPECT_EQ(printable("abcdefg", 6), "abcdef...");

@@ -19,8 +19,8 @@ from program import ProgramTest, binary_stl, box_triangles  # noqa: E402
 
 INJECTOR = os.environ.get("LAMELLA_FAULT_INJECTOR", "")
 AT_LENGTH = "LAMELLA_FAULTS_AT_LENGTH" in os.environ
-FORMATS = ["cli", "cli-ascii", "svg", "slc", "3mf", "dxf", "geojson", "json", "npz", "svg-layers", "png",
-           "png-zip", "sl1", "sl1s"]
+FORMATS = ["cli", "cli-ascii", "svg", "slc", "3mf", "dxf", "geojson", "ilt", "json", "npz", "ovf",
+           "svg-layers", "png", "png-zip", "sl1", "sl1s"]
 LEAN_FORMATS = ["cli", "3mf", "npz", "svg-layers", "sl1"]
 # What can befall an operation on an output, and whether the program has to get over it.
 OUTPUT_FAULTS = {
@@ -151,6 +151,21 @@ class Outputs(FaultTest):
                             self.check("out", (operation, number, action), actions.get(action, False), command, old,
                                        new)
             shutil.rmtree(self.path("old"))
+
+    def test_writes_of_large_layers_by_several_threads(self):
+        self.succeed("make", "sheet", "--holes", "100", "--segments", "400")
+        for name in ["cli", "ilt", "npz", "svg"]:
+            command = ["slice", "sheet.stl", "-o", "out", "--format", name, "--layer-height", "0.5", "--threads", "3"]
+            self.put_back(None, "out")
+            self.succeed(*command)
+            new = content(self.path("out"))
+            writes = self.calls(*command)["write"]
+            self.assertGreater(writes, len(new) // 2**20)
+            for number, action in moments(writes, [*OUTPUT_FAULTS["write"], "kill"]):
+                with self.subTest(name, fault=("write", number, action)):
+                    self.put_back(None, "out")
+                    self.check("out", ("write", number, action), OUTPUT_FAULTS["write"].get(action, False), command,
+                               None, new)
 
     @same_at_length
     def test_a_disk_that_stays_full(self):

@@ -1,5 +1,5 @@
 #include "fixtures/child_process.hpp"
-#include "fixtures/expect_error.hpp"
+#include "output_checks.hpp"
 #include "system/atomic_directory.hpp"
 #include "temporary_folder.hpp"
 
@@ -8,21 +8,13 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace lamella::atomic_directory_posix_cases {
 namespace {
 
 namespace fs = std::filesystem;
-using Names = std::vector<std::string>;
-
-bool is_layer(const fs::path& path) {
-    return path.extension() == ".svg";
-}
-
-std::string error_of(const std::string& path) {
-    return test::error_of(ErrorKind::output, [&] { const AtomicDirectory directory(path, is_layer); });
-}
+using test::is_layer;
+using test::Names;
 
 TEST(AtomicDirectory, IsRemovedFromOutsideWhenTheProcessHasToEndAtOnce) {
     const TemporaryFolder folder;
@@ -103,10 +95,10 @@ TEST(AtomicDirectory, KeepsThePermissionsOfTheFolderThatItReplaces) {
 }
 
 TEST(AtomicDirectory, RefusesAMountPoint) {
-    EXPECT_NE(
-        error_of("/proc").find("'/proc': it is a mount point, which nothing can replace; choose a folder in "
-                               "it, such as '/proc/layers'"),
-        std::string::npos);
+    EXPECT_NE(test::error_of_folder("/proc").find(
+                  "'/proc': it is a mount point, which nothing can replace; choose a folder in "
+                  "it, such as '/proc/layers'"),
+              std::string::npos);
 }
 
 TEST(AtomicDirectory, KeepsASymbolicLinkToAFolder) {

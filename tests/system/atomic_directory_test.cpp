@@ -1,4 +1,4 @@
-#include "fixtures/expect_error.hpp"
+#include "output_checks.hpp"
 #include "system/atomic_directory.hpp"
 #include "temporary_folder.hpp"
 
@@ -6,21 +6,13 @@
 
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace lamella {
 namespace {
 
 namespace fs = std::filesystem;
-using Names = std::vector<std::string>;
-
-bool is_layer(const fs::path& path) {
-    return path.extension() == ".svg";
-}
-
-std::string error_of(const std::string& path) {
-    return test::error_of(ErrorKind::output, [&] { const AtomicDirectory directory(path, is_layer); });
-}
+using test::is_layer;
+using test::Names;
 
 TEST(AtomicDirectory, AppearsWholeAtTheEnd) {
     const TemporaryFolder folder;
@@ -60,7 +52,7 @@ TEST(AtomicDirectory, RefusesAFolderWithSomethingElseInIt) {
     const TemporaryFolder folder;
     fs::create_directory(folder.path() / "out");
     write_file(folder.path() / "out" / "thesis.txt", "years of work");
-    EXPECT_NE(error_of(folder.file("out")).find("thesis.txt"), std::string::npos);
+    EXPECT_NE(test::error_of_folder(folder.file("out")).find("thesis.txt"), std::string::npos);
     EXPECT_EQ(file_bytes(folder.path() / "out" / "thesis.txt"), "years of work");
 }
 
@@ -92,10 +84,11 @@ TEST(AtomicDirectory, LooksAgainBeforeItReplaces) {
 TEST(AtomicDirectory, SaysWhatIsWrongWithThePlace) {
     const TemporaryFolder folder;
     write_file(folder.file("file"), "x");
-    EXPECT_NE(error_of(folder.file("file")).find("it is a file"), std::string::npos);
-    EXPECT_NE(error_of(folder.file("file/out")).find("is a file, not a folder"), std::string::npos);
-    EXPECT_NE(error_of(folder.file("no/out")).find("does not exist"), std::string::npos);
-    EXPECT_NE(error_of("").find("without a name"), std::string::npos);
+    EXPECT_NE(test::error_of_folder(folder.file("file")).find("it is a file"), std::string::npos);
+    EXPECT_NE(test::error_of_folder(folder.file("file/out")).find("is a file, not a folder"),
+              std::string::npos);
+    EXPECT_NE(test::error_of_folder(folder.file("no/out")).find("does not exist"), std::string::npos);
+    EXPECT_NE(test::error_of_folder("").find("without a name"), std::string::npos);
 }
 
 } // namespace

@@ -1,8 +1,8 @@
 #include "lamella/system/whole_file.hpp"
 
 #include "fixtures/child_process.hpp"
-#include "fixtures/expect_error.hpp"
 #include "fixtures/rounds.hpp"
+#include "output_checks.hpp"
 #include "system/atomic_file.hpp"
 #include "system/nameless_file.hpp"
 #include "temporary_folder.hpp"
@@ -17,7 +17,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <memory>
 #include <string>
@@ -28,15 +27,9 @@ namespace lamella::atomic_file_posix_cases {
 namespace {
 
 namespace fs = std::filesystem;
-using Names = std::vector<std::string>;
-
-std::string output_error_of(const std::function<void()>& action) {
-    return test::error_of(ErrorKind::output, action);
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
+using test::contains;
+using test::Names;
+using test::output_error_of;
 
 TEST(AtomicFile, IsNotSharedWhereItIsWrittenInPlace) {
     EXPECT_EQ(AtomicFile("/dev/null").share(), "");
@@ -238,6 +231,31 @@ TEST(AtomicFile, LeavesNoFileWhenTheDiskFillsUpHalfWay) {
                    folder.entries() == Names{"a.cli"};
         }
         return false;
+    }));
+    EXPECT_EQ(file_bytes(folder.file("a.cli")), "old");
+    EXPECT_EQ(folder.entries(), Names{"a.cli"});
+}
+
+TEST(AtomicFile, LeavesNoFileWhenTheDiskFillsUpInACompletion) {
+    const TemporaryFolder folder;
+    write_file(folder.file("a.cli"), "old");
+    EXPECT_TRUE(true_in_child([&] {
+        std::signal(SIGXFSZ, SIG_IGN);
+        const rlimit limit{.rlim_cur = 600'000, .rlim_max = 600'000};
+        setrlimit(RLIMIT_FSIZE, &limit);
+        AtomicFile file(folder.file("a.cli"));
+        Completions after;
+        for (int i = 0; i < 100; ++i) {
+            const auto piece = std::make_shared<const std::string>(10'000, 'x');
+            file.append(*piece, piece, after);
+        }
+        const std::string error = output_error_of([&] {
+            for (const auto& completion : after)
+                completion();
+        });
+        const std::string later = output_error_of([&] { file.append("more"); });
+        return contains(error, "larger than") && later == error &&
+               output_error_of([&] { file.commit(); }) == error;
     }));
     EXPECT_EQ(file_bytes(folder.file("a.cli")), "old");
     EXPECT_EQ(folder.entries(), Names{"a.cli"});

@@ -2,6 +2,7 @@
 
 #include "fixtures/expect_error.hpp"
 #include "fixtures/rounds.hpp"
+#include "output_checks.hpp"
 #include "system/atomic_file.hpp"
 #include "system/file_chunk.hpp"
 #include "system/nameless_file.hpp"
@@ -9,11 +10,11 @@
 
 #include <gtest/gtest.h>
 
-#include <chrono>
-#include <cstdlib>
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 #include <memory>
 #include <string>
 #include <thread>
@@ -23,15 +24,9 @@ namespace lamella {
 namespace {
 
 namespace fs = std::filesystem;
-using Names = std::vector<std::string>;
-
-std::string output_error_of(const std::function<void()>& action) {
-    return test::error_of(ErrorKind::output, action);
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
+using test::contains;
+using test::Names;
+using test::output_error_of;
 
 TEST(AtomicFile, GetsItsNameOnlyWhenItIsComplete) {
     const TemporaryFolder folder;
@@ -45,6 +40,37 @@ TEST(AtomicFile, GetsItsNameOnlyWhenItIsComplete) {
     }
     EXPECT_EQ(file_bytes(folder.file("a.cli")), "first second");
     EXPECT_EQ(folder.entries(), Names{"a.cli"});
+}
+
+TEST(AtomicFile, WritesToMemoryWithoutAFile) {
+    const TemporaryFolder folder;
+    std::string memory = "before";
+    const std::string large(3'000'000, 'x');
+    AtomicFile file(folder.file("missing/a.cli"), Overwriting::yes, &memory);
+    file.append("first ");
+    file.append(large);
+    const auto owner = std::make_shared<const std::string>(large);
+    Completions after;
+    file.append(*owner, owner, after);
+    file.append("last");
+    for (const auto& completion : after)
+        completion();
+    file.overwrite(0, "FIRST");
+    EXPECT_EQ(file.bytes(), 10 + 2 * large.size());
+    file.commit();
+    EXPECT_TRUE(memory == "FIRST " + large + large + "last");
+    EXPECT_THROW(file.append("more"), Error);
+    EXPECT_EQ(folder.entries(), Names{});
+}
+
+TEST(AtomicFile, NamesTheErrorOfTheSystem) {
+    const TemporaryFolder folder;
+    try {
+        const AtomicFile file(folder.file("missing/a.cli"));
+        ADD_FAILURE() << "no error";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.system_error(), ENOENT) << error.what();
+    }
 }
 
 TEST(AtomicFile, LeavesNothingBehindWhenItIsNotEnded) {
@@ -119,6 +145,69 @@ TEST(AtomicFile, KeepsTheOrderOfPiecesOfAllSizes) {
     EXPECT_EQ(file.bytes(), expected.size());
     file.commit();
     EXPECT_TRUE(file_bytes(folder.file("a")) == expected);
+}
+
+/// Appends pieces of many sizes, with owners and without, and returns all bytes.
+std::string append_pieces(AtomicFile& file, Completions& after) {
+    std::string expected;
+    for (int round = 0; round < 3; ++round)
+        for (const std::size_t size : {1U, 4'095U, 4'096U, 262'143U, 7U, 262'144U, 900'000U, 0U, 20'000U}) {
+            const auto piece =
+                std::make_shared<const std::string>(size, static_cast<char>('a' + expected.size() % 26));
+            expected += *piece;
+            if (round == 1 && size % 2 == 0)
+                file.append(*piece);
+            else
+                file.append(*piece, piece, after);
+        }
+    EXPECT_EQ(file.bytes(), expected.size());
+    return expected;
+}
+
+TEST(AtomicFile, TakesBytesFromCompletionsInAnyOrder) {
+    const TemporaryFolder folder;
+    AtomicFile file(folder.file("a"));
+    Completions after;
+    const std::string expected = append_pieces(file, after);
+    std::reverse(after.begin(), after.end());
+    for (const auto& completion : after)
+        completion();
+    file.append("end");
+    file.commit();
+    EXPECT_TRUE(file_bytes(folder.file("a")) == expected + "end");
+}
+
+TEST(AtomicFile, TakesBytesFromCompletionsOnManyThreads) {
+    const TemporaryFolder folder;
+    AtomicFile file(folder.file("a"), Overwriting::yes);
+    Completions after;
+    const std::string expected = append_pieces(file, after);
+    std::atomic<std::size_t> next{0};
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t)
+        threads.emplace_back([&] {
+            for (std::size_t i = 0; (i = next++) < after.size();)
+                after[i]();
+        });
+    for (std::thread& thread : threads)
+        thread.join();
+    file.overwrite(0, "first");
+    file.append("end");
+    file.commit();
+    EXPECT_TRUE(file_bytes(folder.file("a")) == "first" + expected.substr(5) + "end");
+}
+
+TEST(AtomicFile, IsNotEndedWhileBytesAreMissing) {
+    const TemporaryFolder folder;
+    for (const std::size_t size : {5'000U, 3'000'000U}) {
+        AtomicFile file(folder.file("a"));
+        Completions after;
+        const auto piece = std::make_shared<const std::string>(size, 'x');
+        file.append(*piece, piece, after);
+        EXPECT_EQ(after.size(), 1U);
+        test::error_of(ErrorKind::internal, [&] { file.commit(); });
+    }
+    EXPECT_EQ(folder.entries(), Names{});
 }
 
 TEST(AtomicFile, SaysWhatIsWrongWithThePlace) {

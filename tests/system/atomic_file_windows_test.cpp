@@ -1,6 +1,7 @@
 #include "lamella/system/whole_file.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "output_checks.hpp"
 #include "system/atomic_directory.hpp"
 #include "system/atomic_file.hpp"
 #include "system/byte_source.hpp"
@@ -9,22 +10,17 @@
 #include <gtest/gtest.h>
 #include <windows.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 namespace lamella::atomic_file_windows_cases {
 namespace {
 
 namespace fs = std::filesystem;
-using Names = std::vector<std::string>;
+using test::Names;
+using test::output_error_of;
 
 constexpr const wchar_t* folder_variable = L"LAMELLA_TEST_FOLDER";
-
-std::string output_error_of(const std::function<void()>& action) {
-    return test::error_of(ErrorKind::output, action);
-}
 
 /// Another process that runs one test of this program, until it is killed.
 class OtherProcess {

@@ -1,3 +1,4 @@
+#include "byte_source_files.hpp"
 #include "fixtures/child_process.hpp"
 #include "fixtures/expect_error.hpp"
 #include "system/byte_source.hpp"
@@ -14,13 +15,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <functional>
 #include <future>
 #include <iterator>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace lamella::byte_source_posix_cases {
@@ -28,27 +26,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class ByteSourcePosixTest : public testing::Test {
-  protected:
-    [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
-
-    /// Returns the path.
-    std::string write(const std::string& name, const std::string& text) const {
-        std::ofstream(path(name), std::ios::binary) << text;
-        return path(name);
-    }
-
-  private:
-    TemporaryFolder folder_;
-};
-
-std::string text_of(const ByteSource& source) {
-    return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
-}
-
-std::string error_of(const std::function<void()>& action) {
-    return test::error_of(ErrorKind::input, action);
-}
+using ByteSourcePosixTest = test::ByteSourceFiles;
+using test::input_error_of;
+using test::some_text;
+using test::text_of;
 
 /// Standard input comes from `descriptor` while this lives.
 class RedirectedInput {
@@ -65,13 +46,6 @@ class RedirectedInput {
     int saved_;
 };
 
-std::string some_text(std::size_t size) {
-    std::string text(size, ' ');
-    for (std::size_t i = 0; i < size; ++i)
-        text[i] = static_cast<char>('a' + i * i % 23);
-    return text;
-}
-
 bool always(std::span<const std::byte>, std::uint64_t) {
     return true;
 }
@@ -87,7 +61,7 @@ TEST_F(ByteSourcePosixTest, KeepsAFileThatIsReadInWindowsOpenAsLongAsItsBytesLiv
     const auto before = open_descriptors();
     {
         const ByteSource source = open_bytes(file, {}, all_memory, always);
-        error_of([&] { (void)open_bytes(path("")); });
+        input_error_of([&] { (void)open_bytes(path("")); });
         EXPECT_EQ(open_descriptors(), before + 1);
     }
     EXPECT_EQ(open_descriptors(), before);
@@ -175,7 +149,7 @@ TEST_F(ByteSourcePosixTest, StopsWaitingForAPipeWhenAsked) {
 }
 
 TEST_F(ByteSourcePosixTest, RefusesADevice) {
-    EXPECT_EQ(error_of([&] { (void)open_bytes("/dev/zero"); }),
+    EXPECT_EQ(input_error_of([&] { (void)open_bytes("/dev/zero"); }),
               "/dev/zero: is a device, expected a file or a pipe");
 }
 
@@ -183,7 +157,7 @@ TEST_F(ByteSourcePosixTest, NamesAFileThatMayNotBeRead) {
     const std::string file = write("secret", "x");
     fs::permissions(file, fs::perms::none);
     const int code = exit_code_of_child([&] {
-        const bool as_told = give_up_capabilities() && error_of([&] { (void)open_bytes(file); }) ==
+        const bool as_told = give_up_capabilities() && input_error_of([&] { (void)open_bytes(file); }) ==
                                                            file + ": no permission to read this file";
         _exit(as_told ? 0 : 1);
     });

@@ -1,56 +1,26 @@
-#include "fixtures/expect_error.hpp"
+#include "byte_source_files.hpp"
 #include "system/byte_source.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
 
-#include <array>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <future>
-#include <iterator>
 #include <span>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace lamella {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ByteSourceTest : public testing::Test {
-  protected:
-    [[nodiscard]] std::string path(const std::string& name) const { return folder_.file(name); }
-
-    /// Returns the path.
-    std::string write(const std::string& name, const std::string& text) const {
-        std::ofstream(path(name), std::ios::binary) << text;
-        return path(name);
-    }
-
-  private:
-    TemporaryFolder folder_;
-};
-
-std::string text_of(const ByteSource& source) {
-    return {reinterpret_cast<const char*>(source.bytes.data()), source.bytes.size()};
-}
-
-std::string error_of(const std::function<void()>& action) {
-    return test::error_of(ErrorKind::input, action);
-}
-
-std::string some_text(std::size_t size) {
-    std::string text(size, ' ');
-    for (std::size_t i = 0; i < size; ++i)
-        text[i] = static_cast<char>('a' + i * i % 23);
-    return text;
-}
+using ByteSourceTest = test::ByteSourceFiles;
+using test::input_error_of;
+using test::some_text;
+using test::text_of;
 
 TEST_F(ByteSourceTest, GivesTheBytesOfAFile) {
     const ByteSource source = open_bytes(write("part", "seven b"));
@@ -114,9 +84,10 @@ TEST_F(ByteSourceTest, ReportsBothSizesOfAFileThatWasCutOffWhileItWasRead) {
     const std::string expected =
         file + ": was cut off while it was read: it had 3000000 bytes, and ends after 4000 now";
     std::string copy(9'000, ' ');
-    EXPECT_EQ(error_of([&] { copy_out(source, 1'000, std::as_writable_bytes(std::span(copy))); }), expected);
+    EXPECT_EQ(input_error_of([&] { copy_out(source, 1'000, std::as_writable_bytes(std::span(copy))); }),
+              expected);
     for (const std::uint64_t most : {all_memory, std::uint64_t{1'000}}) // whichever thread finds it out
-        EXPECT_EQ(error_of([&] { (void)whole(source, {.threads = 4}, most); }), expected);
+        EXPECT_EQ(input_error_of([&] { (void)whole(source, {.threads = 4}, most); }), expected);
 }
 
 TEST_F(ByteSourceTest, GivesTheBytesOfAFileThatWasCutOffOrOverwrittenSince) {
@@ -168,13 +139,15 @@ TEST_F(ByteSourceTest, OpensFilesBeyondFourGigabytes) {
 }
 
 TEST_F(ByteSourceTest, NamesWhatIsWrongWithAPath) {
-    EXPECT_EQ(error_of([&] { (void)open_bytes(path("none")); }), path("none") + ": there is no such file");
-    EXPECT_EQ(error_of([&] { (void)open_bytes(write("file", "x") + "/part"); }),
+    EXPECT_EQ(input_error_of([&] { (void)open_bytes(path("none")); }),
+              path("none") + ": there is no such file");
+    EXPECT_EQ(input_error_of([&] { (void)open_bytes(write("file", "x") + "/part"); }),
               path("file/part") + ": there is no such file");
-    EXPECT_EQ(error_of([&] { (void)open_bytes(path("")); }), path("") + ": is a folder, expected a file");
-    EXPECT_EQ(error_of([&] { (void)open_bytes(write("empty", "")); }),
+    EXPECT_EQ(input_error_of([&] { (void)open_bytes(path("")); }),
+              path("") + ": is a folder, expected a file");
+    EXPECT_EQ(input_error_of([&] { (void)open_bytes(write("empty", "")); }),
               path("empty") + ": is empty, expected a file with content");
-    EXPECT_EQ(error_of([&] { (void)copy_bytes({}, "memory"); }),
+    EXPECT_EQ(input_error_of([&] { (void)copy_bytes({}, "memory"); }),
               "memory: is empty, expected a file with content");
 }
 

@@ -1,3 +1,4 @@
+#include "fixtures/environment.hpp"
 #include "system/nameless_file.hpp"
 #include "temporary_folder.hpp"
 
@@ -5,8 +6,6 @@
 #include <sys/stat.h>
 
 #include <cerrno>
-#include <cstdlib>
-#include <string>
 
 namespace lamella::nameless_file_posix_cases {
 namespace {
@@ -23,14 +22,8 @@ TEST(NamelessFile, OfScratchIsForThisUserOnlyAndHasNoName) {
 }
 
 TEST(NamelessFile, IsOnADiskWhereTheEnvironmentWantsNothing) {
-    const char* const before = std::getenv("TMPDIR");
-    const std::string kept = before == nullptr ? "" : before;
-    ::setenv("TMPDIR", "", 1);
+    const test::EnvironmentVariable variable("TMPDIR", "", scratch_folder());
     EXPECT_TRUE(scratch_folder() == "/var/tmp" || scratch_folder() == "/tmp");
-    if (before == nullptr)
-        ::unsetenv("TMPDIR");
-    else
-        ::setenv("TMPDIR", kept.c_str(), 1);
 }
 
 } // namespace

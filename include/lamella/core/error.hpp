@@ -26,12 +26,16 @@ enum class ErrorKind {
 /// between backquotes, as in `max_memory`, so that a program can replace the name by that of its own option.
 class Error : public std::runtime_error {
   public:
-    Error(ErrorKind kind, const std::string& text) : std::runtime_error(text), kind_(kind) {}
+    Error(ErrorKind kind, const std::string& text, int system_error = 0)
+        : std::runtime_error(text), kind_(kind), system_error_(system_error) {}
 
     [[nodiscard]] ErrorKind kind() const noexcept { return kind_; }
+    /// Returns the error of the operating system (an errno) if that is the cause, otherwise 0.
+    [[nodiscard]] int system_error() const noexcept { return system_error_; }
 
   private:
     ErrorKind kind_;
+    int system_error_;
 };
 
 } // namespace lamella

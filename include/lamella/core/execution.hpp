@@ -50,6 +50,12 @@ struct Execution {
     /// system cannot start all of them.
     unsigned threads = 0;
 
+    /// Runs tasks on threads of the caller, for example of a thread pool; Lamella then starts no threads.
+    /// Must call task(i) once for each i < tasks, on any threads, at the same time or one after the other,
+    /// and return when all of them have returned. It is called `threads` tasks at a time, and not from two
+    /// threads at once by one computation. Otherwise Lamella starts threads of its own.
+    std::function<void(unsigned tasks, const std::function<void(unsigned)>& task)> run_tasks = {};
+
     /// Called about ten to a hundred times per stage, from one thread at a time, but not always from the same
     /// thread. May throw: the computation stops and the exception reaches the caller.
     std::function<void(const Progress&)> progress = {};

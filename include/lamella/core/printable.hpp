@@ -15,6 +15,9 @@ namespace lamella {
 /// become \xNN. Text of more than `max_bytes` bytes is truncated after a whole character and ends in "...".
 [[nodiscard]] std::string printable(std::string_view text, std::size_t max_bytes = std::string_view::npos);
 
+/// Returns whether the text is valid UTF-8.
+[[nodiscard]] bool is_utf8(std::string_view text) noexcept;
+
 /// Largest number of bytes that errors and warnings quote of a text.
 inline constexpr std::size_t most_quoted = 200;
 

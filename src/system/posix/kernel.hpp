@@ -1,8 +1,8 @@
 #pragma once
 
-// What POSIX does not offer. Two sources implement it: kernel_linux.cpp for Linux, kernel_unix.cpp for macOS
-// and other systems, with what POSIX has instead. Functions that return a descriptor return -1 on failure;
-// those that return bool return false. They set errno.
+// What POSIX does not offer. kernel_linux.cpp implements it for Linux. Other systems share kernel_unix.cpp,
+// and have kernel_macos.cpp, or kernel_plain.cpp with what POSIX has instead. Functions that return a
+// descriptor return -1 on failure; those that return bool return false. They set errno.
 
 #include <sys/types.h>
 
@@ -22,7 +22,7 @@ namespace lamella {
 [[nodiscard]] bool exchange_names(const char* one, const char* other) noexcept;
 /// Returns whether a folder is a mount point.
 [[nodiscard]] bool is_mounted(const char* folder) noexcept;
-/// Removes the files in a folder. Async-signal-safe on Linux.
+/// Removes the files in a folder. Async-signal-safe on Linux and macOS.
 void unlink_entries(int folder) noexcept;
 /// Returns a text that is the same for all processes of this machine until it is rebooted; "" if there is
 /// none.

@@ -47,7 +47,12 @@ void prefer_large_pages(void* data, std::size_t bytes) noexcept {
 }
 
 void provide_pages(void* data, std::size_t bytes) noexcept {
-    madvise(data, bytes, MADV_POPULATE_WRITE);
+#ifdef MADV_POPULATE_WRITE
+    constexpr int populate_write = MADV_POPULATE_WRITE;
+#else
+    constexpr int populate_write = 23; // headers of an older system than the one that will run this
+#endif
+    madvise(data, bytes, populate_write);
 }
 
 } // namespace lamella

@@ -39,7 +39,7 @@ bool has_action(int number, void (*action)(int)) {
 int wait_for(std::span<pollfd> awaited, int milliseconds) noexcept {
     int ready = 0;
     do
-        ready = ::poll(awaited.data(), awaited.size(), milliseconds);
+        ready = ::poll(awaited.data(), static_cast<nfds_t>(awaited.size()), milliseconds);
     while (ready < 0 && errno == EINTR);
     return ready;
 }

@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -29,8 +30,12 @@ bool output_is_closed() noexcept {
     return ::fcntl(STDOUT_FILENO, F_GETFL) < 0 || is_placeholder(STDOUT_FILENO);
 }
 
-bool errors_are_on_terminal() noexcept {
-    return ::isatty(STDERR_FILENO) != 0;
+std::optional<unsigned> terminal_columns() noexcept {
+    if (::isatty(STDERR_FILENO) == 0)
+        return std::nullopt;
+    constexpr unsigned usual = 80;
+    winsize size{};
+    return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
 }
 
 int read_text(const std::string& path, std::string& text) {
@@ -72,7 +77,12 @@ std::uint64_t peak_memory() {
     // Includes the process that started this one.
     rusage usage{};
     ::getrusage(RUSAGE_SELF, &usage);
-    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+#ifdef __APPLE__
+    constexpr std::uint64_t unit = 1;
+#else
+    constexpr std::uint64_t unit = 1024;
+#endif
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * unit;
 }
 
 void set_heap(int own_pages, int kept) noexcept {

@@ -6,11 +6,15 @@
 #include <fcntl.h>
 #include <io.h>
 #include <psapi.h>
-#include <shellapi.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace lamella {
 
@@ -23,16 +27,55 @@ void restore_code_page() {
     SetConsoleOutputCP(code_page_before);
 }
 
+/// Returns the words of a command line behind the name of the program, by the rules of the C library of
+/// Windows: a word ends at a blank that is not between quotes, and only in front of a quote do backslashes
+/// stand for something else.
+std::vector<std::wstring> words_of_command_line(std::wstring_view line) {
+    constexpr std::wstring_view blanks = L" \t";
+    const std::wstring_view end_of_name = line.starts_with(L'"') ? L"\"" : blanks;
+    line.remove_prefix(std::min(line.find_first_of(end_of_name, 1), line.size()));
+    if (line.starts_with(L'"'))
+        line.remove_prefix(1);
+    std::vector<std::wstring> words;
+    for (;;) {
+        line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
+        if (line.empty())
+            return words;
+        std::wstring& word = words.emplace_back();
+        bool quoted = false;
+        while (!line.empty() && (quoted || blanks.find(line.front()) == blanks.npos)) {
+            const std::size_t slashes = std::min(line.find_first_not_of(L'\\'), line.size());
+            line.remove_prefix(slashes);
+            const bool before_quote = line.starts_with(L'"');
+            word.append(before_quote ? slashes / 2 : slashes, L'\\');
+            if (!before_quote) {
+                if (slashes == 0) {
+                    word += line.front();
+                    line.remove_prefix(1);
+                }
+                continue;
+            }
+            line.remove_prefix(1);
+            if (slashes % 2 == 1) {
+                word += L'"';
+            } else if (quoted && line.starts_with(L'"')) { // two quotes between quotes are one
+                word += L'"';
+                line.remove_prefix(1);
+            } else {
+                quoted = !quoted;
+            }
+        }
+    }
+}
+
 } // namespace
 
 std::vector<std::string> program_arguments(int /*argc*/, char** /*argv*/) {
-    // Those of main are in the code page of the system.
-    int n = 0;
-    wchar_t** const words = CommandLineToArgvW(GetCommandLineW(), &n);
+    // Those of main are in the code page of the system. CommandLineToArgvW needs a library that takes as long
+    // to load as all others together.
     std::vector<std::string> arguments;
-    for (int i = 1; i < n; ++i)
-        arguments.push_back(narrow(words[i]));
-    LocalFree(words);
+    for (const std::wstring& word : words_of_command_line(GetCommandLineW()))
+        arguments.push_back(narrow(word));
     return arguments;
 }
 
@@ -40,6 +83,11 @@ void prepare_standard_streams() noexcept {
     // A closed stream has no handle, and its number of the C library is not given to files of this library.
     for (const int number : {0, 1, 2})
         _setmode(number, _O_BINARY);
+    // Without a buffer, a console gets each byte by itself and cannot join those of a character. What is
+    // written is flushed.
+    constexpr std::size_t buffer_size = 1 << 16;
+    for (std::FILE* const stream : {stdout, stderr})
+        std::setvbuf(stream, nullptr, _IOFBF, buffer_size);
     DWORD mode = 0;
     for (const DWORD stream : {STD_OUTPUT_HANDLE, STD_ERROR_HANDLE})
         if (const HANDLE console = GetStdHandle(stream); GetConsoleMode(console, &mode) != 0) {
@@ -57,10 +105,16 @@ bool output_is_closed() noexcept {
     return output == nullptr || output == INVALID_HANDLE_VALUE;
 }
 
-bool errors_are_on_terminal() noexcept {
+std::optional<unsigned> terminal_columns() noexcept {
+    const HANDLE console = GetStdHandle(STD_ERROR_HANDLE);
     DWORD mode = 0;
-    return GetConsoleMode(GetStdHandle(STD_ERROR_HANDLE), &mode) != 0 &&
-           (mode & ENABLE_VIRTUAL_TERMINAL_PROCESSING) != 0;
+    if (GetConsoleMode(console, &mode) == 0 || (mode & ENABLE_VIRTUAL_TERMINAL_PROCESSING) == 0)
+        return std::nullopt;
+    constexpr unsigned usual = 80;
+    CONSOLE_SCREEN_BUFFER_INFO info{};
+    const bool known =
+        GetConsoleScreenBufferInfo(console, &info) != 0 && info.srWindow.Right >= info.srWindow.Left;
+    return known ? static_cast<unsigned>(info.srWindow.Right - info.srWindow.Left + 1) : usual;
 }
 
 int read_text(const std::string& path, std::string& text) {
