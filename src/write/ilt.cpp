@@ -121,8 +121,8 @@ class IltWriter final : public OrderedWriter {
                                .parameters = true,
                                .kept = kept_in_list,
                                .not_kept = "jump speeds, delays and spot sizes"}),
-          zip_(path, Overwriting::yes), sections_(sections_of(info.parts)), entries_(sections_.size()),
-          units_(options.units_mm), short_form_(options.short_form) {
+          zip_(path, Overwriting::yes, info.memory), sections_(sections_of(info.parts)),
+          entries_(sections_.size()), units_(options.units_mm), short_form_(options.short_form) {
         zip_.add(ilt_parameters, parameters_text(sections_));
         zip_.begin(sections_.front().name, ZipMethod::stored);
         for (std::size_t i = 0; i < sections_.size(); ++i)
@@ -164,10 +164,10 @@ class IltWriter final : public OrderedWriter {
                 vectors.add(plane.layers[part], plane.hatches.empty() ? PointArray() : plane.hatches[part]);
             commits.push_back(entries_[i].writer->prepare(vectors));
         }
-        return [this, commits = std::move(commits)](const PlanePosition& offset) {
+        return [this, commits = std::move(commits)](const PlanePosition& offset, Completions& after) {
             check_apart(offset);
             for (const Commit& commit : commits)
-                commit();
+                commit.in_order(after);
         };
     }
 
@@ -207,8 +207,10 @@ class IltWriter final : public OrderedWriter {
     /// Opens a writer for a whole file as a single range, whose bytes go to `put`.
     void open(std::size_t section, const LayerFileInfo& info, const LayerWriteOptions& options) {
         Entry& entry = entries_[section];
-        entry.chunk = {0, info.layers, [this, section](std::string_view bytes) {
-                           put(section, bytes);
+        entry.chunk = {0, info.layers,
+                       [this, section](std::string_view bytes, const std::shared_ptr<const void>& owner,
+                                       Completions& after) {
+                           put(section, bytes, owner, after);
                        }};
         LayerFileInfo part_info{.box = info.box,
                                 .layers = info.layers,
@@ -229,9 +231,13 @@ class IltWriter final : public OrderedWriter {
         entry.writer = open_common_layer_binary({}, part_info, options);
     }
 
-    void put(std::size_t section, std::string_view bytes) {
+    void put(std::size_t section, std::string_view bytes, const std::shared_ptr<const void>& owner,
+             Completions& after) {
         if (section == 0) {
-            zip_.append_stored(bytes);
+            if (owner)
+                zip_.append_stored(bytes, owner, after);
+            else
+                zip_.append_stored(bytes);
             return;
         }
         if (bytes.empty())

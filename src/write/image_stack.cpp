@@ -78,7 +78,7 @@ class ImageStackWriter final : public OrderedWriter {
         if (in_folder)
             folder_.emplace(path, is_ours);
         else
-            archive_.emplace(path);
+            archive_.emplace(path, Overwriting::no, info.memory);
     }
 
     std::uint64_t bytes() const noexcept override { return folder_ ? folder_->bytes() : archive_->bytes(); }
@@ -89,9 +89,10 @@ class ImageStackWriter final : public OrderedWriter {
         // In a folder each layer has a file of its own, which can be written in any order.
         if (folder_)
             folder_->write(image_name(plane.layers.front().index), image.file->view());
-        return [this, image = std::move(image)](const PlanePosition& offset) {
+        return [this, image = std::move(image)](const PlanePosition& offset, Completions& after) {
             if (archive_)
-                archive_->add_ready(image_name(offset.index), ZipMethod::stored, image.in_zip());
+                archive_->add_ready(image_name(offset.index), ZipMethod::stored, image.in_zip(), image.file,
+                                    after);
             manifest_.add(offset, image.covered);
         };
     }

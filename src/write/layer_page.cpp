@@ -316,8 +316,9 @@ class PlaneTable {
 class PageWriter final : public LayerPageWriter {
   public:
     PageWriter(const std::string& path, const LayerFileInfo& info, const PageOptions& options)
-        : frame_(page_frame(options)), grid_(page_grid(info.box)), file_(path), order_(info),
-          parts_(info.parts), budget_(options, info.layers, has_vectors()), table_(has_vectors()) {
+        : frame_(page_frame(options)), grid_(page_grid(info.box)), file_(path, Overwriting::no, info.memory),
+          order_(info), parts_(info.parts), budget_(options, info.layers, has_vectors()),
+          table_(has_vectors()) {
         file_.append(frame_.header);
         file_.append(json_element("head", header(info, options)));
     }

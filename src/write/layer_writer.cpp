@@ -4,6 +4,7 @@
 #include "lamella/core/printable.hpp"
 #include "lamella/write/layer_page.hpp"
 
+#include "container/gzip.hpp"
 #include "core/counted.hpp"
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
@@ -184,6 +185,19 @@ std::string names() {
     return fmt::format("{}", fmt::join(texts, ", "));
 }
 
+/// Throws if the path asks for compression that the format does not have.
+void check_compression(const LayerFormat& format, const std::string& path) {
+    if (format.chunks || !has_gzip_extension(path))
+        return;
+    std::vector<std::string_view> compressed;
+    for (const LayerFormat& one : formats)
+        if (one.chunks)
+            compressed.push_back(one.name);
+    throw Error(ErrorKind::usage,
+                fmt::format("'{}': {} is not written compressed with gzip, as {} are; leave out .gz", path,
+                            format.name, fmt::join(compressed, ", ")));
+}
+
 void check_info(const LayerFileInfo& info) {
     const Box3& box = info.box;
     const std::array values{box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z, info.bottom};
@@ -244,8 +258,8 @@ class LimitedWriter final : public LayerWriter {
 
   private:
     Commit limited(Commit commit) {
-        return [this, commit = std::move(commit)] {
-            commit();
+        return [this, commit = std::move(commit)](Completions& after) {
+            commit.in_order(after);
             check_bytes(path_, bytes(), most_bytes_);
         };
     }
@@ -273,18 +287,24 @@ void check_warnings(const std::string& path, const std::vector<std::string>& war
         throw Error(ErrorKind::defect, fmt::format("{}: {}", name_of_output(path), warnings.front()));
 }
 
-Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches) noexcept {
+Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches,
+              const Execution& execution) {
     assert(hatches.empty() || hatches.size() == layers.size());
-    Box3 box;
-    const auto add = [&box](const PointArray& points, double z) {
-        for (const Point2& p : points)
-            box.add(Point3{p.x, p.y, z});
-    };
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        add(layers[i].points, layers[i].z);
+    Executor executor(execution);
+    std::vector<Box3> boxes(executor.workers());
+    executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
+        Box3 box;
+        for (const Point2& p : layers[i].points)
+            box.add(Point3{p.x, p.y, layers[i].z});
         if (!hatches.empty())
-            add(hatches[i], layers[i].z);
-    }
+            for (const Point2& p : hatches[i])
+                box.add(Point3{p.x, p.y, layers[i].z});
+        boxes[worker].add(box);
+    });
+    executor.check_cancelled();
+    Box3 box;
+    for (const Box3& some : boxes)
+        box.add(some);
     if (!box.empty()) {
         box.min.z = layers.front().bottom;
         box.max.z = layers.back().top;
@@ -297,13 +317,19 @@ std::span<const LayerFormat> layer_formats() noexcept {
 }
 
 const LayerFormat& layer_format(std::string_view name, const std::string& path) {
-    const std::string extension = lower_case(std::filesystem::path(path).extension().string());
+    std::filesystem::path plain(path);
+    if (has_gzip_extension(path))
+        plain.replace_extension();
+    const std::string extension = lower_case(plain.extension().string());
     const std::string_view wanted = name.empty() ? std::string_view(extension) : name;
     const auto found = std::find_if(formats.begin(), formats.end(), [&](const LayerFormat& format) {
         return (name.empty() ? format.extension : format.name) == wanted;
     });
-    if (found != formats.end() && (!name.empty() || !extension.empty()))
+    if (found != formats.end() && (!name.empty() || !extension.empty())) {
+        if (name.empty())
+            check_compression(*found, path);
         return *found;
+    }
     if (!name.empty())
         throw Error(ErrorKind::usage,
                     fmt::format("there is no format '{}'; choose from {}", excerpt(name), names()));
@@ -326,11 +352,12 @@ const LayerFormat& layer_format(std::string_view name, const std::string& path) 
 std::unique_ptr<LayerWriter> open_layer_writer(const std::string& path, const LayerFormat& format,
                                                const LayerFileInfo& info, const LayerWriteOptions& options) {
     check_info(info);
-    if (format.directory && path == "-")
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("{} writes a folder, so standard output is not possible; give the path of a folder",
-                        format.name));
+    if (info.memory == nullptr)
+        check_compression(format, path);
+    if (format.directory && (path == "-" || info.memory != nullptr))
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} writes a folder, so {} is not possible; give the path of a folder",
+                                format.name, name_of_output(path)));
     std::unique_ptr<LayerWriter> writer = format.open(path, info, options);
     if (options.most_bytes == 0 && !options.strict && format.cuts)
         return writer;

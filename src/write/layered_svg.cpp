@@ -193,7 +193,7 @@ class SvgLayersWriter final : public OrderedWriter {
         const std::shared_ptr<ByteBuffer> text = buffer();
         format(plane.layers, *text);
         directory_.write(fmt::format("layer_{:05}.svg", plane.layers.front().index), text->view());
-        return [](const PlanePosition&) {
+        return [](const PlanePosition&, Completions&) {
         };
     }
 

@@ -131,12 +131,13 @@ auto coordinates(const Point& p) {
 
 } // namespace
 
-StlWriter::StlWriter(const std::string& path, std::uint64_t triangles) : announced_(triangles) {
+StlWriter::StlWriter(const std::string& path, std::uint64_t triangles, std::string* memory)
+    : announced_(triangles) {
     if (triangles > std::numeric_limits<std::uint32_t>::max())
         throw Error(
             ErrorKind::limit,
             fmt::format("{} triangles are more than a binary STL file can count (2^32 - 1)", triangles));
-    file_ = std::make_unique<AtomicFile>(path);
+    file_ = std::make_unique<AtomicFile>(path, Overwriting::no, memory);
     std::array<char, 84> header{};
     // The text must not begin with "solid", because readers would take the file for ASCII STL.
     put_text(header.data(), "Binary STL written by Lamella, millimetres");
@@ -168,12 +169,14 @@ void write_stl(const std::string& path, const TriangleSoup& soup) {
     writer.finish();
 }
 
-std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bool strict) {
+std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bool strict,
+                                   std::string* memory) {
+    StlWriter writer(path, mesh.size(), memory);
     if (const TriangleSoup* const soup = mesh.soup(); soup != nullptr && !soup->has_placement()) {
-        write_stl(path, *soup);
+        writer.append(*soup);
+        writer.finish();
         return {};
     }
-    StlWriter writer(path, mesh.size());
     std::uint64_t lost = 0;
     for (std::size_t begin = 0; begin < mesh.size(); begin += triangles_per_block) {
         std::vector<Triangle3f> triangles(std::min(triangles_per_block, mesh.size() - begin));
@@ -214,11 +217,11 @@ void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const st
     file.commit();
 }
 
-void write_ply(const std::string& path, const IndexedMesh& mesh) {
+void write_ply(const std::string& path, const IndexedMesh& mesh, std::string* memory) {
     static_assert(std::endian::native == std::endian::little, "written as memory has it");
     const bool single_precision = fits_single_precision(mesh);
     const std::string_view type = single_precision ? "float" : "double";
-    AtomicFile file(path);
+    AtomicFile file(path, Overwriting::no, memory);
     file.append(fmt::format("ply\nformat binary_little_endian 1.0\ncomment written by Lamella, millimetres\n"
                             "element vertex {0}\nproperty {1} x\nproperty {1} y\nproperty {1} z\n"
                             "element face {2}\nproperty list uchar uint vertex_indices\nend_header\n",
@@ -235,8 +238,9 @@ void write_ply(const std::string& path, const IndexedMesh& mesh) {
     file.commit();
 }
 
-void write_obj(const std::string& path, const IndexedMesh& mesh, const std::string& name) {
-    AtomicFile file(path);
+void write_obj(const std::string& path, const IndexedMesh& mesh, const std::string& name,
+               std::string* memory) {
+    AtomicFile file(path, Overwriting::no, memory);
     std::string line = one_line(name);
     std::replace(line.begin(), line.end(), '\\', '/'); // a backslash at the end would continue the line
     file.append(fmt::format("# written by Lamella, millimetres\no {}\n", line));

@@ -68,7 +68,7 @@ class NpzWriter final : public OrderedWriter {
   public:
     NpzWriter(const std::string& path, const LayerFileInfo& info)
         : OrderedWriter(info, {.hatches = true, .written_label = printable_label}), labels_(info.parts),
-          rule_(info.rule), zip_(path, Overwriting::yes) {
+          rule_(info.rule), zip_(path, Overwriting::yes, info.memory) {
         zip_.begin("points.npy", ZipMethod::stored, header_size);
     }
 
@@ -76,19 +76,20 @@ class NpzWriter final : public OrderedWriter {
 
   private:
     Write formatted(const PlaneView& plane) override {
-        std::vector<std::pair<Layer, std::uint32_t>> layers; // each with the checksum of its points
+        using Part = std::pair<Layer, std::uint32_t>; // a layer with the checksum of its points
+        std::vector<Part> layers;
         for (const Layer& layer : plane.layers)
             layers.emplace_back(layer, crc32_of(bytes_in(layer.points.span())));
         std::vector<PointArray> all_hatches(plane.hatches.begin(), plane.hatches.end());
         all_hatches.resize(layers.size());
-        return [this, layers = std::move(layers),
-                all_hatches = std::move(all_hatches)](const PlanePosition& place) {
+        return [this, kept = std::make_shared<const std::vector<Part>>(std::move(layers)),
+                all_hatches = std::move(all_hatches)](const PlanePosition& place, Completions& after) {
             planes_.push_back(place);
-            for (std::size_t part = 0; part < layers.size(); ++part) {
-                const auto& [layer, crc] = layers[part];
+            for (std::size_t part = 0; part < kept->size(); ++part) {
+                const auto& [layer, crc] = (*kept)[part];
                 const PointArray& hatches = all_hatches[part];
                 const std::string_view bytes = bytes_in(layer.points.span());
-                zip_.append({bytes, bytes.size(), crc});
+                zip_.append({bytes, bytes.size(), crc}, kept, after);
                 for (std::size_t i = 1; i < layer.offsets.size(); ++i)
                     offsets_.push_back(points_ + static_cast<std::int64_t>(layer.offsets[i]));
                 points_ += static_cast<std::int64_t>(layer.points.size());

@@ -99,10 +99,10 @@ Commit OrderedWriter::prepare(const ScanVectors& vectors) {
 
 Commit OrderedWriter::prepare_view(const PlaneView& plane) {
     return [this, write = formatted(plane), losses = losses_of_plane(plane),
-            offset = plane_position(plane.layers)]() mutable {
+            offset = plane_position(plane.layers)](Completions& after) mutable {
         order_.next(offset);
         left_out_.add(losses);
-        write(offset);
+        write(offset, after);
     };
 }
 

@@ -80,8 +80,8 @@ class OrderedWriter : public LayerWriter {
     void add_losses(const WriteLosses& above) final { left_out_.add(above); }
 
   protected:
-    /// Writes a formatted plane; called in order.
-    using Write = std::function<void(const PlanePosition& offset)>;
+    /// Appends a formatted plane to the file, or leaves that to completions. Called in order.
+    using Write = std::function<void(const PlanePosition& offset, Completions& after)>;
 
     OrderedWriter(const LayerFileInfo& info, Holds holds, Ascending ascending = Ascending::z)
         : order_(info, ascending),

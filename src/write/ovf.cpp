@@ -218,7 +218,7 @@ class OvfWriter final : public OrderedWriter {
                                .kept = without_spot,
                                .not_kept = "spot sizes"}),
           box_(info.box), keys_(info.parts), ends_of_blocks_(ends_of_blocks(keys_)),
-          file_(path, Overwriting::yes) {
+          file_(path, Overwriting::yes, info.memory) {
         file_.append(ovf::magic);
         file_.append(bytes_of(std::int64_t{0}));
     }
@@ -235,13 +235,13 @@ class OvfWriter final : public OrderedWriter {
                 writer.put_contour(layer.contour(i), layer.closed(i), ends_of_blocks_[part]);
             writer.put_hatches(plane.hatches_of(part), ends_of_blocks_[part]);
         }
-        return [this, blocks](const PlanePosition& offset) {
+        return [this, blocks](const PlanePosition& offset, Completions& after) {
             if (offset.position == 0) {
                 heights_.add(static_cast<float>(offset.bottom), offset.bottom, "bottom", offset.index);
                 layer_thickness_ = offset.top - offset.bottom;
             }
             heights_.add(static_cast<float>(offset.top), offset.top, "top", offset.index);
-            append_plane(*blocks, offset.top);
+            append_plane(*blocks, offset.top, after);
         };
     }
 
@@ -269,7 +269,7 @@ class OvfWriter final : public OrderedWriter {
     }
 
     /// Writes a plane, preceded by the offset of its table.
-    void append_plane(const Blocks& blocks, double top) {
+    void append_plane(const Blocks& blocks, double top, Completions& after) {
         const std::uint64_t begin = file_.bytes();
         ProtobufMessage shell;
         shell.real(ovf::work_plane::z, top);
@@ -288,7 +288,7 @@ class OvfWriter final : public OrderedWriter {
         table.integers(ovf::table::positions, offsets);
 
         file_.append(bytes_of(table_offset));
-        file_.append(blocks.bytes->view());
+        file_.append(blocks.bytes->view(), blocks.bytes, after);
         assert(file_.bytes() == shell_offset);
         file_.append(shell_bytes);
         assert(file_.bytes() == table_offset);

@@ -12,7 +12,7 @@ namespace lamella::package_3mf {
 
 PackageWriter::PackageWriter(const std::string& path, const LayerFileInfo& info, Holds holds,
                              std::string_view more_types)
-    : OrderedWriter(info, holds), zip_(path) {
+    : OrderedWriter(info, holds), zip_(path, Overwriting::no, info.memory) {
     zip_.add("[Content_Types].xml",
              fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
                          "<Types xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\">"

@@ -6,6 +6,7 @@
 #include "write/ordered_writer.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -13,6 +14,8 @@
 
 namespace lamella {
 
+/// If the path ends with ".gz", the header of the file, each layer header, each layer and the tail are
+/// members of a gzip file.
 class SequentialWriter : public OrderedWriter {
   public:
     [[nodiscard]] std::uint64_t bytes() const noexcept final { return file_ ? file_->bytes() : chunk_bytes_; }
@@ -32,8 +35,10 @@ class SequentialWriter : public OrderedWriter {
   private:
     [[nodiscard]] Write formatted(const PlaneView& plane) final;
     void end_file() final;
+    void append_bytes(std::string_view bytes, std::shared_ptr<const void> owner, Completions& after);
     void append_bytes(std::string_view bytes);
 
+    const bool compressed_;
     std::optional<AtomicFile> file_; ///< unset if chunk_ is set
     const LayerFileChunk* chunk_;    ///< a range of its layers
     std::uint64_t chunk_bytes_ = 0;

@@ -111,18 +111,18 @@ class Sl1Writer final : public OrderedWriter {
           normal_s_(exposure(options.exposure.normal_s, printer.normal_s, "an exposure")),
           first_s_(exposure(options.exposure.first_s, printer.first_s, "a first exposure")),
           fade_layers_(options.exposure.fade_layers), created_(time_text(options.exposure.created_s)),
-          job_(job_name(path)), archive_(path) {}
+          job_(job_name(info.memory == nullptr ? path : "")), archive_(path, Overwriting::no, info.memory) {}
 
     std::uint64_t bytes() const noexcept override { return archive_.bytes(); }
 
   private:
     Write formatted(const PlaneView& plane) override {
         return [this, image = images_.image(plane.layers),
-                seen = relief_.spans(plane.layers)](const PlanePosition& offset) {
+                seen = relief_.spans(plane.layers)](const PlanePosition& offset, Completions& after) {
             relief_.add(seen);
             count(offset, image.covered * display_.pixel_mm2());
             archive_.add_ready(fmt::format("{}{:05}.png", job_, offset.position), ZipMethod::stored,
-                               image.in_zip());
+                               image.in_zip(), image.file, after);
         };
     }
 

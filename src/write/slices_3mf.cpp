@@ -116,9 +116,9 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
             put_slice(layer, grid_, *text);
             chunks->push_back(compressed(text->view()));
         }
-        return [this, chunks](const PlanePosition& position) {
+        return [this, chunks](const PlanePosition& position, Completions& after) {
             heights_.add(in_text(position.top), position.top, "top", position.index);
-            zip().append(chunks->front().in_zip());
+            zip().append(chunks->front().in_zip(), chunks, after);
             for (std::size_t part = 1; part < chunks->size(); ++part) {
                 const package_3mf::Chunk& chunk = (*chunks)[part];
                 later_[part - 1].push_back({store_.size(), chunk.bytes.size(), chunk.size, chunk.crc});

@@ -117,11 +117,11 @@ class Toolpath3mfWriter final : public package_3mf::PackageWriter {
         put_layer(plane, *text);
         auto chunk = std::make_shared<package_3mf::Chunk>(compressed(text->view()));
         chunk->bytes += deflate_end;
-        return [this, chunk](const PlanePosition& offset) {
+        return [this, chunk](const PlanePosition& offset, Completions& after) {
             const std::int64_t height = whole_height(offset.top);
             heights_.add(static_cast<double>(height), offset.top, "top", offset.index);
             const std::string name = fmt::format("Toolpath/Layers/layer{:05}.xml", offset.position + 1);
-            zip().add_ready(name, ZipMethod::deflated, chunk->in_zip());
+            zip().add_ready(name, ZipMethod::deflated, chunk->in_zip(), chunk, after);
             content_ += fmt::format(" {:08x}", chunk->crc);
             layers_ += fmt::format("<tp:toolpathlayer ztop=\"{}\" path=\"/{}\"/>\n", height, name);
             relations_ += fmt::format("<Relationship Id=\"layer{}\" Target=\"/{}\" Type=\"{}\"/>\n",

@@ -45,6 +45,28 @@ TEST(LayerFormat, ListsWhatThereIsWhenItIsUnknown) {
     EXPECT_NE(error("", "a.step").find("a.step"), std::string::npos);
 }
 
+TEST(LayerWriter, WritesToMemoryWhatItWritesToFiles) {
+    const LayerStack layers = square_with_hole();
+    for (const LayerFormat& format : layer_formats()) {
+        const TemporaryFolder folder;
+        LayerFileInfo info = info_of(layers);
+        std::string memory = "before";
+        if (format.directory) {
+            info.memory = &memory;
+            const auto open = [&] {
+                (void)open_layer_writer("name", format, info, options_for_any());
+            };
+            EXPECT_NE(error_of(ErrorKind::usage, open).find("a folder"), std::string::npos);
+            continue;
+        }
+        write_layers(folder.file("layers"), format, layers, info, options_for_any());
+        info.memory = &memory;
+        write_layers(folder.file("missing/name"), format, layers, info, options_for_any());
+        EXPECT_TRUE(memory == file_bytes(folder.file("layers"))) << format.name;
+        EXPECT_EQ(folder.entries().size(), 1U);
+    }
+}
+
 /// Notes what it is given to write.
 class NotingWriter final : public LayerWriter {
   public:

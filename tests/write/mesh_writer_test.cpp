@@ -203,6 +203,27 @@ TEST(WriteObj, HasNoNameThatGoesOnToTheNextLine) {
     EXPECT_NE(file_bytes(folder.file("out.obj")).find("\no C:/parts/\nv 0 0 0\n"), std::string::npos);
 }
 
+TEST(MeshWriter, WritesToMemoryWhatItWritesToFiles) {
+    const TemporaryFolder folder;
+    const Mesh box{make_box(1, 2, 3)};
+    const Mesh moved =
+        box.transformed({.linear = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, .offset = {0.1, 0, 0}});
+    for (const Mesh& mesh : {box, moved}) {
+        std::string memory;
+        EXPECT_TRUE(write_stl("name", mesh, false, &memory).empty());
+        write_stl(folder.file("a.stl"), mesh);
+        EXPECT_TRUE(memory == file_bytes(folder.file("a.stl")));
+    }
+    std::string ply;
+    std::string obj;
+    const IndexedMesh indexed = weld(box);
+    write_ply("name", indexed, &ply);
+    write_obj("name", indexed, "box", &obj);
+    write_ply(folder.file("a.ply"), indexed);
+    write_obj(folder.file("a.obj"), indexed, "box");
+    EXPECT_TRUE(ply == file_bytes(folder.file("a.ply")) && obj == file_bytes(folder.file("a.obj")));
+}
+
 TEST(MeshWriter, WritesPieceByPieceWhatItWritesAtOnce) {
     const TemporaryFolder folder;
     const TriangleSoup box = make_box(1, 2, 3);

@@ -1,6 +1,8 @@
 #include "lamella/core/error.hpp"
 
+#include "container/gzip.hpp"
 #include "sample_layers.hpp"
+#include "system/byte_source.hpp"
 #include "temporary_folder.hpp"
 #include "write/sequential_writer.hpp"
 
@@ -8,7 +10,10 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,10 +48,23 @@ TEST(SequentialWriter, WritesHeaderLayersAndTailInOrder) {
         prepared[i] = writer.prepare({&layers[i], 1});
     for (const auto& write : prepared)
         write();
-    EXPECT_EQ(folder.entries(), std::vector<std::string>{}) << "no name before the end";
+    EXPECT_FALSE(std::filesystem::exists(folder.file("x"))) << "no name before the end";
     writer.finish();
     EXPECT_EQ(file_bytes(folder.file("x")), expected);
     EXPECT_EQ(writer.bytes(), expected.size());
+}
+
+TEST(SequentialWriter, CompressesEachLayerIfTheNameAsksForIt) {
+    const TemporaryFolder folder;
+    Sample writer(folder.file("x.gz"), info_of(layers));
+    for (const Layer& layer : layers)
+        writer.prepare({&layer, 1})();
+    writer.finish();
+    const std::string bytes = file_bytes(folder.file("x.gz"));
+    EXPECT_EQ(writer.bytes(), bytes.size());
+    const ByteSource plain =
+        unpacked(copy_bytes(std::as_bytes(std::span(bytes.data(), bytes.size())), "x.gz"), 0);
+    EXPECT_EQ(std::string(plain.text()), expected);
 }
 
 TEST(SequentialWriter, WritesChunksThatMakeUpTheFile) {
@@ -59,7 +77,7 @@ TEST(SequentialWriter, WritesChunksThatMakeUpTheFile) {
                 LayerFileChunk chunk;
                 chunk.before = begin;
                 chunk.layers = end - begin;
-                chunk.put = [&](std::string_view some) {
+                chunk.put = [&](std::string_view some, const std::shared_ptr<const void>&, Completions&) {
                     bytes += some;
                 };
                 LayerFileInfo info = info_of(layers);

@@ -34,8 +34,9 @@ struct PartInfo {
 };
 
 /// Returns the box of the contours and hatch lines of a part, from the bottom of its first layer to the top
-/// of its last. It is empty if there are none. O(points).
-[[nodiscard]] Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches = {}) noexcept;
+/// of its last. It is empty if there are none. O(points), parallel. Throws Error{cancelled}.
+[[nodiscard]] Box3 part_box(std::span<const Layer> layers, std::span<const PointArray> hatches = {},
+                            const Execution& execution = {.threads = 1});
 
 /// Counts of the content of a range of layers that the format of a file cannot hold. LayerWriter::warnings is
 /// derived from them. All members are numbers, so that processes can send them to one another.
@@ -87,8 +88,9 @@ struct WriteLosses {
 struct LayerFileChunk {
     std::uint64_t before = 0; ///< number of layers of the file below this range
     std::uint64_t layers = 0; ///< number of layers of this range
-    /// Takes the bytes of the range, in order.
-    std::function<void(std::string_view)> put;
+    /// Takes the bytes of the range, in order. If they have an owner, which keeps them alive, it may add work
+    /// on them to the completions; otherwise it must copy them.
+    std::function<void(std::string_view, std::shared_ptr<const void> owner, Completions& after)> put;
 };
 
 /// Content of the header of a slice file, known before the first layer.
@@ -102,6 +104,9 @@ struct LayerFileInfo {
     /// If set, only this range is written, to LayerFileChunk::put instead of a file. It must outlive the
     /// writer.
     const LayerFileChunk* chunk = nullptr;
+    /// If set, the bytes of the file replace the content of this string, and no file is made. The path is
+    /// then only a name for errors. It must outlive the writer.
+    std::string* memory = nullptr;
     /// True if all layers are known to pass `check`, as those of `slice` do. The writer then does not check
     /// every point.
     bool known_finite = false;
@@ -156,7 +161,7 @@ struct LayerFormat {
     /// Extension of file names that a program generates; differs from `extension` for some formats.
     std::string_view file_extension = extension;
     bool directory = false;    ///< writes one file per layer into a directory
-    bool chunks = false;       ///< ranges of layers can be written separately
+    bool chunks = false;       ///< ranges of layers can be written separately, and compressed with gzip
     bool joins = false;        ///< files of consecutive layers can be merged without reading the layers
     bool one_way = false;      ///< layers cannot be read back
     bool filled_parts = false; ///< files list only parts that are not empty

@@ -23,14 +23,16 @@ void write_stl(const std::string& path, const TriangleSoup& soup);
 
 /// Writes a mesh, indexed or not, as a binary STL file. Returns a warning with the number of triangles that
 /// lose their area by rounding. With `strict`, throws Error{defect} instead of a warning, and writes no file.
-/// O(triangles).
-std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bool strict = false);
+/// If `memory` is not null, the bytes replace its content, and no file is made; the path is then only a name
+/// for errors. O(triangles).
+std::vector<std::string> write_stl(const std::string& path, const Mesh& mesh, bool strict = false,
+                                   std::string* memory = nullptr);
 
 /// Writes a binary STL file like write_stl, but in chunks, for meshes that are larger than memory.
 class StlWriter {
   public:
-    /// Begins a file of `triangles` triangles. Throws the errors of write_stl.
-    StlWriter(const std::string& path, std::uint64_t triangles);
+    /// Begins a file of `triangles` triangles. Throws the errors of write_stl. `memory` as for write_stl.
+    StlWriter(const std::string& path, std::uint64_t triangles, std::string* memory = nullptr);
     ~StlWriter();
     StlWriter(const StlWriter&) = delete;
     StlWriter& operator=(const StlWriter&) = delete;
@@ -51,13 +53,14 @@ class StlWriter {
 void write_stl_ascii(const std::string& path, const TriangleSoup& soup, const std::string& name);
 
 /// Writes a binary little-endian PLY file with the unchanged vertices and triangles. Coordinates have single
-/// precision if it represents all of them exactly, and double precision otherwise. Atomicity, "-" and errors
-/// as for write_stl.
-void write_ply(const std::string& path, const IndexedMesh& mesh);
+/// precision if it represents all of them exactly, and double precision otherwise. Atomicity, "-", `memory`
+/// and errors as for write_stl.
+void write_ply(const std::string& path, const IndexedMesh& mesh, std::string* memory = nullptr);
 
 /// Writes an OBJ file with the unchanged vertices and triangles. Its numbers are the shortest ones that read
-/// back to the same coordinates. Atomicity, "-" and errors as for write_stl.
-void write_obj(const std::string& path, const IndexedMesh& mesh, const std::string& name);
+/// back to the same coordinates. Atomicity, "-", `memory` and errors as for write_stl.
+void write_obj(const std::string& path, const IndexedMesh& mesh, const std::string& name,
+               std::string* memory = nullptr);
 
 } // namespace lamella
 LAMELLA_API_END
