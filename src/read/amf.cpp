@@ -72,7 +72,7 @@ class AmfReader {
         if (count > 1)
             remarks_.add(fmt::format("the archive holds {} AMF files; took the first, '{}'", count,
                                      printable(found->name, longest_quote)));
-        return unpacked_entry(zip, *found, limits_);
+        return unpacked_entry(zip, *found, limits_, &executor_);
     }
 
     void read_document() {
@@ -115,7 +115,8 @@ class AmfReader {
     }
 
     AmfDocument parsed(bool skim, const std::function<void(std::size_t)>& progress) {
-        return read_amf_document(source_.text(), source_.name, skim, limits_, progress);
+        return read_amf_document(source_.text(), source_.name, skim ? &executor_ : nullptr, limits_,
+                                 progress);
     }
 
     /// Makes a node of each object and each constellation.

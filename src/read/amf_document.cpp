@@ -114,8 +114,8 @@ struct AmfElement {
 
 class AmfDocumentReader final : MeshDocumentReader<AmfDocument, AmfTag> {
   public:
-    AmfDocumentReader(const std::string& name, bool skim, ReadLimits& limits)
-        : MeshDocumentReader(name, "", skim, limits), skim_(skim) {}
+    AmfDocumentReader(const std::string& name, Executor* skim, ReadLimits& limits)
+        : MeshDocumentReader(name, "", skim, limits), skim_(skim != nullptr) {}
 
     AmfDocument read(std::string_view text, const std::function<void(std::size_t)>& progress) {
         XmlHandlers handlers;
@@ -372,7 +372,7 @@ const MeshTextForm& amf_text_form() noexcept {
     return text_form;
 }
 
-AmfDocument read_amf_document(std::string_view document, const std::string& name, bool skim,
+AmfDocument read_amf_document(std::string_view document, const std::string& name, Executor* skim,
                               ReadLimits& limits, const std::function<void(std::size_t)>& progress) {
     return AmfDocumentReader(name, skim, limits).read(document, progress);
 }

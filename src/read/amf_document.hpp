@@ -59,12 +59,13 @@ struct AmfDocument {
     Occurrences bent; ///< curved edges and normals
 };
 
-/// Reads a document, whose name in errors is `name`. If `skim` is true, vertices and triangles in plain
-/// sequences are left unread in `text`; others are then Error{input}. Throws Error{input} with the line if
+/// Reads a document, whose name in errors is `name`. If `skim` is not null, vertices and
+/// triangles in plain sequences are left unread in `text`, and its threads find the ends of the sequences;
+/// other elements are then Error{input}. Throws Error{input} with the line if
 /// the document is not AMF, and Error{limit} as soon as a limit is exceeded. The result remains counted in
 /// the limits.
-[[nodiscard]] AmfDocument read_amf_document(std::string_view document, const std::string& name, bool skim,
-                                            ReadLimits& limits,
+[[nodiscard]] AmfDocument read_amf_document(std::string_view document, const std::string& name,
+                                            Executor* skim, ReadLimits& limits,
                                             const std::function<void(std::size_t)>& progress);
 
 /// Returns the form in which AMF documents write meshes.

@@ -46,8 +46,12 @@ std::variant<MeshFile, LayerFile> read_unpacked(const ByteSource& source, const 
             return *std::move(meshes);
         }
     try {
-        return read_unpacked_layers(readable, {.max_memory = options.max_memory, .held = options.held},
-                                    execution);
+        return read_unpacked_layers(
+            readable,
+            {.max_memory = options.max_memory,
+             .held = options.held,
+             .layers = options.stream_layers ? LayersKept::if_faster : LayersKept::all},
+            execution);
     } catch (const NoLayers&) {
         // The package contains meshes only. If its layers are damaged its meshes are not read, because they
         // may only represent the layers.

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
+#include "core/executor.hpp"
 #include "read/common_layer_geometry.hpp"
 #include "read/common_layer_header.hpp"
 #include "read/layer_readers.hpp"
@@ -11,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -26,13 +28,8 @@ std::vector<VectorKind> kinds_held(std::span<const RawLayer> layers, std::size_t
     std::vector<bool> contours(parts);
     std::vector<bool> hatches(parts);
     for (const RawLayer& layer : layers) {
-        for (const RawLayer::Contour& contour : layer.ends)
-            contours[contour.part] = true;
-        std::size_t begin = 0;
-        for (const RawLayer::Hatches& lines : layer.hatch_ends) {
-            hatches[lines.part] = hatches[lines.part] || lines.end != begin;
-            begin = lines.end;
-        }
+        for (const RawLayer::Run& run : layer.runs())
+            (run.kind == RawLayer::Run::Kind::hatch ? hatches : contours)[run.part] = true;
     }
     std::vector<VectorKind> kinds;
     for (std::size_t i = 0; i < parts; ++i)
@@ -83,16 +80,19 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
                                              const ExposureOfPart& exposure_of, ReadLimits& limits,
                                              const Execution& execution) {
     const CommonLayerHeader header = read_common_layer_header(bytes, name, limits);
+    if (!header.binary)
+        limits.keep_text_in_memory(bytes.size());
     CommonLayerContent content{
         .file = {.path = name, .format = header.binary ? "cli" : "cli-ascii", .units_mm = header.units_mm},
         .layers = {},
         .bytes = bytes.size()};
     LayerFile& file = content.file;
-    CommonLayerGeometry geometry(header, name, limits);
-    if (header.binary)
-        read_binary_geometry(bytes, name, header, execution, geometry);
-    else
-        read_ascii_geometry(bytes, name, header, execution, geometry);
+    Executor executor(execution);
+    ProgressMeter progress(execution, Stage::read, bytes.size());
+    CommonLayerGeometry geometry = header.binary
+                                       ? read_binary_geometry(bytes, name, header, limits, executor, progress)
+                                       : read_ascii_geometry(bytes, name, header, limits, executor, progress);
+    progress.finish();
     const std::uint64_t found = geometry.layers().size();
     if (found == 0)
         throw Error(ErrorKind::input,
@@ -106,6 +106,17 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
     geometry.append_to(file.warnings);
     const std::vector<CommonLayerPart> parts = geometry.number_parts(header, file);
     content.layers = std::move(geometry.layers());
+    if (!limits.in_memory())
+        content.parse = [bytes, &name, header, beams = std::move(geometry.beams()),
+                         parts](std::size_t begin, ReadLimits& counted) {
+            const auto later =
+                std::upper_bound(beams.begin(), beams.end(), begin,
+                                 [](std::size_t at, const LayerBeam& beam) { return at < beam.begin; });
+            return CommonLayerGeometry::layer_again(
+                header.binary ? read_binary_layer(bytes, name, header, begin, counted)
+                              : read_ascii_layer(bytes, name, header, begin, counted),
+                header, later == beams.begin() ? BeamSettings{} : std::prev(later)->beam, parts);
+        };
     const std::vector<VectorKind> held = kinds_held(content.layers, parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i)
         expose(file.parts[i], parts[i], exposure_of(file.parts[i].label, held[i]));
@@ -141,7 +152,8 @@ std::vector<double> bottoms_of(std::span<const CommonLayerContent> files, double
     return heights;
 }
 
-LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms, ReadLimits& limits) {
+LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms, ReadLimits& limits,
+                    const Execution& execution) {
     LayerFile& file = content.file;
     std::span<RawLayer> layers(content.layers);
     const std::size_t n = layers.size();
@@ -167,7 +179,8 @@ LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms,
         bottom -= n > 1 ? layers[1].z - first : std::max(0.0, first - content.lowest);
     }
     check_part_planes(file, layers.size(), content.bytes);
-    add_layers_by_tops(file, layers, bottom, limits);
+    Executor executor(execution);
+    add_layers_by_tops(file, layers, bottom, limits, executor, std::move(content.parse));
     return std::move(file);
 }
 
@@ -177,7 +190,7 @@ LayerFile read_common_layer(std::string_view bytes, const std::string& name, Rea
         bytes, name, [](std::string_view label, VectorKind) { return labelled_exposure(label); }, limits,
         execution);
     const std::vector<double> bottoms = bottoms_of({&content, 1}, 0, limits);
-    return layers_of(std::move(content), bottoms, limits);
+    return layers_of(std::move(content), bottoms, limits, execution);
 }
 
 } // namespace lamella

@@ -21,6 +21,7 @@ namespace lamella {
 struct CommonLayerContent {
     LayerFile file;               ///< its parts have no layers yet
     std::vector<RawLayer> layers; ///< ascending, at least one
+    ParseLayer parse = {};        ///< set unless layers are kept in memory
     std::uint64_t bytes = 0;
     double lowest = 0;      ///< height of the bottom of the part
     bool on_bottom = false; ///< the first layer is at `lowest` and has contours
@@ -43,6 +44,6 @@ using ExposureOfPart = std::function<std::optional<Exposure>(std::string_view la
 /// Makes the layers; `bottoms` is the result of bottoms_of. If it is empty, a layer without contours at the
 /// beginning specifies the bottom of the layer after it.
 [[nodiscard]] LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms,
-                                  ReadLimits& limits);
+                                  ReadLimits& limits, const Execution& execution);
 
 } // namespace lamella

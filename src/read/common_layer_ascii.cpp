@@ -2,6 +2,7 @@
 #include "core/executor.hpp"
 #include "read/common_layer_geometry.hpp"
 #include "read/common_layer_text.hpp"
+#include "read/layer_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -9,6 +10,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -41,21 +43,20 @@ CommonLayerDirection take_direction(CommonLayerText& text) {
     return *known;
 }
 
-} // namespace
+struct AsciiPiece {
+    CommonLayerGeometry geometry;
+    std::size_t end = 0;
+};
 
-void read_ascii_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
-                         const Execution& execution, CommonLayerGeometry& geometry) {
-    CommonLayerText text(bytes, header.end, name);
-    text.skip_blanks();
-    if (!text.take("$$GEOMETRYSTART"))
-        text.fail(text.done() ? "the end of the file"
-                              : fmt::format("'{}'", printable(text.rest().substr(0, 20), 40)),
-                  "$$GEOMETRYSTART must follow the header");
-    Executor executor(execution);
-    ProgressMeter progress(execution, Stage::read, bytes.size());
-    std::size_t reported = 0;
-    std::size_t layer_at = 0; // offset of the last layer
-    std::uint64_t layer_line = 1;
+/// Reads commands from `begin`, on line `line`, up to the first layer at or after `limit`.
+AsciiPiece read_piece(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
+                      std::size_t begin, std::size_t limit, std::uint64_t line, ReadLimits& limits,
+                      const Executor& executor, ProgressMeter& progress) {
+    CommonLayerGeometry geometry(header, name, limits);
+    CommonLayerText text(bytes, begin, name);
+    std::size_t reported = begin;
+    std::size_t layer_at = begin; // offset of the last layer
+    std::uint64_t layer_line = line;
     const auto line_of_command = [&](std::size_t command_at) {
         return layer_line + line_at(bytes.substr(layer_at), command_at - layer_at) - 1;
     };
@@ -66,6 +67,7 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
         progress.add(text.at() - reported);
         reported = text.at();
     };
+    std::size_t end = bytes.size();
     for (;;) {
         text.skip_blanks();
         if (text.done())
@@ -79,11 +81,15 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
         if (command == "GEOMETRYEND")
             break;
         if (command == "LAYER") {
+            if (command_at >= limit) {
+                end = command_at;
+                break;
+            }
             text.expect('/', "the layer's height");
             const double z = text.number("the layer's height");
             layer_line = line_of_command(command_at);
             layer_at = command_at;
-            geometry.start_layer(z, fmt::format("line {}", layer_line));
+            geometry.start_layer(command_at, z, fmt::format("line {}", layer_line));
         } else if (command == "POLYLINE" || command == "HATCHES") {
             if (!geometry.in_layer())
                 text.fail(fmt::format("$${} before the first $$LAYER", command),
@@ -135,7 +141,40 @@ void read_ascii_geometry(std::string_view bytes, const std::string& name, const 
             text.skip_to_command();
         }
     }
-    progress.finish();
+    progress.add(end - reported);
+    geometry.end_piece();
+    return {std::move(geometry), end};
+}
+
+} // namespace
+
+CommonLayerGeometry read_ascii_geometry(std::string_view bytes, const std::string& name,
+                                        const CommonLayerHeader& header, ReadLimits& limits,
+                                        Executor& executor, ProgressMeter& progress) {
+    CommonLayerText text(bytes, header.end, name);
+    text.skip_blanks();
+    if (!text.take("$$GEOMETRYSTART"))
+        text.fail(text.done() ? "the end of the file"
+                              : fmt::format("'{}'", printable(text.rest().substr(0, 20), 40)),
+                  "$$GEOMETRYSTART must follow the header");
+    const TextPieces pieces = find_text_pieces(bytes, text.at(), "$$LAYER", executor);
+    CommonLayerGeometry geometry(header, name, limits, {});
+    read_pieces(
+        pieces.begins(), bytes.size(), executor,
+        [&](std::size_t from, std::size_t limit) {
+            return read_piece(bytes, name, header, from, limit, pieces.line(from), limits, executor,
+                              progress);
+        },
+        [&](AsciiPiece&& piece) { geometry.append(std::move(piece.geometry)); });
+    return geometry;
+}
+
+CommonLayerGeometry read_ascii_layer(std::string_view bytes, const std::string& name,
+                                     const CommonLayerHeader& header, std::size_t begin, ReadLimits& limits) {
+    const Execution silent{.threads = 1};
+    const Executor executor(silent);
+    ProgressMeter progress(silent, Stage::read, bytes.size());
+    return read_piece(bytes, name, header, begin, begin + 1, 1, limits, executor, progress).geometry;
 }
 
 } // namespace lamella

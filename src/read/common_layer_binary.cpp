@@ -3,6 +3,7 @@
 #include "container/common_layer_format.hpp"
 #include "core/executor.hpp"
 #include "read/common_layer_geometry.hpp"
+#include "read/layer_pieces.hpp"
 
 #include <fmt/format.h>
 
@@ -13,6 +14,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -70,20 +73,38 @@ class Bytes {
     const std::string& name_;
 };
 
-} // namespace
+bool is_layer(std::string_view bytes) {
+    std::uint16_t command = 0;
+    std::memcpy(&command, bytes.data(), std::min(bytes.size(), sizeof command));
+    return command == static_cast<std::uint16_t>(CommonLayerCommand::layer_long) ||
+           command == static_cast<std::uint16_t>(CommonLayerCommand::layer_short);
+}
 
-void read_binary_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
-                          const Execution& execution, CommonLayerGeometry& geometry) {
-    std::size_t begin = header.aligned ? (header.end + 3) / 4 * 4 : header.end;
-    // Some writers end the header with a line end, with which no command begins.
-    if (!header.aligned) {
-        const std::string_view rest = bytes.substr(begin);
-        if (rest.starts_with("\r\n"))
-            begin += 2;
-        else if (rest.starts_with("\n"))
-            begin += 1;
+struct BinaryPiece {
+    CommonLayerGeometry geometry;
+    std::size_t end = 0;
+};
+
+/// Returns where pieces begin, which is at a layer. Ends at the first command that is not sound.
+PieceBegins pieces_of(std::string_view bytes, std::size_t begin, bool aligned) {
+    PieceBegins begins{begin};
+    for (std::size_t at = begin; at < bytes.size();) {
+        const std::optional<std::uint64_t> size = common_layer_command_size(bytes.substr(at), aligned);
+        if (!size)
+            break;
+        if (is_layer(bytes.substr(at)))
+            add_piece(begins, at);
+        at += *size;
     }
-    Bytes in(bytes, std::min(begin, bytes.size()), header.aligned, name);
+    return begins;
+}
+
+/// Reads commands from `begin` up to the first layer at or after `limit`.
+BinaryPiece read_piece(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
+                       std::size_t begin, std::size_t limit, ReadLimits& limits, const Executor& executor,
+                       ProgressMeter& progress) {
+    CommonLayerGeometry geometry(header, name, limits);
+    Bytes in(bytes, begin, header.aligned, name);
     // The standard specifies unsigned 16-bit numbers, but some exports have signed ones. Only the box in the
     // header distinguishes the two: if it has no negative coordinate, they are unsigned.
     const auto reaches_below = [&](std::size_t axis) {
@@ -99,9 +120,7 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
         std::memcpy(&bits, from, sizeof bits);
         return number(bits, signed_points);
     };
-    Executor executor(execution);
-    ProgressMeter progress(execution, Stage::read, bytes.size());
-    std::size_t reported = 0;
+    std::size_t reported = begin;
     const auto report_progress = [&](std::size_t at) {
         if (at <= reported + (1U << 22))
             return;
@@ -111,6 +130,8 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
     };
     while (in.left() > 0 && !in.only_padding_left()) {
         const std::size_t at = in.at();
+        if (at >= limit && is_layer(bytes.substr(at)))
+            break;
         report_progress(at);
         const auto command = static_cast<CommonLayerCommand>(in.take<std::uint16_t>("a command"));
         const auto offset = at_byte(at);
@@ -119,11 +140,11 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
             const auto height = in.take<float>("a layer");
             if (!std::isfinite(height))
                 in.fail(at, "a height that is not finite", "it must be a number");
-            geometry.start_layer(static_cast<double>(height), offset());
+            geometry.start_layer(at, static_cast<double>(height), offset());
             break;
         }
         case CommonLayerCommand::layer_short:
-            geometry.start_layer(number(in.take<std::uint16_t>("a layer"), signed_heights), offset());
+            geometry.start_layer(at, number(in.take<std::uint16_t>("a layer"), signed_heights), offset());
             break;
         case CommonLayerCommand::polyline_short:
         case CommonLayerCommand::polyline_long:
@@ -174,7 +195,43 @@ void read_binary_geometry(std::string_view bytes, const std::string& name, const
                     "the commands are 127 to 132: layers, polylines and hatches");
         }
     }
-    progress.finish();
+    progress.add(in.at() - reported);
+    geometry.end_piece();
+    return {std::move(geometry), in.at()};
+}
+
+} // namespace
+
+CommonLayerGeometry read_binary_geometry(std::string_view bytes, const std::string& name,
+                                         const CommonLayerHeader& header, ReadLimits& limits,
+                                         Executor& executor, ProgressMeter& progress) {
+    std::size_t begin = header.aligned ? (header.end + 3) / 4 * 4 : header.end;
+    // Some writers end the header with a line end, with which no command begins.
+    if (!header.aligned) {
+        const std::string_view rest = bytes.substr(begin);
+        if (rest.starts_with("\r\n"))
+            begin += 2;
+        else if (rest.starts_with("\n"))
+            begin += 1;
+    }
+    begin = std::min(begin, bytes.size());
+    CommonLayerGeometry geometry(header, name, limits, {});
+    read_pieces(
+        pieces_of(bytes, begin, header.aligned), bytes.size(), executor,
+        [&](std::size_t from, std::size_t limit) {
+            return read_piece(bytes, name, header, from, limit, limits, executor, progress);
+        },
+        [&](BinaryPiece&& piece) { geometry.append(std::move(piece.geometry)); });
+    return geometry;
+}
+
+CommonLayerGeometry read_binary_layer(std::string_view bytes, const std::string& name,
+                                      const CommonLayerHeader& header, std::size_t begin,
+                                      ReadLimits& limits) {
+    const Execution silent{.threads = 1};
+    const Executor executor(silent);
+    ProgressMeter progress(silent, Stage::read, bytes.size());
+    return read_piece(bytes, name, header, begin, begin + 1, limits, executor, progress).geometry;
 }
 
 } // namespace lamella

@@ -6,11 +6,11 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
-#include "lamella/core/execution.hpp"
 #include "lamella/core/printable.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "container/common_layer_format.hpp"
+#include "core/executor.hpp"
 #include "core/farthest.hpp"
 #include "read/common_layer_header.hpp"
 #include "read/layer_assembly.hpp"
@@ -23,6 +23,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -49,9 +50,15 @@ inline constexpr const char* common_layer_directions =
 class Decimals {
   public:
     void note(double number) noexcept {
-        while (locations_ < steps.size() - 1 && !is_whole(number / steps[locations_]))
-            ++locations_;
+        if (locations_ == steps.size() - 1 || is_whole(number / steps[locations_]))
+            return;
+        std::size_t needed = 0;
+        while (needed < steps.size() - 1 && !is_whole(number / steps[needed]))
+            ++needed;
+        locations_ = std::max(locations_, needed);
     }
+    /// Adds the numbers of another piece of the file.
+    void add(const Decimals& other) noexcept { locations_ = std::max(locations_, other.locations_); }
     /// Returns the unit of the last decimal: 1, 0.1 and so on; 0 if there are more decimals than supported.
     [[nodiscard]] double step() const noexcept { return steps[locations_]; }
 
@@ -74,6 +81,18 @@ struct BeamSettings {
     std::optional<double> speed_mm_s;
     std::optional<double> focus_mm;
 
+    /// Stands for a setting that is made before a piece of the file begins.
+    static constexpr double inherited = -std::numeric_limits<double>::infinity();
+    static constexpr BeamSettings all_inherited() noexcept { return {inherited, inherited, inherited}; }
+    /// Returns these settings if those before the piece are `before`.
+    [[nodiscard]] BeamSettings after(const BeamSettings& before) const noexcept {
+        const auto of = [](const std::optional<double>& own, const std::optional<double>& other) {
+            return own == inherited ? other : own;
+        };
+        return {of(power_w, before.power_w), of(speed_mm_s, before.speed_mm_s),
+                of(focus_mm, before.focus_mm)};
+    }
+
     [[nodiscard]] bool any() const noexcept { return power_w || speed_mm_s || focus_mm; }
     friend bool operator==(const BeamSettings&, const BeamSettings&) = default;
     friend bool operator<(const BeamSettings& a, const BeamSettings& b) noexcept {
@@ -94,11 +113,40 @@ struct CommonLayerPart {
     }
 };
 
-/// Collects the contents of the geometry section, in either coding.
+/// The settings before a layer.
+struct LayerBeam {
+    std::size_t begin = 0; ///< offset of the layer
+    BeamSettings beam = {};
+};
+
+/// Collects the contents of a piece of the geometry section, in either coding.
 class CommonLayerGeometry {
   public:
-    CommonLayerGeometry(const CommonLayerHeader& header, const std::string& name, ReadLimits& limits)
-        : units_(header.units_mm), name_(name), limits_(limits), parts_(limits) {}
+    /// `beam` are the settings before the piece.
+    CommonLayerGeometry(const CommonLayerHeader& header, const std::string& name, ReadLimits& limits,
+                        const BeamSettings& beam = BeamSettings::all_inherited())
+        : units_(header.units_mm), name_(name), limits_(limits), beam_(beam), parts_(limits) {}
+
+    /// Appends the contents of the next piece.
+    void append(CommonLayerGeometry&& piece) {
+        parts_.add(
+            piece.parts_, piece.layers_,
+            [&](const CommonLayerPart& part) {
+                const BeamSettings beam = part.beam.after(beam_);
+                return CommonLayerPart{part.number, beam, beam.any() ? part.kind : VectorKind::contour};
+            },
+            [] { return std::string_view("the geometry"); });
+        for (const auto& [begin, beam] : piece.beams_)
+            note_beam(begin, beam.after(beam_));
+        beam_ = piece.beam_.after(beam_);
+        append_layers(layers_, std::move(piece.layers_), limits_);
+        decimals_.add(piece.decimals_);
+        unclosed_.add(piece.unclosed_);
+        returning_.add(piece.returning_);
+        turned_.add(piece.turned_);
+        dropped_.add(piece.dropped_);
+        unknown_.add(piece.unknown_);
+    }
 
     /// Takes a non-standard command, with its number if it has one. Commands that set the exposure apply to
     /// the vectors that follow; others are skipped and counted.
@@ -118,13 +166,18 @@ class CommonLayerGeometry {
         *setting = *number + 0.0;
     }
 
-    void start_layer(double units, std::string location) {
+    /// `begin` is the offset of the layer in the file.
+    void start_layer(std::size_t begin, double units, std::string location) {
+        note_beam(begin, beam_);
         const double z = in_mm(units, location);
         limits_.make_room(layers_, 1, [&] { return std::string_view(location); });
         layers_.emplace_back();
         layers_.back().z = z;
         layers_.back().location = std::move(location);
+        layers_.back().begin = begin;
     }
+    /// Ends a piece.
+    void end_piece() { drop_contents(layers_, limits_); }
     [[nodiscard]] bool in_layer() const { return !layers_.empty(); }
     /// Reserves memory for ends of hatch lines, or for points of a polyline, and returns the list to which
     /// they must be added.
@@ -198,6 +251,21 @@ class CommonLayerGeometry {
     }
 
     [[nodiscard]] std::vector<RawLayer>& layers() { return layers_; }
+    /// Returns the settings before layers, with the offset of the first layer that each applies to. Not
+    /// listed are those before which there is no setting.
+    [[nodiscard]] std::vector<LayerBeam>& beams() { return beams_; }
+
+    /// Returns the only layer of a piece that is read again, with indices of these parts, which are those of
+    /// the file. `beam` are the settings before the piece.
+    [[nodiscard]] static RawLayer layer_again(CommonLayerGeometry&& piece, const CommonLayerHeader& header,
+                                              const BeamSettings& beam,
+                                              const std::vector<CommonLayerPart>& parts) {
+        CommonLayerGeometry whole(header, piece.name_, piece.limits_, beam);
+        whole.append(std::move(piece));
+        RawLayer layer = only_layer(std::move(whole.layers_));
+        whole.parts_.put(layer, parts);
+        return layer;
+    }
 
     /// Returns the rounding of the coordinates. Not all files use whole units; numbers of single precision
     /// that are not whole have many meaningless decimals.
@@ -215,9 +283,15 @@ class CommonLayerGeometry {
     }
 
   private:
+    void note_beam(std::size_t begin, const BeamSettings& beam) {
+        if (limits_.in_memory() || beam == (beams_.empty() ? BeamSettings{} : beams_.back().beam))
+            return;
+        limits_.make_room(beams_, 1, at_byte(begin));
+        beams_.push_back({begin, beam});
+    }
     template <class Location>
     std::uint32_t number_of(std::int64_t part, VectorKind kind, const Location& location) {
-        return parts_.number_of({part, beam_, beam_.any() ? kind : VectorKind::contour}, location);
+        return parts_.number_of({part, beam_, kind}, location);
     }
     [[nodiscard]] double in_mm(double units, const std::string& location) const {
         const double mm = units * units_;
@@ -232,9 +306,10 @@ class CommonLayerGeometry {
     double units_;
     const std::string& name_;
     ReadLimits& limits_;
+    BeamSettings beam_; ///< of the vectors that follow
+    std::vector<LayerBeam> beams_;
     std::vector<RawLayer> layers_;
     Decimals decimals_;
-    BeamSettings beam_; ///< of the vectors that follow
     PartNumbers<CommonLayerPart> parts_;
     UnclosedContours unclosed_;
     ReturningChains returning_;
@@ -248,11 +323,23 @@ class CommonLayerGeometry {
 
 /// Reads the geometry after the header of an ASCII file. Throws Error{input} with the line, Error{limit},
 /// Error{cancelled}.
-void read_ascii_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
-                         const Execution& execution, CommonLayerGeometry& geometry);
+[[nodiscard]] CommonLayerGeometry read_ascii_geometry(std::string_view bytes, const std::string& name,
+                                                      const CommonLayerHeader& header, ReadLimits& limits,
+                                                      Executor& executor, ProgressMeter& progress);
+
+/// Reads a single layer of such a file again, which begins at this offset.
+[[nodiscard]] CommonLayerGeometry read_ascii_layer(std::string_view bytes, const std::string& name,
+                                                   const CommonLayerHeader& header, std::size_t begin,
+                                                   ReadLimits& limits);
 
 /// Reads the geometry of a binary file; errors state the offset.
-void read_binary_geometry(std::string_view bytes, const std::string& name, const CommonLayerHeader& header,
-                          const Execution& execution, CommonLayerGeometry& geometry);
+[[nodiscard]] CommonLayerGeometry read_binary_geometry(std::string_view bytes, const std::string& name,
+                                                       const CommonLayerHeader& header, ReadLimits& limits,
+                                                       Executor& executor, ProgressMeter& progress);
+
+/// Reads a single layer of such a file again, which begins at this offset.
+[[nodiscard]] CommonLayerGeometry read_binary_layer(std::string_view bytes, const std::string& name,
+                                                    const CommonLayerHeader& header, std::size_t begin,
+                                                    ReadLimits& limits);
 
 } // namespace lamella

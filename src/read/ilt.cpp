@@ -342,6 +342,7 @@ bool is_ilt(const ZipReader& zip) {
 }
 
 LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
+    limits.keep_in_memory(); // all files are unpacked, and have planes in common
     const ByteSource list = unpacked_entry(zip, *zip.find(ilt_parameters), limits);
     std::vector<CommonLayerContent> contents;
     LayerFile result{.path = zip.name(), .format = "ilt", .warnings = zip.counted_warnings()};
@@ -396,7 +397,7 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     const std::vector<double> bottoms = bottoms_of(contents, ilt_one_plane_mm, limits);
     std::vector<LayerFile> files;
     for (std::size_t i = 0; i < contents.size(); ++i) {
-        files.push_back(layers_of(std::move(contents[i]), bottoms, limits));
+        files.push_back(layers_of(std::move(contents[i]), bottoms, limits, execution));
         for (const std::string& warning : files.back().warnings)
             result.warnings.push_back(fmt::format("{}: {}", sections[i], warning));
     }

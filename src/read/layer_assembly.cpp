@@ -21,38 +21,31 @@ namespace {
 /// first rings, then chains, then hatches. The order of contours of parts without an exposure does not
 /// matter.
 bool is_in_order(const RawLayer& raw, const LayerFile& file) {
-    enum : std::uint8_t { ring, chain, hatch };
-    std::tuple<std::uint32_t, std::uint8_t> last{};
-    bool ascends = true;
-    const auto follow = [&](std::uint32_t part, std::uint8_t kind) {
-        if (!file.parts[part].exposure)
-            return;
-        ascends = ascends && last <= std::tuple(part, kind);
-        last = {part, kind};
-    };
-    std::size_t contour = 0;
-    const auto follow_contours = [&](std::size_t end) {
-        for (; contour < end; ++contour)
-            follow(raw.ends[contour].part, raw.ends[contour].closed ? ring : chain);
-    };
-    std::size_t begin = 0;
-    for (const RawLayer::Hatches& hatches : raw.hatch_ends) {
-        follow_contours(hatches.behind);
-        if (hatches.end != begin)
-            follow(hatches.part, hatch);
-        begin = hatches.end;
+    std::tuple<std::uint32_t, RawLayer::Run::Kind> last{};
+    for (const RawLayer::Run& run : raw.runs()) {
+        if (!file.parts[run.part].exposure)
+            continue;
+        if (last > std::tuple(run.part, run.kind))
+            return false;
+        last = {run.part, run.kind};
     }
-    follow_contours(raw.ends.size());
-    return ascends;
+    return true;
 }
 
 /// Warns if the order of vectors changes, because machines execute them in this order.
-void report_changed_order(std::span<const RawLayer> layers, LayerFile& file) {
+void report_changed_order(std::span<const RawLayer> layers, LayerFile& file, Executor& executor) {
+    if (std::none_of(file.parts.begin(), file.parts.end(),
+                     [](const LayerPart& part) { return part.exposure.has_value(); }))
+        return;
+    std::vector<char> in_order(layers.size());
+    executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        in_order[i] = is_in_order(layers[i], file) ? 1 : 0;
+    });
     std::size_t changed = 0;
     double lowest = 0;
-    for (const RawLayer& raw : layers)
-        if (!is_in_order(raw, file) && changed++ == 0)
-            lowest = raw.z;
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        if (in_order[i] == 0 && changed++ == 0)
+            lowest = layers[i].z;
     if (changed != 0)
         file.warnings.push_back(
             fmt::format("vectors of {}, the lowest at z = {:.6g} mm, are executed in another order in "
@@ -82,6 +75,113 @@ void for_pieces(const std::vector<Piece>& pieces, const Take& take) {
 void append(std::vector<Point2>& to, std::span<const Point2> points) {
     for (const Point2& p : points)
         to.push_back({p.x + 0.0, p.y + 0.0});
+}
+
+/// Makes the layers of a plane, one for each part, and frees the contours and hatches of `plane`. Those of
+/// parts that are not `exposed` are in normal form.
+template <class Location>
+ScanVectors make_layers(const PlacedLayer& plane, const std::vector<bool>& exposed, ReadLimits& limits,
+                        const Location& location) {
+    RawLayer& raw = *plane.raw;
+    // Until `raw` is freed there are two copies of its contents, and a third one of contours while they are
+    // put into normal form.
+    constexpr std::uint64_t of_contour = 64;
+    const std::uint64_t copies =
+        (2 * raw.points.size() + raw.hatches.size()) * sizeof(Point2) + raw.ends.size() * of_contour;
+    limits.add_bytes_at(copies, location);
+    assert(raw.ends.empty() || raw.ends.back().end <= raw.points.size());
+    assert(raw.hatch_ends.empty() || raw.hatch_ends.back().end <= raw.hatches.size());
+    std::vector<PartOfLayer> parts(exposed.size());
+    for_pieces(raw.ends, [&](std::size_t begin, const RawLayer::Contour& contour) {
+        assert(contour.part < parts.size() && begin <= contour.end);
+        PartOfLayer& part = parts[contour.part];
+        part.points += contour.end - begin;
+        part.contours += 1;
+        part.layer.rings += contour.closed ? 1 : 0;
+    });
+    for_pieces(raw.hatch_ends, [&](std::size_t begin, const RawLayer::Hatches& hatches) {
+        parts[hatches.part].hatches += hatches.end - begin;
+    });
+    std::vector<std::vector<Point2>> points(parts.size());
+    std::vector<std::vector<Point2>> hatches(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        points[i].reserve(parts[i].points);
+        hatches[i].reserve(parts[i].hatches);
+        parts[i].layer.offsets.reserve(parts[i].contours + 1);
+    }
+    for (const bool closed : {true, false})
+        for_pieces(raw.ends, [&](std::size_t begin, const RawLayer::Contour& contour) {
+            if (contour.closed != closed)
+                return;
+            append(points[contour.part], std::span(raw.points).subspan(begin, contour.end - begin));
+            parts[contour.part].layer.offsets.push_back(points[contour.part].size());
+        });
+    for_pieces(raw.hatch_ends, [&](std::size_t begin, const RawLayer::Hatches& some) {
+        append(hatches[some.part], std::span(raw.hatches).subspan(begin, some.end - begin));
+    });
+    // Layers that follow still need the height, so `raw` itself stays.
+    let_go(raw.points);
+    let_go(raw.ends);
+    let_go(raw.hatches);
+    let_go(raw.hatch_ends);
+    ScanVectors layers;
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        Layer& layer = parts[i].layer;
+        assert(layer.offsets.back() == points[i].size() && layer.rings <= layer.contours());
+        layer.index = plane.index;
+        layer.z = plane.z;
+        layer.bottom = plane.bottom;
+        layer.top = plane.top;
+        if (!points[i].empty())
+            layer.points = PointArray(std::move(points[i]));
+        layers.add(exposed[i] ? std::move(layer) : normal_form(std::move(layer)),
+                   hatches[i].empty() ? PointArray() : PointArray(std::move(hatches[i])));
+    }
+    limits.give_back(0, copies);
+    return layers;
+}
+
+std::vector<bool> exposed_parts(const LayerFile& file) {
+    std::vector<bool> exposed;
+    for (const LayerPart& part : file.parts)
+        exposed.push_back(part.exposure.has_value());
+    return exposed;
+}
+
+/// Returns a stream that parses the layers of the planes.
+LayerStream stream_of(const LayerFile& file, std::span<const PlacedLayer> planes, const ReadLimits& limits,
+                      ParseLayer parse) {
+    LayerStream stream{.boxes = std::vector<Box3>(file.parts.size()),
+                       .hatch_lines = std::vector<std::uint64_t>(file.parts.size())};
+    std::vector<std::vector<std::size_t>> begins; // of each plane
+    for (const PlacedLayer& plane : planes) {
+        stream.planes.push_back(
+            {.index = plane.index, .z = plane.z, .bottom = plane.bottom, .top = plane.top});
+        begins.emplace_back().push_back(plane.raw->begin);
+        begins.back().insert(begins.back().end(), plane.raw->joined.begin(), plane.raw->joined.end());
+        for (const RawLayer::Run& run : plane.raw->runs()) {
+            stream.boxes[run.part].add(run.box);
+            if (run.kind == RawLayer::Run::Kind::hatch)
+                stream.hatch_lines[run.part] += (run.end - run.begin) / 2;
+        }
+    }
+    stream.bytes = limits.bytes();
+    for (Box3& box : stream.boxes)
+        if (!box.empty()) {
+            box.min.z = planes.front().bottom;
+            box.max.z = planes.back().top;
+        }
+    stream.parse = [begins = std::move(begins), exposed = exposed_parts(file), &limits,
+                    parse = std::move(parse)](std::size_t position) {
+        ReadLimits own(limits); // what it counts is freed with the plane
+        own.keep_in_memory();
+        const std::vector<std::size_t>& layers = begins[position];
+        RawLayer raw = parse(layers.front(), own);
+        for (const std::size_t begin : std::span(layers).subspan(1))
+            raw.append(parse(begin, own));
+        return make_layers({&raw}, exposed, own, [&] { return fmt::format("layer {}", position); });
+    };
+    return stream;
 }
 
 } // namespace
@@ -124,104 +224,135 @@ void CountedWarning::append_to(std::vector<std::string>& warnings) const {
 }
 
 bool RawLayer::keep_contour(bool closed, std::uint32_t part) {
-    const std::size_t begin = contour_begin();
-    const auto contour = points.begin() + static_cast<std::ptrdiff_t>(begin);
+    const std::size_t first = contour_begin();
+    const auto contour = points.begin() + static_cast<std::ptrdiff_t>(first);
     auto end = std::unique(contour, points.end());
     while (closed && end - contour > 1 && *(end - 1) == *contour)
         --end;
     points.erase(end, points.end());
-    if (points.size() - begin < (closed ? 3U : 2U)) {
-        points.resize(begin);
+    if (points.size() - first < (closed ? 3U : 2U)) {
+        points.resize(first);
         return false;
     }
     ends.push_back({points.size(), closed, part});
     return true;
 }
 
-void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,
-               ReadLimits& limits) {
-    const auto location = [&] {
-        return raw.location.empty() ? fmt::format("layer {}", index) : raw.location;
+std::vector<RawLayer::Run> RawLayer::runs() const {
+    std::vector<Run> runs = dropped_;
+    const auto add = [&](std::uint32_t part, Run::Kind kind, std::size_t from, std::size_t to) {
+        if (!runs.empty() && runs.back().part == part && runs.back().kind == kind)
+            runs.back().end = to;
+        else
+            runs.push_back({part, kind, from, to});
     };
-    for (LayerPart& part : file.parts)
-        limits.make_room(part.layers, 1, location);
-    limits.add_bytes_at(file.parts.size() * (of_empty_layer + sizeof(PointArray)), location);
-    // Until `raw` is freed there are two copies of its contents, and a third one of contours while they are
-    // put into normal form.
-    constexpr std::uint64_t of_contour = 64;
-    const std::uint64_t copies =
-        (2 * raw.points.size() + raw.hatches.size()) * sizeof(Point2) + raw.ends.size() * of_contour;
-    limits.add_bytes_at(copies, location);
-    assert(raw.ends.empty() || raw.ends.back().end <= raw.points.size());
-    assert(raw.hatch_ends.empty() || raw.hatch_ends.back().end <= raw.hatches.size());
-    std::vector<PartOfLayer> parts(file.parts.size());
-    for_pieces(raw.ends, [&](std::size_t begin, const RawLayer::Contour& contour) {
-        assert(contour.part < parts.size() && begin <= contour.end);
-        PartOfLayer& part = parts[contour.part];
-        part.points += contour.end - begin;
-        part.contours += 1;
-        part.layer.rings += contour.closed ? 1 : 0;
+    std::size_t contour = 0;
+    const auto add_contours = [&](std::size_t up_to) {
+        for (; contour < up_to; ++contour)
+            add(ends[contour].part, ends[contour].closed ? Run::Kind::ring : Run::Kind::chain,
+                contour == 0 ? 0 : ends[contour - 1].end, ends[contour].end);
+    };
+    for_pieces(hatch_ends, [&](std::size_t from, const Hatches& lines) {
+        add_contours(lines.behind);
+        if (lines.end != from)
+            add(lines.part, Run::Kind::hatch, from, lines.end);
     });
-    for_pieces(raw.hatch_ends, [&](std::size_t begin, const RawLayer::Hatches& hatches) {
-        parts[hatches.part].hatches += hatches.end - begin;
-    });
-    std::vector<std::vector<Point2>> points(parts.size());
-    std::vector<std::vector<Point2>> hatches(parts.size());
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        points[i].reserve(parts[i].points);
-        hatches[i].reserve(parts[i].hatches);
-        parts[i].layer.offsets.reserve(parts[i].contours + 1);
-    }
-    for (const bool closed : {true, false})
-        for_pieces(raw.ends, [&](std::size_t begin, const RawLayer::Contour& contour) {
-            if (contour.closed != closed)
-                return;
-            append(points[contour.part], std::span(raw.points).subspan(begin, contour.end - begin));
-            parts[contour.part].layer.offsets.push_back(points[contour.part].size());
-        });
-    for_pieces(raw.hatch_ends, [&](std::size_t begin, const RawLayer::Hatches& some) {
-        append(hatches[some.part], std::span(raw.hatches).subspan(begin, some.end - begin));
-    });
-    // Layers that follow still need the height, so `raw` itself stays.
-    let_go(raw.points);
-    let_go(raw.ends);
-    let_go(raw.hatches);
-    let_go(raw.hatch_ends);
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        Layer& layer = parts[i].layer;
-        assert(layer.offsets.back() == points[i].size() && layer.rings <= layer.contours());
-        layer.index = index;
-        layer.z = z;
-        layer.bottom = bottom;
-        layer.top = top;
-        if (!points[i].empty())
-            layer.points = PointArray(std::move(points[i]));
-        LayerPart& to = file.parts[i];
-        if (!hatches[i].empty() || !to.hatches.empty()) {
-            to.hatches.resize(to.layers.size());
-            to.hatches.emplace_back(std::move(hatches[i]));
-        }
-        to.layers.push_back(to.exposure ? std::move(layer) : normal_form(std::move(layer)));
-    }
-    limits.give_back(0, copies);
+    add_contours(ends.size());
+    return runs;
 }
 
-void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits) {
-    report_changed_order(layers, file);
-    for (std::size_t i = 0; i < layers.size(); ++i) {
-        const double top = layers[i].z;
-        add_layer(file, layers[i], i, bottom + (top - bottom) / 2, bottom, top, limits);
+void RawLayer::drop_contents(ReadLimits& limits) {
+    assert(dropped_.empty());
+    std::vector<Run> all = runs();
+    for (Run& run : all)
+        for (const Point2& p : std::span(run.kind == Run::Kind::hatch ? hatches : points)
+                                   .subspan(run.begin, run.end - run.begin))
+            run.box.add(Point3{p.x + 0.0, p.y + 0.0, 0});
+    limits.add_bytes(all.size() * sizeof(Run), location);
+    limits.give_back(0, (points.capacity() + hatches.capacity()) * sizeof(Point2) +
+                            ends.capacity() * sizeof(Contour) + hatch_ends.capacity() * sizeof(Hatches));
+    let_go(points);
+    let_go(ends);
+    let_go(hatches);
+    let_go(hatch_ends);
+    dropped_ = std::move(all);
+}
+
+void RawLayer::renumber(std::span<const std::uint32_t> numbers) {
+    const auto renumber_all = [&](auto& items) {
+        for (auto& item : items) {
+            assert(item.part < numbers.size());
+            item.part = numbers[item.part];
+        }
+    };
+    renumber_all(ends);
+    renumber_all(hatch_ends);
+    renumber_all(dropped_);
+}
+
+void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits& limits, Executor& executor,
+                ParseLayer parse) {
+    const auto location = [&](const PlacedLayer& plane) {
+        return [&plane] {
+            return plane.raw->location.empty() ? fmt::format("layer {}", plane.index) : plane.raw->location;
+        };
+    };
+    if (parse && !limits.in_memory()) {
+        limits.add_bytes(2 * planes.size() * (sizeof(Layer) + of_empty_layer));
+        file.stream = std::make_shared<const LayerStream>(stream_of(file, planes, limits, std::move(parse)));
+        return;
+    }
+    std::vector<char> hatched(file.parts.size());
+    for (const PlacedLayer& plane : planes)
+        for_pieces(plane.raw->hatch_ends, [&](std::size_t begin, const RawLayer::Hatches& hatches) {
+            hatched[hatches.part] = hatched[hatches.part] != 0 || hatches.end != begin ? 1 : 0;
+        });
+    for (std::size_t i = 0; i < file.parts.size() && !planes.empty(); ++i) {
+        LayerPart& part = file.parts[i];
+        assert(part.layers.empty());
+        limits.add_bytes_at(planes.size() * (sizeof(Layer) + of_empty_layer + sizeof(PointArray)),
+                            location(planes.front()));
+        part.layers.resize(planes.size());
+        if (hatched[i] != 0)
+            part.hatches.resize(planes.size());
+    }
+    const std::vector<bool> exposed = exposed_parts(file);
+    executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        ScanVectors layers = make_layers(planes[i], exposed, limits, location(planes[i]));
+        for (std::size_t part = 0; part < file.parts.size(); ++part) {
+            LayerPart& to = file.parts[part];
+            to.layers[i] = std::move(layers.polylines[part]);
+            if (!to.hatches.empty())
+                to.hatches[i] = std::move(layers.hatches[part]);
+        }
+    });
+    executor.check_cancelled();
+}
+
+void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits,
+                        Executor& executor, ParseLayer parse) {
+    report_changed_order(layers, file, executor);
+    std::vector<PlacedLayer> planes;
+    planes.reserve(layers.size());
+    for (RawLayer& raw : layers) {
+        const double top = raw.z;
+        planes.push_back({&raw, planes.size(), bottom + (top - bottom) / 2, bottom, top});
         bottom = top;
     }
+    add_layers(file, planes, limits, executor, std::move(parse));
 }
 
-void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits) {
-    report_changed_order(layers, file);
+void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits,
+                           Executor& executor, ParseLayer parse) {
+    report_changed_order(layers, file, executor);
+    std::vector<PlacedLayer> planes;
+    planes.reserve(layers.size());
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const double bottom = layers[i].z;
         const double end = i + 1 < layers.size() ? layers[i + 1].z : top;
-        add_layer(file, layers[i], i, bottom + (end - bottom) / 2, bottom, end, limits);
+        planes.push_back({&layers[i], i, bottom + (end - bottom) / 2, bottom, end});
     }
+    add_layers(file, planes, limits, executor, std::move(parse));
 }
 
 void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_t bytes) {
@@ -237,6 +368,9 @@ void check_part_planes(const LayerFile& file, std::uint64_t planes, std::uint64_
 }
 
 void RawLayer::append(const RawLayer& other) {
+    joined.push_back(other.begin);
+    joined.insert(joined.end(), other.joined.begin(), other.joined.end());
+    dropped_.insert(dropped_.end(), other.dropped_.begin(), other.dropped_.end());
     const std::size_t contours = ends.size();
     const std::size_t had_points = points.size();
     points.insert(points.end(), other.points.begin(), other.points.end());

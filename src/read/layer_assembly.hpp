@@ -3,10 +3,12 @@
 // Makes layers of parts from contours at heights, as slice files contain them.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/point.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "core/counted.hpp"
 #include "core/distinct_names.hpp"
+#include "core/executor.hpp"
 #include "read/read_limits.hpp"
 
 #include <fmt/format.h>
@@ -15,6 +17,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <map>
 #include <span>
@@ -36,6 +39,12 @@ class CountedWarning {
     void note(const Location& location) {
         if (count_++ == 0)
             first_ = location();
+    }
+    /// Adds the occurrences in a later part of the file.
+    void add(const CountedWarning& later) {
+        if (count_ == 0)
+            first_ = later.first_;
+        count_ += later.count_;
     }
     /// Adds a warning such as "3 contours were not closed; they were closed (first at byte 120)".
     void append_to(std::vector<std::string>& warnings) const;
@@ -90,8 +99,21 @@ struct RawLayer {
         std::size_t behind; ///< number of contours that precede these hatches in the file
     };
 
-    double z = 0;         ///< as in the file
-    std::string location; ///< for error messages
+    /// Consecutive contours, or hatch lines, of one part and kind.
+    struct Run {
+        enum class Kind : std::uint8_t { ring, chain, hatch };
+
+        std::uint32_t part;
+        Kind kind;
+        std::size_t begin; ///< indices in `points`, or in `hatches`
+        std::size_t end;
+        Box3 box = {}; ///< of the points, at a height of 0; set by `drop_contents`
+    };
+
+    double z = 0;          ///< as in the file
+    std::string location;  ///< for error messages
+    std::size_t begin = 0; ///< offset from which it can be parsed again, in the file or its list of layers
+    std::vector<std::size_t> joined; ///< those of layers that were appended
     std::vector<Point2> points;
     std::vector<Contour> ends;
     std::vector<Point2> hatches; ///< two points each
@@ -131,8 +153,17 @@ struct RawLayer {
     /// Appends the contours and hatches of another layer of the same height.
     void append(const RawLayer& other);
 
+    /// Returns the runs in the order of the file.
+    [[nodiscard]] std::vector<Run> runs() const;
+    /// Frees the contours and hatches. Their runs remain.
+    void drop_contents(ReadLimits& limits);
+    /// Replaces part i by numbers[i].
+    void renumber(std::span<const std::uint32_t> numbers);
+
   private:
     bool keep_contour(bool closed, std::uint32_t part);
+
+    std::vector<Run> dropped_; ///< what is known of dropped contents
 };
 
 /// Numbers the parts of contours and hatches, identified by keys, in the order of their first occurrence.
@@ -143,6 +174,13 @@ class PartNumbers {
     explicit PartNumbers(ReadLimits& limits) : limits_(limits) {}
 
     [[nodiscard]] bool empty() const noexcept { return numbers_.empty(); }
+    /// Returns the keys in ascending order, which is the order of the parts in the file.
+    [[nodiscard]] std::vector<Key> keys() const {
+        std::vector<Key> keys;
+        for (const auto& [key, number] : numbers_)
+            keys.push_back(key);
+        return keys;
+    }
     /// Returns the first key that is not less than this one, or null.
     [[nodiscard]] const Key* first_from(const Key& key) const {
         const auto found = numbers_.lower_bound(key);
@@ -151,14 +189,38 @@ class PartNumbers {
 
     template <class Location>
     std::uint32_t number_of(const Key& key, const Location& location) {
-        if (last_ == numbers_.end() || last_->first != key)
-            last_ = numbers_.find(key);
-        if (last_ == numbers_.end()) {
-            // The part and temporary data for it.
-            limits_.add_bytes_at(node_bytes + sizeof key + 2 * sizeof(LayerPart), location);
-            last_ = numbers_.emplace(key, static_cast<std::uint32_t>(numbers_.size())).first;
+        if (last_ == nullptr || last_->first != key) {
+            auto found = numbers_.find(key);
+            if (found == numbers_.end()) {
+                limits_.add_bytes_at(of_part, location);
+                found = numbers_.emplace(key, static_cast<std::uint32_t>(numbers_.size())).first;
+            }
+            last_ = &*found;
         }
         return last_->second;
+    }
+
+    /// Numbers the parts of a piece of the file. `key_of(key)` returns the key for that of the piece.
+    /// Replaces the part numbers of the layers of the piece, and gives back the bytes that its numbers were
+    /// counted for.
+    template <class KeyOf, class Location>
+    void add(const PartNumbers& piece, std::span<RawLayer> layers, const KeyOf& key_of,
+             const Location& location) {
+        limits_.give_back(0, piece.numbers_.size() * of_part);
+        std::vector<std::uint32_t> numbers(piece.numbers_.size());
+        for (const auto& [key, number] : piece.numbers_)
+            numbers[number] = number_of(key_of(key), location);
+        renumber(layers, numbers);
+    }
+
+    /// Replaces the part numbers of a layer that is parsed again by indices of parts in the file, which has
+    /// parts with these keys.
+    void put(RawLayer& layer, const std::vector<Key>& keys) const {
+        std::vector<std::uint32_t> locations(numbers_.size());
+        for (const auto& [key, number] : numbers_)
+            locations[number] =
+                static_cast<std::uint32_t>(std::lower_bound(keys.begin(), keys.end(), key) - keys.begin());
+        layer.renumber(locations);
     }
 
     /// Makes the parts by calling `part_of(key)`, and replaces the part numbers of contours and hatches by
@@ -170,21 +232,54 @@ class PartNumbers {
             locations[number] = static_cast<std::uint32_t>(file.parts.size());
             file.parts.push_back(part_of(key));
         }
-        for (RawLayer& layer : layers) {
-            for (RawLayer::Contour& contour : layer.ends) {
-                assert(contour.part < locations.size());
-                contour.part = locations[contour.part];
-            }
-            for (RawLayer::Hatches& hatches : layer.hatch_ends)
-                hatches.part = locations[hatches.part];
-        }
+        renumber(layers, locations);
     }
 
   private:
+    /// Bytes of the part and of temporary data for it.
+    static constexpr std::uint64_t of_part = node_bytes + sizeof(Key) + 2 * sizeof(LayerPart);
+
+    static void renumber(std::span<RawLayer> layers, const std::vector<std::uint32_t>& numbers) {
+        for (RawLayer& layer : layers)
+            layer.renumber(numbers);
+    }
+
     ReadLimits& limits_;
     std::map<Key, std::uint32_t> numbers_;
-    typename std::map<Key, std::uint32_t>::iterator last_ = numbers_.end();
+    const std::pair<const Key, std::uint32_t>* last_ = nullptr;
 };
+
+/// Appends the layers of a piece of the file.
+template <class Raw>
+void append_layers(std::vector<Raw>& layers, std::vector<Raw>&& piece, ReadLimits& limits) {
+    const std::uint64_t counted = piece.capacity() * sizeof(Raw);
+    limits.make_room(layers, piece.size(), [&] {
+        const std::string& location = piece.front().location;
+        return location.empty() ? fmt::format("layer {}", layers.size()) : location;
+    });
+    std::move(piece.begin(), piece.end(), std::back_inserter(layers));
+    piece = {};
+    limits.give_back(0, counted);
+}
+
+/// Drops the contents of the layers of a piece unless layers are kept in memory.
+template <class Raw>
+void drop_contents(std::vector<Raw>& layers, ReadLimits& limits) {
+    if (!limits.in_memory())
+        for (Raw& layer : layers)
+            layer.drop_contents(limits);
+}
+
+/// Parses the layer that begins at an offset again, with indices of parts in the file. May be called by any
+/// number of threads at once.
+using ParseLayer = std::function<RawLayer(std::size_t begin, ReadLimits& limits)>;
+
+/// Returns the only layer that was parsed again.
+template <class Raw>
+[[nodiscard]] RawLayer only_layer(std::vector<Raw>&& layers) {
+    assert(layers.size() == 1);
+    return std::move(layers.front());
+}
 
 /// Returns the name of the first parameter of scan vectors that is negative although it must not be; empty if
 /// there is none.
@@ -197,17 +292,30 @@ void append_to(const DistinctNames& names, std::vector<std::string>& warnings);
 /// the points.
 inline constexpr std::uint64_t of_empty_layer = 128;
 
-/// Appends a layer to each part, in normal form unless the part has an exposure. Frees the contours and
-/// hatches of `raw`; in the limits, the layers take their place.
-void add_layer(LayerFile& file, RawLayer& raw, std::uint64_t index, double z, double bottom, double top,
-               ReadLimits& limits);
+/// The index and the heights of a plane, and what the file has there.
+struct PlacedLayer {
+    RawLayer* raw = nullptr;
+    std::uint64_t index = 0;
+    double z = 0;
+    double bottom = 0;
+    double top = 0;
+};
+
+/// Gives each part, which has no layers yet, a layer on each plane, in normal form unless the part has an
+/// exposure. Frees the contours and hatches of each RawLayer; in the limits, the layers take their place. All
+/// threads make layers. If `parse` is given and layers are not kept in memory, gives the file a stream
+/// instead; the limits must live as long.
+void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits& limits, Executor& executor,
+                ParseLayer parse = {});
 
 /// Adds layers whose heights are their tops. Each layer extends down to the top of the one before, the first
 /// one to `bottom`. Cuts are assumed to be half-way up. Warns of layers in which the order of scan vectors
 /// changes.
-void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits);
+void add_layers_by_tops(LayerFile& file, std::span<RawLayer> layers, double bottom, ReadLimits& limits,
+                        Executor& executor, ParseLayer parse = {});
 /// Adds layers whose heights are their bottoms in the same way; the last one extends up to `top`.
-void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits);
+void add_layers_by_bottoms(LayerFile& file, std::span<RawLayer> layers, double top, ReadLimits& limits,
+                           Executor& executor, ParseLayer parse = {});
 
 /// Throws Error{input} if the number of parts times the number of planes is implausibly large for the size of
 /// the file, because even empty layers take memory. A few millions are accepted for any size, because a stack

@@ -5,6 +5,8 @@
 #include "container/gzip.hpp"
 #include "container/text_position.hpp"
 #include "container/zip_reader.hpp"
+#include "core/executor.hpp"
+#include "core/progress.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_readers.hpp"
 #include "read/mesh_formats.hpp"
@@ -14,7 +16,9 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <string_view>
+#include <utility>
 
 namespace lamella {
 
@@ -66,18 +70,58 @@ ReadLayersOfArchive* archive_reader(const ZipReader& archive) {
     return is_3mf(archive) ? read_slices_3mf : nullptr;
 }
 
-LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions& options,
-                               const Execution& execution) {
-    ReadLimits limits(source, options);
-    return read_source(source, options, limits, releasing(source, execution));
+namespace {
+
+/// Reads the layers once. If they are not kept in memory, keeps what is needed to parse them again.
+LayerFile read_once(const ByteSource& source, const LayerReadOptions& options, const Execution& execution) {
+    struct Opened {
+        ByteSource source;
+        ReadLimits limits;
+    };
+    const auto opened = std::make_shared<Opened>(Opened{source, {source, options}});
+    LayerFile file = read_source(opened->source, options, opened->limits, releasing(source, execution));
+    if (file.stream) {
+        const auto both =
+            std::make_shared<std::pair<std::shared_ptr<Opened>, std::shared_ptr<const LayerStream>>>(
+                opened, std::move(file.stream));
+        file.stream = {both, both->second.get()};
+    }
+    return file;
 }
 
+} // namespace
+
+LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions& options,
+                               const Execution& execution) {
+    const bool tight = options.max_memory != 0 && is_tight_for_layers(options.max_memory, source.size());
+    Execution one = execution;
+    if (thread_count(execution) > 1 && !(tight && options.layers == LayersKept::all))
+        try {
+            return read_once(source, options, execution);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::limit)
+                throw;
+            one = without_progress(execution);
+        }
+    // Several threads may exceed a limit that one thread keeps, and find the excess at different positions.
+    one.threads = 1;
+    return read_once(source, options, one);
+}
+
+namespace {
+
+std::uint64_t memory_of(const Layer& layer) {
+    return sizeof(Layer) + of_empty_layer + layer.offsets.size() * sizeof(std::uint64_t) +
+           layer.points.size() * sizeof(Point2);
+}
+
+} // namespace
+
 std::uint64_t memory_of(const LayerFile& file) noexcept {
-    std::uint64_t bytes = 0;
+    std::uint64_t bytes = file.stream ? file.stream->bytes : 0;
     for (const LayerPart& part : file.parts) {
         for (const Layer& layer : part.layers)
-            bytes += sizeof(Layer) + of_empty_layer + layer.offsets.size() * sizeof(std::uint64_t) +
-                     layer.points.size() * sizeof(Point2);
+            bytes += memory_of(layer);
         for (const PointArray& hatches : part.hatches)
             bytes += sizeof(PointArray) + hatches.size() * sizeof(Point2);
     }
@@ -91,14 +135,63 @@ std::uint64_t LayerPart::hatch_lines() const noexcept {
     return points / 2;
 }
 
+const LayerStack& LayerFile::planes() const noexcept {
+    return stream ? stream->planes : parts.front().layers;
+}
+
+std::uint64_t LayerFile::hatch_lines(std::size_t part) const {
+    return stream ? stream->hatch_lines[part] : parts[part].hatch_lines();
+}
+
+void LayerFile::keep_layers(const LayerReadOptions& options, const Execution& execution) {
+    if (!stream)
+        return;
+    ReadLimits limits(ByteSource{.name = path, .bytes = {}, .owner = {}}, options);
+    limits.add_bytes(stream->bytes);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        parts[i].layers.resize(planes().size());
+        if (hatch_lines(i) > 0)
+            parts[i].hatches.resize(planes().size());
+    }
+    Executor executor(execution);
+    executor.for_chunks(planes().size(), 1, [&](std::uint64_t position, std::uint64_t, unsigned) {
+        ScanVectors vectors = plane(position);
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            limits.add_bytes_at(memory_of(vectors.polylines[i]) + vectors.hatches[i].size() * sizeof(Point2),
+                                [&] { return fmt::format("layer {}", position); });
+            parts[i].layers[position] = std::move(vectors.polylines[i]);
+            if (!parts[i].hatches.empty())
+                parts[i].hatches[position] = std::move(vectors.hatches[i]);
+        }
+    });
+    executor.check_cancelled();
+    stream = nullptr;
+}
+
 ScanVectors LayerFile::plane(std::size_t position) const {
+    if (stream) {
+        ScanVectors vectors = stream->parse(position);
+        const Layer& heights = stream->planes[position];
+        for (Layer& layer : vectors.polylines) {
+            layer.index = heights.index;
+            layer.z = heights.z;
+            layer.bottom = heights.bottom;
+            layer.top = heights.top;
+        }
+        return vectors;
+    }
     ScanVectors vectors;
     for (const LayerPart& part : parts)
         vectors.add(part.layers[position], part.hatches.empty() ? PointArray() : part.hatches[position]);
     return vectors;
 }
 
-LayerStack LayerFile::merged() const {
+LayerStack LayerFile::merged(const Execution& execution) const {
+    if (stream) {
+        LayerFile held = *this;
+        held.keep_layers({}, execution);
+        return held.merged(execution);
+    }
     if (parts.size() == 1)
         return parts.front().layers;
     const std::size_t planes = parts.empty() ? 0 : parts.front().layers.size();
@@ -109,13 +202,15 @@ LayerStack LayerFile::merged() const {
                 fmt::format("{}: the part \"{}\" has {} layers and the first one has {}; parts can be "
                             "put together where all have the same planes",
                             path, excerpt(part.label), part.layers.size(), planes));
-    LayerStack all;
-    std::vector<Layer> plane(parts.size());
-    for (std::size_t i = 0; i < planes; ++i) {
-        for (std::size_t part = 0; part < parts.size(); ++part)
-            plane[part] = parts[part].layers[i];
-        all.push_back(lamella::merged(plane));
-    }
+    LayerStack all(planes);
+    Executor executor(execution);
+    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        std::vector<Layer> plane;
+        for (const LayerPart& part : parts)
+            plane.push_back(part.layers[i]);
+        all[i] = lamella::merged(plane);
+    });
+    executor.check_cancelled();
     return all;
 }
 

@@ -4,8 +4,10 @@
 #include "container/xml.hpp"
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
+#include "core/lower_case.hpp"
 #include "read/decimal_text.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_pieces.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/text_chunks.hpp"
@@ -14,6 +16,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -126,16 +131,59 @@ void place_groups(std::vector<Group>& groups, std::vector<std::string>& warnings
     }
 }
 
+/// Reads a document, or layers of it.
 class SvgReader {
   public:
-    SvgReader(const std::string& name, std::uint64_t bytes, LayerFile& file, ReadLimits& limits)
-        : name_(name), bytes_(bytes), file_(file), limits_(limits) {
-        file_.parts.emplace_back();
+    SvgReader(const std::string& name, ReadLimits& limits) : name_(name), limits_(limits) {}
+
+    /// Returns a reader of layers of this document, in which their first line is `line`.
+    [[nodiscard]] SvgReader of_layers(std::uint64_t line, ReadLimits& limits) const {
+        SvgReader reader(name_, limits);
+        reader.depth_ = 1;
+        reader.height_ = height_;
+        reader.origin_ = origin_;
+        reader.line_ = line;
+        return reader;
     }
 
+    /// Appends the layers that follow. Returns false, and changes nothing, if their parts are not numbered
+    /// as they must be; reading them here reports it.
+    [[nodiscard]] bool append(SvgReader&& layers) {
+        std::size_t known = parts_.size();
+        for (const MetPart& part : layers.met_) {
+            if (part.number > known + 1)
+                return false;
+            known = std::max(known, part.number);
+        }
+        for (const MetPart& part : layers.met_)
+            meet(part);
+        append_layers(groups_, std::move(layers.groups_), limits_);
+        open_.add(layers.open_);
+        outside_.add(layers.outside_);
+        other_.add(layers.other_);
+        transformed_.add(layers.transformed_);
+        returning_.add(layers.returning_);
+        dropped_.add(layers.dropped_);
+        return true;
+    }
+
+    /// Returns true within the root element, but outside of its elements.
+    [[nodiscard]] bool is_in_root() const { return depth_ == 1; }
+
+    /// Returns the start tag of the root element, without attributes.
+    [[nodiscard]] std::string parent() const { return fmt::format("<{}>", root_); }
+
+    /// Takes the offset of the element that starts next.
+    void start_at(std::size_t position) { position_ = position; }
+
+    /// Returns the only layer.
+    [[nodiscard]] RawLayer layer() && { return only_layer(std::move(groups_)); }
+
     void start(std::string_view element, const XmlAttributes& attributes, std::size_t line) {
+        line += line_ - 1;
         const bool is_root = depth_++ == 0;
         if (is_root) {
+            root_ = element;
             if (local(element) != "svg")
                 fail(line, fmt::format("found <{}>; the document must be <svg>", printable(element, 40)));
             if (const std::string_view height = attributes.find("height"); height.data() != nullptr)
@@ -154,7 +202,7 @@ class SvgReader {
                     fail(line, fmt::format("found the rule '{}'; planes are cut by section_above or "
                                            "section_below",
                                            printable(name, 40)));
-                file_.rule = *rule;
+                rule_ = *rule;
             }
         } else if (depth_ == 2 && local(element) == "g") {
             start_layer(attributes, line);
@@ -179,31 +227,38 @@ class SvgReader {
     }
 
     void end() {
-        if (--depth_ == 1)
+        if (--depth_ == 1) {
+            if (in_layer_ && !limits_.in_memory())
+                groups_.back().drop_contents(limits_);
             in_layer_ = false;
+        }
         if (depth_ == 2)
             part_ = 0;
     }
 
-    void finish() {
+    /// `parse` is as in add_layers.
+    void finish(LayerFile& file, std::uint64_t bytes, Executor& executor, ParseLayer parse) {
         if (groups_.empty())
             throw Error(ErrorKind::input,
                         fmt::format("{}: found no layer; a layered SVG holds one <g> with slic3r:z for "
                                     "each layer",
                                     name_));
-        labels_.append_to(file_.warnings);
-        open_.append_to(file_.warnings);
-        returning_.append_to(file_.warnings);
-        outside_.append_to(file_.warnings);
-        other_.append_to(file_.warnings);
-        transformed_.append_to(file_.warnings);
-        dropped_.append_to(file_.warnings);
-        place_groups(groups_, file_.warnings);
-        check_part_planes(file_, groups_.size(), bytes_);
-        for (std::size_t i = 0; i < groups_.size(); ++i) {
-            Group& group = groups_[i];
-            add_layer(file_, group, i, group.cut, group.bottom, group.top, limits_);
-        }
+        file.rule = rule_;
+        file.parts = std::move(parts_);
+        labels_.append_to(file.warnings);
+        open_.append_to(file.warnings);
+        returning_.append_to(file.warnings);
+        outside_.append_to(file.warnings);
+        other_.append_to(file.warnings);
+        transformed_.append_to(file.warnings);
+        dropped_.append_to(file.warnings);
+        place_groups(groups_, file.warnings);
+        check_part_planes(file, groups_.size(), bytes);
+        std::vector<PlacedLayer> planes;
+        planes.reserve(groups_.size());
+        for (Group& group : groups_)
+            planes.push_back({&group, planes.size(), group.cut, group.bottom, group.top});
+        add_layers(file, planes, limits_, executor, std::move(parse));
     }
 
   private:
@@ -237,6 +292,7 @@ class SvgReader {
         Group group;
         group.z = *z;
         group.location = fmt::format("line {}", line);
+        group.begin = position_;
         group.slice_z = number(attributes, "slic3r:slice-z", line);
         group.height = number(attributes, "slic3r:layer-height", line);
         if (group.height && *group.height < 0)
@@ -250,19 +306,45 @@ class SvgReader {
         const auto part = depth_ == 3 ? number(attributes, "data-lamella-part", line) : std::nullopt;
         if (!part)
             return;
-        const std::size_t known = file_.parts.size();
-        if (!(*part >= 1 && *part <= static_cast<double>(known + 1)) || *part != std::floor(*part))
+        const std::size_t known = parts_.size();
+        constexpr double most = std::numeric_limits<std::uint32_t>::max();
+        if (!(*part >= 1 && *part <= (is_piece() ? most : static_cast<double>(known + 1))) ||
+            *part != std::floor(*part))
             fail(line, fmt::format("found part {}; parts are numbered, and {} came so far", *part, known));
         part_ = static_cast<std::uint32_t>(*part) - 1;
-        if (part_ == known) {
-            make_room(file_.parts, line);
-            file_.parts.emplace_back();
+        MetPart met{static_cast<std::size_t>(part_) + 1, std::string(attributes.find("data-lamella-label")),
+                    line};
+        if (!is_piece())
+            return meet(met);
+        if (const auto [labelled, added] = labelled_.try_emplace(met.number, false);
+            added || (!labelled->second && !met.label.empty())) {
+            labelled->second = !met.label.empty();
+            limits_.add_bytes_at(2 * node_bytes + sizeof met + met.label.size(), at_line(line));
+            met_.push_back(std::move(met));
         }
-        if (LayerPart& drawn = file_.parts[part_]; drawn.label.empty()) {
-            drawn.label = labels_.of(attributes.find("data-lamella-label"));
+    }
+
+    /// A part where its number or its label is new.
+    struct MetPart {
+        std::size_t number;
+        std::string label;
+        std::size_t line;
+    };
+
+    /// Makes the part if it is the next one, and sets its label unless it has one.
+    void meet(const MetPart& part) {
+        if (part.number > parts_.size()) {
+            make_room(parts_, part.line);
+            parts_.emplace_back();
+        }
+        if (LayerPart& drawn = parts_[part.number - 1]; drawn.label.empty()) {
+            drawn.label = labels_.of(part.label);
             drawn.exposure = labelled_exposure(drawn.label);
         }
     }
+
+    /// Returns whether this reads layers without the document around them.
+    [[nodiscard]] bool is_piece() const { return root_.empty(); }
 
     void add_points(const XmlAttributes& attributes, bool closed, std::size_t line) {
         RawLayer& layer = groups_.back();
@@ -358,9 +440,14 @@ class SvgReader {
     }
 
     const std::string& name_;
-    std::uint64_t bytes_;
-    LayerFile& file_;
     ReadLimits& limits_;
+    std::string root_; ///< name of the root element
+    std::uint64_t line_ = 1;
+    std::size_t position_ = 0; ///< of the element
+    PlaneRule rule_ = PlaneRule::section_above;
+    std::vector<LayerPart> parts_ = std::vector<LayerPart>(1);
+    std::vector<MetPart> met_;             ///< of a piece, in the order of the file
+    std::map<std::size_t, bool> labelled_; ///< whether these parts of a piece have labels
     std::uint32_t part_ = 0;
     int depth_ = 0;
     bool in_layer_ = false;
@@ -389,33 +476,146 @@ bool is_svg(std::string_view bytes) {
            (begin.find("<svg") != std::string_view::npos || begin.find(":svg") != std::string_view::npos);
 }
 
+namespace {
+
+/// Returns whether the document is in UTF-8, as far as its first line says.
+bool is_utf8(std::string_view document) {
+    const std::string_view text = document.substr(after_byte_order_mark(document));
+    const std::string declaration =
+        lower_case(text.starts_with("<?xml") ? text.substr(0, text.find("?>")) : std::string_view());
+    return declaration.find("encoding") == std::string::npos ||
+           declaration.find("utf-8") != std::string::npos;
+}
+
+/// Reads a document. Its layers are parsed in pieces, as long as these are well-formed on their own.
+class SvgDocument {
+  public:
+    SvgDocument(std::string_view bytes, const std::string& name, ReadLimits& limits,
+                const Execution& execution)
+        : bytes_(bytes), name_(name), limits_(limits), executor_(execution),
+          progress_(execution, Stage::read, bytes.size()), reader_(name, limits), in_pieces_(is_utf8(bytes)) {
+    }
+
+    LayerFile read() {
+        limits_.keep_text_in_memory(bytes_.size());
+        if (!in_pieces_)
+            limits_.keep_in_memory();
+        LayerFile file{.path = name_, .format = "svg", .units_mm = 1, .rounding = text_rounding};
+        std::uint64_t held = 0;
+        XmlHandlers handlers = handlers_of(reader_, held, limits_);
+        handlers.progress = [&](std::size_t read) {
+            executor_.check_cancelled();
+            const std::size_t counted = std::min(read, counted_ahead_);
+            counted_ahead_ -= counted;
+            progress_.add(read - counted);
+        };
+        handlers.many = {"<g"};
+        handlers.skim = [&](std::string_view, std::size_t position) {
+            return XmlSkimmed{read_layers(position)};
+        };
+        parse_xml(bytes_, name_, handlers);
+        reader_.finish(file, bytes_.size(), executor_,
+                       [bytes = bytes_, &name = name_, parent = reader_.parent(),
+                        around = std::make_shared<SvgReader>(reader_.of_layers(1, limits_))](
+                           std::size_t begin, ReadLimits& limits) {
+                           SvgReader reader = around->of_layers(1, limits);
+                           std::uint64_t kept = 0;
+                           static_cast<void>(parse_xml_elements(bytes, begin, begin + 1, parent, name,
+                                                                handlers_of(reader, kept, limits)));
+                           return std::move(reader).layer();
+                       });
+        progress_.finish();
+        return file;
+    }
+
+  private:
+    struct Piece {
+        SvgReader reader;
+        bool sound = false;
+        std::size_t end = std::string_view::npos; ///< where the next piece begins, if it is sound
+    };
+
+    /// `held` counts the bytes for the longest attribute.
+    static XmlHandlers handlers_of(SvgReader& reader, std::uint64_t& held, ReadLimits& limits) {
+        return {.start = [&](XmlName element, const XmlAttributes& attributes,
+                             std::size_t line) { reader.start(element.local, attributes, line); },
+                .end = [&](XmlName) { reader.end(); },
+                .hold =
+                    [&](std::size_t token) {
+                        // The parser's buffer, the one before it, and the values of attributes.
+                        const std::uint64_t taken = 4 * std::uint64_t{token};
+                        if (taken <= held)
+                            return;
+                        limits.add_bytes_at(taken - held,
+                                            [] { return std::string_view("a long attribute"); });
+                        held = taken;
+                    },
+                .element =
+                    [&](std::size_t position) {
+                        reader.start_at(position);
+                    }};
+    }
+
+    /// Reads the layers from `position` on. Returns the number of bytes that are read.
+    std::size_t read_layers(std::size_t position) {
+        if (!reader_.is_in_root() || !in_pieces_)
+            return 0;
+        const std::string parent = reader_.parent();
+        // Layers probably begin like the first one, up to the value of an attribute.
+        constexpr std::size_t longest = 64;
+        const std::string_view first = bytes_.substr(position, longest);
+        const TextPieces pieces =
+            find_text_pieces(bytes_, position, first.substr(0, first.find_first_of("\"'>")), executor_);
+        std::size_t end = position;
+        read_pieces(
+            pieces.begins(), bytes_.size(), executor_,
+            [&](std::size_t from, std::size_t limit) {
+                return read_piece(from, limit, parent, pieces.line(from));
+            },
+            [&](Piece&& piece) {
+                in_pieces_ = in_pieces_ && piece.sound && reader_.append(std::move(piece.reader));
+                if (in_pieces_)
+                    end = piece.end;
+            });
+        counted_ahead_ += end - position;
+        return end - position;
+    }
+
+    Piece read_piece(std::size_t begin, std::size_t limit, std::string_view parent, std::uint64_t line) {
+        executor_.check_cancelled();
+        Piece piece{.reader = reader_.of_layers(line, limits_)};
+        std::uint64_t held = 0;
+        XmlHandlers handlers = handlers_of(piece.reader, held, limits_);
+        handlers.progress = [&](std::size_t) {
+            executor_.check_cancelled();
+        };
+        try {
+            piece.end = parse_xml_elements(bytes_, begin, limit, parent, name_, handlers);
+            piece.sound = true;
+            progress_.add(piece.end - begin);
+        } catch (const Error& error) {
+            if (error.kind() != ErrorKind::input)
+                throw;
+        }
+        limits_.give_back(0, held);
+        return piece;
+    }
+
+    std::string_view bytes_;
+    const std::string& name_;
+    ReadLimits& limits_;
+    Executor executor_;
+    ProgressMeter progress_;
+    SvgReader reader_;
+    bool in_pieces_;
+    std::size_t counted_ahead_ = 0; ///< bytes whose progress was reported before the parser skipped them
+};
+
+} // namespace
+
 LayerFile read_layered_svg(std::string_view bytes, const std::string& name, ReadLimits& limits,
                            const Execution& execution) {
-    LayerFile file{.path = name, .format = "svg", .units_mm = 1, .rounding = text_rounding};
-    SvgReader reader(name, bytes.size(), file, limits);
-    Executor executor(execution);
-    ProgressMeter progress(execution, Stage::read, bytes.size());
-    std::uint64_t held = 0; // counted for the longest attribute
-    parse_xml(bytes, name,
-              {[&](XmlName element, const XmlAttributes& attributes, std::size_t line) {
-                   reader.start(element.local, attributes, line);
-               },
-               [&](XmlName) { reader.end(); },
-               [&](std::size_t read) {
-                   executor.check_cancelled();
-                   progress.add(read);
-               },
-               [&](std::size_t token) {
-                   // The parser's buffer, the one before it, and the values of attributes.
-                   const std::uint64_t taken = 4 * std::uint64_t{token};
-                   if (taken <= held)
-                       return;
-                   limits.add_bytes_at(taken - held, [] { return std::string_view("a long attribute"); });
-                   held = taken;
-               }});
-    reader.finish();
-    progress.finish();
-    return file;
+    return SvgDocument(bytes, name, limits, execution).read();
 }
 
 } // namespace lamella

@@ -54,8 +54,8 @@ class MeshDocumentReader {
 
   protected:
     /// `name` is the document's name in errors; positions in it are lines, preceded by `part`. If `skim` is
-    /// true, sequences of vertices and triangles are left unread in `text`.
-    MeshDocumentReader(const std::string& name, const std::string& part, bool skim, ReadLimits& limits)
+    /// not null, sequences of vertices and triangles are left unread in `text`; its threads find their ends.
+    MeshDocumentReader(const std::string& name, const std::string& part, Executor* skim, ReadLimits& limits)
         : name_(name), part_(part), skim_(skim), limits_(limits) {}
 
     /// Returns the kind of the element.
@@ -75,7 +75,7 @@ class MeshDocumentReader {
             where_.pop_back();
             end(ended);
         };
-        if (skim_) {
+        if (skim_ != nullptr) {
             handlers.many = {form.vertex.tag, form.triangle.tag};
             handlers.skim = [this, &form](std::string_view document, std::size_t location) {
                 return skim(document, location, form);
@@ -135,20 +135,20 @@ class MeshDocumentReader {
     }
 
   private:
-    std::size_t skim(std::string_view document, std::size_t location, const MeshTextForm& form) {
+    XmlSkimmed skim(std::string_view document, std::size_t location, const MeshTextForm& form) {
         const bool vertices = in() == Where::vertices;
         if (!vertices && in() != Where::triangles)
-            return 0;
+            return {};
         MeshText& text = object().text;
         text.location = here();
-        return vertices ? take_run(document, location, form.vertex.end_of_list, text.vertices)
-                        : take_run(document, location, form.triangle.end_of_list, text.triangles);
+        return vertices ? take_run(document, location, form.vertex.end_of_list, text.vertices, *skim_)
+                        : take_run(document, location, form.triangle.end_of_list, text.triangles, *skim_);
     }
 
     /// Fails if the document is skimmed, because the order of vertices would be lost if the parser read some
     /// of them.
     void require_all_by_parser() const {
-        if (skim_)
+        if (skim_ != nullptr)
             fail("found a mesh that is not written plainly");
     }
 
@@ -161,7 +161,7 @@ class MeshDocumentReader {
 
     const std::string& name_;
     const std::string part_;
-    const bool skim_;
+    Executor* const skim_;
     ReadLimits& limits_;
     std::uint64_t open_triangles_ = 0; ///< not yet counted in the limits
     std::uint64_t open_bytes_ = 0;

@@ -91,6 +91,8 @@ constexpr std::string_view compressed =
     "is compressed by a method that is not read here; decompress it first, or compress it with gzip";
 constexpr std::string_view surfaces =
     "is a CAD file of surfaces without triangles; export STL, 3MF, OBJ or PLY from a CAD program";
+constexpr std::string_view drawing =
+    "is a DXF drawing, which is only written here and not read; take the mesh, or layers in another format";
 constexpr std::string_view scene =
     "is a kind of mesh file that is not read here; save it as STL, 3MF, OBJ or PLY";
 
@@ -194,6 +196,11 @@ constexpr std::array rows = {
     MeshFormatRow{.first_bytes = "\x04\x22\x4d\x18"sv, .advice = compressed}, // LZ4
     MeshFormatRow{.first_bytes = "MSCF"sv, .advice = compressed},             // Microsoft Cabinet
     MeshFormatRow{.first_bytes = "Rar!"sv, .advice = compressed},
+    // DXF files begin with one of two groups, in which other programs write no blanks.
+    MeshFormatRow{.first_bytes = "0\nSECTION"sv, .advice = drawing},
+    MeshFormatRow{.first_bytes = "0\r\nSECTION"sv, .advice = drawing},
+    MeshFormatRow{.first_bytes = "999\n"sv, .advice = drawing}, // a comment
+    MeshFormatRow{.first_bytes = "999\r\n"sv, .advice = drawing},
     MeshFormatRow{.first_bytes = "iso-10303-21"sv, .advice = surfaces}, // STEP
     // Compound documents, as SolidWorks and Inventor write.
     MeshFormatRow{.first_bytes = "\xd0\xcf\x11\xe0"sv, .advice = surfaces},

@@ -1,5 +1,6 @@
 #include "read/mesh_text.hpp"
 
+#include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "read/read_limits.hpp"
@@ -107,14 +108,36 @@ void give_back(const IndexedMesh& mesh, ReadLimits& limits) {
     limits.give_back(mesh.triangles.size(), mesh_bytes(mesh.vertices.size(), mesh.triangles.size()));
 }
 
-std::size_t take_run(std::string_view document, std::size_t location, std::string_view end_tag,
-                     std::vector<std::string_view>& runs) {
+XmlSkimmed take_run(std::string_view document, std::size_t location, std::string_view end_tag,
+                    std::vector<std::string_view>& runs, Executor& executor) {
     assert(location <= document.size());
-    const std::size_t end = document.find(end_tag, location);
-    if (end == std::string_view::npos)
-        return 0;
-    runs.push_back(document.substr(location, end - location));
-    return end - location;
+    struct Chunk {
+        std::size_t end = std::string_view::npos; ///< where the tag is
+        std::uint64_t lines = 0;                  ///< line ends up to there
+    };
+    // Most sequences are short. Of a long one, all threads search several chunks before the next ones.
+    std::size_t chunks_ahead = 1;
+    std::uint64_t lines = 0;
+    for (std::size_t at = location; at < document.size();) {
+        std::vector<Chunk> chunks(std::min((document.size() - at) / text_chunk_bytes + 1, chunks_ahead));
+        executor.for_chunks(chunks.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+            const std::size_t begin = at + static_cast<std::size_t>(i) * text_chunk_bytes;
+            const std::size_t end = std::min(begin + text_chunk_bytes, document.size());
+            Chunk& chunk = chunks[i];
+            chunk.end = document.substr(0, end - 1 + end_tag.size()).find(end_tag, begin);
+            chunk.lines = line_at(document.substr(begin), std::min(chunk.end, end) - begin) - 1;
+        });
+        for (const Chunk& chunk : chunks) {
+            lines += chunk.lines;
+            if (chunk.end == std::string_view::npos)
+                continue;
+            runs.push_back(document.substr(location, chunk.end - location));
+            return {chunk.end - location, lines};
+        }
+        at = std::min(at + chunks.size() * text_chunk_bytes, document.size());
+        chunks_ahead = 4 * std::size_t{executor.workers()};
+    }
+    return {};
 }
 
 std::size_t degenerate_triangles(const IndexedMesh& mesh) {

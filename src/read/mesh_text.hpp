@@ -6,6 +6,8 @@
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
 
+#include "container/xml.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -31,10 +33,10 @@ struct MeshText {
     std::string location; ///< for error messages
 };
 
-/// Appends the sequence from offset `location` of a document up to `end_tag` to `runs`. Returns its length; 0
-/// if this tag is missing.
-[[nodiscard]] std::size_t take_run(std::string_view document, std::size_t location, std::string_view end_tag,
-                                   std::vector<std::string_view>& runs);
+/// Appends the sequence from offset `location` of a document up to `end_tag` to `runs`, and returns it; no
+/// bytes if this tag is missing. All threads look for the end of a long sequence.
+[[nodiscard]] XmlSkimmed take_run(std::string_view document, std::size_t location, std::string_view end_tag,
+                                  std::vector<std::string_view>& runs, Executor& executor);
 
 /// The written form of a kind of element.
 template <class Item>

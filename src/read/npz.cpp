@@ -5,6 +5,7 @@
 #include "core/executor.hpp"
 #include "core/farthest.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_pieces.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 
@@ -16,6 +17,7 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -236,11 +238,12 @@ class NpzReader {
         std::vector<RawLayer> raw;
         limits_.make_room(raw, z.size(), [] { return std::string_view("array 'z'"); });
         raw.resize(z.size());
-        read_contours(points, offsets, closed, layer, part, raw);
+        read_contours({points, offsets, closed, layer, part}, raw, executor);
         read_hatches(raw);
         constexpr std::uint64_t most_index = 9'000'000'000'000'000;
+        std::vector<PlacedLayer> planes;
+        planes.reserve(raw.size());
         for (std::uint64_t i = 0; i < raw.size(); ++i) {
-            executor.check_cancelled();
             const double at = z.length(i);
             const double from = bottom.length(i);
             const double to = top.length(i);
@@ -249,8 +252,9 @@ class NpzReader {
                        "z must lie between bottom and top");
             if (i > 0 && !(z.length(i - 1) < at))
                 z.fail(fmt::format("z = {} behind z = {}", at, z.length(i - 1)), "layers must ascend");
-            add_layer(file_, raw[i], index.whole(i, most_index), at, from, to, limits_);
+            planes.push_back({&raw[i], index.whole(i, most_index), at, from, to});
         }
+        add_layers(file_, planes, limits_, executor);
         for (const Array* lengths : {&points, &z, &bottom, &top})
             if (lengths->is_single_precision())
                 file_.rounding.single_precision = true;
@@ -281,24 +285,103 @@ class NpzReader {
         return result;
     }
 
-    void read_contours(const Array& points, const Array& offsets, const Array& closed, const Array& layer,
-                       const Array& part, std::vector<RawLayer>& raw) {
-        std::uint64_t begin = offsets.whole(0, 0);
-        for (std::uint64_t i = 0; i + 1 < offsets.size(); ++i) {
-            const std::uint64_t end = offsets.whole(i + 1, points.size());
+    /// Consecutive contours, as a list of layers for each change of layers.
+    struct Piece {
+        std::vector<std::pair<std::uint64_t, RawLayer>> layers = {}; ///< with the number of the layer
+        DroppedContours dropped = {};
+        std::size_t end = 0; ///< number of the next contour
+    };
+
+    /// The arrays that describe contours.
+    struct Contours {
+        const Array& points;
+        const Array& offsets;
+        const Array& closed;
+        const Array& layer;
+        const Array& part;
+
+        [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
+    };
+
+    void read_contours(const Contours& contours, std::vector<RawLayer>& raw, Executor& executor) {
+        static_cast<void>(contours.offsets.whole(0, 0));
+        read_pieces(
+            pieces_of(contours), contours.size(), executor,
+            [&](std::size_t begin, std::size_t limit) {
+                executor.check_cancelled();
+                return read_piece(contours, begin, limit, raw.size());
+            },
+            [&](Piece&& piece) {
+                dropped_.add(piece.dropped);
+                for (auto& [layer, contents] : piece.layers) {
+                    RawLayer& into = raw[layer];
+                    if (into.ends.empty())
+                        into = std::move(contents);
+                    else
+                        append(into, contents);
+                }
+            });
+    }
+
+    /// Returns the contours with which pieces begin: where the layer changes, as far as the arrays are sound.
+    static PieceBegins pieces_of(const Contours& contours) {
+        constexpr std::uint64_t points_of_piece = layer_piece_bytes / sizeof(Point2);
+        PieceBegins begins{0};
+        try {
+            std::uint64_t from = 0;
+            for (std::size_t i = 1; i < contours.size(); ++i) {
+                const std::uint64_t offset = contours.offsets.whole(i, contours.points.size());
+                if (offset - from < points_of_piece || offset < from)
+                    continue;
+                constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
+                if (contours.layer.whole(i, any) == contours.layer.whole(i - 1, any))
+                    continue;
+                begins.push_back(i);
+                from = offset;
+            }
+        } catch (const Error&) { // reading the contours reports it
+        }
+        return begins;
+    }
+
+    Piece read_piece(const Contours& contours, std::size_t from, std::size_t to, std::size_t layers) const {
+        const Array& points = contours.points;
+        Piece piece;
+        std::uint64_t begin = contours.offsets.whole(from, points.size());
+        for (std::uint64_t i = from; i < to; ++i) {
+            const std::uint64_t end = contours.offsets.whole(i + 1, points.size());
             if (end < begin)
-                offsets.fail(fmt::format("{} behind {}", end, begin), "they must not descend");
-            RawLayer& into = raw[layer.whole(i, raw.size() - 1)];
-            const auto of_part = static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1));
+                contours.offsets.fail(fmt::format("{} behind {}", end, begin), "they must not descend");
+            const std::uint64_t layer = contours.layer.whole(i, layers - 1);
+            const auto of_part = static_cast<std::uint32_t>(contours.part.whole(i, file_.parts.size() - 1));
             const auto position = [&] {
                 return fmt::format("contour {}", i);
             };
+            if (piece.layers.empty() || piece.layers.back().first != layer) {
+                limits_.make_room(piece.layers, 1, position);
+                piece.layers.emplace_back(layer, RawLayer{});
+            }
+            RawLayer& into = piece.layers.back().second;
             limits_.make_room(into.points, end - begin, position);
             for (std::uint64_t k = begin; k < end; ++k)
                 into.points.push_back({points.length(2 * k), points.length(2 * k + 1)});
-            into.end_contour(closed.whole(i, 1) != 0, of_part, limits_, position, dropped_);
+            into.end_contour(contours.closed.whole(i, 1) != 0, of_part, limits_, position, piece.dropped);
             begin = end;
         }
+        piece.end = to;
+        return piece;
+    }
+
+    /// Appends the contours of a layer that comes more than once.
+    void append(RawLayer& into, const RawLayer& more) const {
+        const auto location = [] {
+            return std::string_view("array 'layer'");
+        };
+        limits_.make_room(into.points, more.points.size(), location);
+        limits_.make_room(into.ends, more.ends.size(), location);
+        into.append(more);
+        limits_.give_back(0, more.points.capacity() * sizeof(Point2) +
+                                 more.ends.capacity() * sizeof(RawLayer::Contour));
     }
 
     void read_rule() const {

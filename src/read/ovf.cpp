@@ -9,6 +9,7 @@
 #include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_pieces.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 
@@ -19,9 +20,13 @@
 #include <cmath>
 #include <compare>
 #include <cstring>
+#include <exception>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -190,11 +195,11 @@ class JobShell {
     double layer_thickness_ = 0;
 };
 
-/// The messages of a file, by their offsets. Each may be read once.
+/// The messages of a file, by their offsets.
 class OvfMessages {
   public:
-    OvfMessages(std::string_view bytes, const std::string& name, ReadLimits& limits, ProgressMeter& progress)
-        : bytes_(bytes), name_(name), limits_(limits), progress_(progress) {}
+    OvfMessages(std::string_view bytes, const std::string& name, ReadLimits& limits)
+        : bytes_(bytes), name_(name), limits_(limits) {}
 
     [[noreturn]] void fail(std::uint64_t offset, const std::string& found,
                            const std::string& expected) const {
@@ -203,7 +208,7 @@ class OvfMessages {
     }
 
     /// Returns the 64-bit offset that is stored at `offset`.
-    std::uint64_t position_at(std::uint64_t offset) const {
+    [[nodiscard]] std::uint64_t position_at(std::uint64_t offset) const {
         std::int64_t position = 0;
         if (offset > bytes_.size() || bytes_.size() - offset < sizeof position)
             fail(offset, "the end of the file", "expected the offset of a table here");
@@ -214,12 +219,15 @@ class OvfMessages {
         return static_cast<std::uint64_t>(position);
     }
 
-    /// Returns the message at `offset`. Throws Error{input} if a part of it was read before. Otherwise a
-    /// small file whose tables refer to the same message many times could take very long.
-    ProtobufReader at(std::uint64_t offset) {
+    [[nodiscard]] ProtobufReader at(std::uint64_t offset) const {
+        return ProtobufReader::delimited(bytes_, offset, name_);
+    }
+
+    /// Takes the message at `offset` and returns its size. Throws Error{input} if a part of it was taken
+    /// before. Otherwise a small file whose tables refer to the same message many times could take very long.
+    std::uint64_t take(std::uint64_t offset) {
         std::uint64_t end = offset;
-        ProtobufReader fields = ProtobufReader::delimited(bytes_, end, name_);
-        progress_.add(end - offset);
+        static_cast<void>(ProtobufReader::delimited(bytes_, end, name_));
         const auto next = taken_.upper_bound(offset);
         const auto last = next == taken_.begin() ? taken_.end() : std::prev(next);
         if ((next != taken_.end() && next->first < end) || (last != taken_.end() && last->second > offset))
@@ -230,11 +238,13 @@ class OvfMessages {
             limits_.add_bytes_at(node_bytes, at_byte(offset));
             taken_.emplace_hint(next, offset, end);
         }
-        return fields;
+        return end - offset;
     }
 
-    Table table_at(std::uint64_t offset) {
+    /// Takes a table.
+    Table take_table(std::uint64_t offset) {
         Table table;
+        take(offset);
         ProtobufReader fields = at(offset);
         while (fields.next()) {
             const auto position = [&](std::int64_t value) {
@@ -258,49 +268,87 @@ class OvfMessages {
     std::string_view bytes_;
     const std::string& name_;
     ReadLimits& limits_;
-    ProgressMeter& progress_;
-    std::map<std::uint64_t, std::uint64_t> taken_; ///< begin and end of the messages read
+    std::map<std::uint64_t, std::uint64_t> taken_; ///< begin and end of the messages taken
 };
 
-class OvfReader {
-  public:
-    OvfReader(std::string_view bytes, const std::string& name, LayerFile& file, ReadLimits& limits,
-              const Execution& execution)
-        : bytes_(bytes), name_(name), file_(file), limits_(limits), executor_(execution),
-          progress_(execution, Stage::read, bytes.size()), messages_(bytes, name, limits, progress_),
-          job_(name, limits), parts_(limits) {}
+/// A work plane whose messages are known and not read yet.
+struct WorkPlane {
+    std::uint64_t begin = 0;
+    Table table;
+    std::uint64_t bytes = 0; ///< size of its shell and its blocks
+};
 
-    void read() {
-        const Table planes = messages_.table_at(messages_.position_at(ovf::magic.size()));
-        job_.read(bytes_, planes.shell);
-        for (const std::uint64_t plane : planes.positions)
-            read_plane(plane);
-        if (layers_.empty())
-            throw Error(ErrorKind::input,
-                        fmt::format("{}: found no work plane; there must be one at least", name_));
-        if (job_.planes() != 0 && job_.planes() != static_cast<std::int64_t>(layers_.size()))
-            file_.warnings.push_back(fmt::format("the job announces {} work planes; the file has {}",
-                                                 job_.planes(), layers_.size()));
-        number_parts();
-        make_layers();
-        append_to(names_, file_.warnings);
-        for (const CountedWarning* warning : {&other_blocks_, &other_numbers_, &moved_, &other_vectors_,
-                                              &repeated_blocks_, &repeated_planes_, &other_lasers_})
-            warning->append_to(file_.warnings);
-        dropped_.append_to(file_.warnings);
-        progress_.finish();
+/// Irregularities of work planes and blocks.
+struct PlaneWarnings {
+    CountedWarning other_blocks{"work plane announces another number of blocks than the file has",
+                                "work planes announce another number of blocks than the file has"};
+    CountedWarning other_numbers{
+        "number of a work plane does not follow that of the one before; planes may be missing",
+        "numbers of work planes do not follow those of the ones before; planes may be missing"};
+    CountedWarning moved{"work plane is moved or rotated; its vectors were read as they stand",
+                         "work planes are moved or rotated; their vectors were read as they stand"};
+    CountedWarning other_vectors{"block holds other vectors than lines and hatches; it was left out",
+                                 "blocks hold other vectors than lines and hatches; they were left out"};
+    CountedWarning repeated_blocks{"block is to be executed more than once; its vectors were read once",
+                                   "blocks are to be executed more than once; their vectors were read once"};
+    CountedWarning repeated_planes{
+        "work plane is to be executed more than once; its vectors were read once",
+        "work planes are to be executed more than once; their vectors were read once"};
+    CountedWarning other_lasers{"block is for another laser than the first; which one was left out",
+                                "blocks are for another laser than the first; which one was left out"};
+    DroppedContours dropped;
+
+    /// Adds those of later planes.
+    void add(const PlaneWarnings& later) {
+        for (const auto warning : all)
+            (this->*warning).add(later.*warning);
+        dropped.add(later.dropped);
+    }
+    void append_to(std::vector<std::string>& warnings) const {
+        for (const auto warning : all)
+            (this->*warning).append_to(warnings);
+        dropped.append_to(warnings);
     }
 
   private:
-    void read_plane(std::uint64_t begin) {
-        executor_.check_cancelled();
-        const Table table = messages_.table_at(messages_.position_at(begin));
-        limits_.make_room(layers_, 1, at_byte(begin));
-        RawLayer& raw = layers_.emplace_back();
-        raw.location = fmt::format("byte {}", begin);
+    static constexpr CountedWarning PlaneWarnings::*all[] = {
+        &PlaneWarnings::other_blocks,  &PlaneWarnings::other_numbers,   &PlaneWarnings::moved,
+        &PlaneWarnings::other_vectors, &PlaneWarnings::repeated_blocks, &PlaneWarnings::repeated_planes,
+        &PlaneWarnings::other_lasers};
+};
+
+/// The contents of consecutive work planes.
+struct Planes {
+    explicit Planes(ReadLimits& limits) : parts(limits) {}
+
+    std::vector<RawLayer> layers;
+    PartNumbers<BlockKind> parts;
+    PlaneWarnings warnings;
+    std::uint64_t first_number = 0; ///< of the first plane
+    std::uint64_t last_number = 0;
+    std::size_t end = 0; ///< index of the plane that follows
+
+    /// Compares the numbers of two consecutive planes. If planes have no numbers, all are 0.
+    void compare_numbers(std::uint64_t before, std::uint64_t number, const std::string& location) {
+        if (number != 0 && number != before + 1)
+            warnings.other_numbers.note([&] { return location; });
+    }
+};
+
+/// Reads work planes in ascending order.
+class PlaneReader {
+  public:
+    PlaneReader(const OvfMessages& messages, const JobShell& job, Planes& planes, ReadLimits& limits)
+        : messages_(messages), job_(job), planes_(planes), limits_(limits) {}
+
+    void read(const WorkPlane& plane) {
+        limits_.make_room(planes_.layers, 1, at_byte(plane.begin));
+        RawLayer& raw = planes_.layers.emplace_back();
+        raw.location = fmt::format("byte {}", plane.begin);
+        raw.begin = plane.begin;
         std::int64_t blocks = 0; // number of blocks that the plane claims
         std::uint64_t number = 0;
-        ProtobufReader shell = messages_.at(table.shell);
+        ProtobufReader shell = messages_.at(plane.table.shell);
         while (shell.next()) {
             if (shell.field() == ovf::work_plane::z)
                 raw.z = finite_real(shell);
@@ -309,23 +357,25 @@ class OvfReader {
             else if (shell.field() == ovf::work_plane::number)
                 number = static_cast<std::uint64_t>(shell.integer());
             else if (shell.field() == ovf::work_plane::repeats && shell.integer() != 0)
-                repeated_planes_.note(at_byte(begin));
+                planes_.warnings.repeated_planes.note(at_byte(plane.begin));
             else if (shell.type() == ProtobufType::bits_32 &&
                      (shell.field() <= ovf::work_plane::y || (shell.field() >= ovf::work_plane::x_turn &&
                                                               shell.field() <= ovf::work_plane::z_turn)) &&
                      shell.real() != 0)
-                moved_.note(at_byte(begin));
+                planes_.warnings.moved.note(at_byte(plane.begin));
         }
-        if (blocks != 0 && blocks != static_cast<std::int64_t>(table.positions.size()))
-            other_blocks_.note(at_byte(begin));
-        // If planes have no numbers, all are 0.
-        if (number != 0 && number != last_number_ + 1)
-            other_numbers_.note(at_byte(begin));
-        last_number_ = number;
-        for (const std::uint64_t block : table.positions)
+        if (blocks != 0 && blocks != static_cast<std::int64_t>(plane.table.positions.size()))
+            planes_.warnings.other_blocks.note(at_byte(plane.begin));
+        if (planes_.layers.size() == 1)
+            planes_.first_number = number;
+        else
+            planes_.compare_numbers(planes_.last_number, number, raw.location);
+        planes_.last_number = number;
+        for (const std::uint64_t block : plane.table.positions)
             read_block(block, raw);
     }
 
+  private:
     void read_block(std::uint64_t begin, RawLayer& raw) {
         ProtobufReader fields = messages_.at(begin);
         BlockKind kind;
@@ -338,13 +388,13 @@ class OvfReader {
             else if (fields.field() == ovf::block::hatches)
                 hatches = fields.message();
             else if (fields.field() <= ovf::block::last_of_vectors)
-                other_vectors_.note(at_byte(begin));
+                planes_.warnings.other_vectors.note(at_byte(begin));
             else if (fields.field() == ovf::block::marking_params_key)
                 kind.parameters = fields.integer();
             else if (fields.field() == ovf::block::laser_index && fields.integer() != 0)
-                other_lasers_.note(at_byte(begin));
+                planes_.warnings.other_lasers.note(at_byte(begin));
             else if (fields.field() == ovf::block::repeats && fields.integer() != 0)
-                repeated_blocks_.note(at_byte(begin));
+                planes_.warnings.repeated_blocks.note(at_byte(begin));
             else if (fields.field() == ovf::block::meta_data)
                 read_meta_data(fields.message(), kind);
             else if (fields.field() == ovf::block::lpbf_meta_data) {
@@ -362,9 +412,9 @@ class OvfReader {
             kind.area = ovf::block::lpbf::contour; // without metadata the type of vectors determines the
                                                    // region
         if (lines)
-            add_line_sequence(*lines, begin, parts_.number_of(kind, at_byte(begin)), raw);
+            add_line_sequence(*lines, begin, planes_.parts.number_of(kind, at_byte(begin)), raw);
         if (hatches)
-            add_hatches(*hatches, begin, parts_.number_of(kind, at_byte(begin)), raw);
+            add_hatches(*hatches, begin, planes_.parts.number_of(kind, at_byte(begin)), raw);
     }
 
     static void read_meta_data(ProtobufReader fields, BlockKind& kind) {
@@ -413,7 +463,7 @@ class OvfReader {
                            RawLayer& raw) {
         add_points(lines, begin, 2, raw.points);
         const bool closed = raw.points.size() - raw.contour_begin() > 3 && raw.returns();
-        raw.end_contour(closed, part, limits_, at_byte(begin), dropped_);
+        raw.end_contour(closed, part, limits_, at_byte(begin), planes_.warnings.dropped);
     }
 
     void add_hatches(const ProtobufReader& hatches, std::uint64_t begin, std::uint32_t part, RawLayer& raw) {
@@ -421,14 +471,108 @@ class OvfReader {
         raw.end_hatches(part, limits_, at_byte(begin));
     }
 
+    const OvfMessages& messages_;
+    const JobShell& job_;
+    Planes& planes_;
+    ReadLimits& limits_;
+};
+
+class OvfReader {
+  public:
+    OvfReader(std::string_view bytes, const std::string& name, LayerFile& file, ReadLimits& limits,
+              const Execution& execution)
+        : bytes_(bytes), name_(name), file_(file), limits_(limits), executor_(execution),
+          progress_(execution, Stage::read, bytes.size()), messages_(bytes, name, limits), job_(name, limits),
+          all_(limits) {}
+
+    void read() {
+        const Table planes = messages_.take_table(messages_.position_at(ovf::magic.size()));
+        job_.read(bytes_, planes.shell);
+        read_planes(planes.positions);
+        if (all_.layers.empty())
+            throw Error(ErrorKind::input,
+                        fmt::format("{}: found no work plane; there must be one at least", name_));
+        if (job_.planes() != 0 && job_.planes() != static_cast<std::int64_t>(all_.layers.size()))
+            file_.warnings.push_back(fmt::format("the job announces {} work planes; the file has {}",
+                                                 job_.planes(), all_.layers.size()));
+        number_parts();
+        make_layers();
+        append_to(names_, file_.warnings);
+        all_.warnings.append_to(file_.warnings);
+        progress_.finish();
+    }
+
+  private:
+    /// Reads the work planes at these offsets: finds their messages first, and then reads those on all
+    /// threads.
+    void read_planes(const std::vector<std::uint64_t>& offsets) {
+        std::vector<WorkPlane> planes;
+        limits_.make_room(planes, offsets.size(), at_byte(ovf::magic.size()));
+        PieceBegins begins;
+        std::exception_ptr error; // of the plane after those found
+        std::uint64_t bytes = 0;  // of the last piece
+        try {
+            for (const std::uint64_t begin : offsets) {
+                executor_.check_cancelled();
+                WorkPlane plane{begin, messages_.take_table(messages_.position_at(begin)), 0};
+                plane.bytes += messages_.take(plane.table.shell);
+                for (const std::uint64_t block : plane.table.positions)
+                    plane.bytes += messages_.take(block);
+                if (begins.empty() || bytes >= layer_piece_bytes) {
+                    begins.push_back(planes.size());
+                    bytes = 0;
+                }
+                bytes += plane.bytes;
+                planes.push_back(std::move(plane));
+            }
+        } catch (const Error& found) {
+            if (found.kind() != ErrorKind::input)
+                throw;
+            error = std::current_exception();
+        }
+        if (!planes.empty())
+            read_pieces(
+                begins, planes.size(), executor_,
+                [&](std::size_t begin, std::size_t end) {
+                    return read_piece(std::span(planes).subspan(begin, end - begin), end);
+                },
+                [&](Planes&& piece) { take(std::move(piece)); });
+        if (error)
+            std::rethrow_exception(error);
+        limits_.give_back(0, planes.capacity() * sizeof(WorkPlane));
+    }
+
+    Planes read_piece(std::span<const WorkPlane> planes, std::size_t end) {
+        Planes piece(limits_);
+        piece.end = end;
+        PlaneReader reader(messages_, job_, piece, limits_);
+        for (const WorkPlane& plane : planes) {
+            executor_.check_cancelled();
+            reader.read(plane);
+            progress_.add(plane.bytes);
+        }
+        drop_contents(piece.layers, limits_);
+        return piece;
+    }
+
+    void take(Planes&& piece) {
+        all_.compare_numbers(all_.last_number, piece.first_number, piece.layers.front().location);
+        all_.last_number = piece.last_number;
+        all_.warnings.add(piece.warnings);
+        all_.parts.add(
+            piece.parts, piece.layers, [](const BlockKind& kind) { return kind; },
+            [&] { return std::string_view(piece.layers.front().location); });
+        append_layers(all_.layers, std::move(piece.layers), limits_);
+    }
+
     /// Numbers parts in the order of their keys, and the exposures of a part in the order of the keys of
     /// their parameters.
     void number_parts() {
-        if (parts_.empty())
-            parts_.number_of({.part = job_.first_part()}, at_byte(bytes_.size()));
+        if (all_.parts.empty())
+            all_.parts.number_of({.part = job_.first_part()}, at_byte(bytes_.size()));
         ReadLabels read_labels;
         std::map<std::int64_t, std::string> labels; // of parts with vectors
-        parts_.put(file_, layers_, [&](const BlockKind& kind) {
+        all_.parts.put(file_, all_.layers, [&](const BlockKind& kind) {
             const auto [label, is_new] = labels.try_emplace(kind.part);
             if (is_new)
                 label->second = names_.of(read_labels.of(job_.label(kind.part)));
@@ -444,13 +588,23 @@ class OvfReader {
 
     /// Makes layers; the heights are their tops.
     void make_layers() {
-        sort_by_height(layers_, file_.warnings);
-        check_part_planes(file_, layers_.size(), bytes_.size());
-        const double first = layers_.front().z;
+        sort_by_height(all_.layers, file_.warnings);
+        check_part_planes(file_, all_.layers.size(), bytes_.size());
+        const double first = all_.layers.front().z;
         const double first_step = job_.layer_thickness() > 0 ? job_.layer_thickness()
-                                  : layers_.size() > 1       ? layers_[1].z - first
+                                  : all_.layers.size() > 1   ? all_.layers[1].z - first
                                                              : std::max(first, 0.0);
-        add_layers_by_tops(file_, layers_, first - first_step, limits_);
+        add_layers_by_tops(file_, all_.layers, first - first_step, limits_, executor_,
+                           [bytes = bytes_, &name = name_,
+                            job = std::make_shared<const JobShell>(std::move(job_)),
+                            kinds = all_.parts.keys()](std::size_t begin, ReadLimits& limits) {
+                               OvfMessages messages(bytes, name, limits);
+                               Planes planes(limits);
+                               PlaneReader(messages, *job, planes, limits)
+                                   .read({begin, messages.take_table(messages.position_at(begin)), 0});
+                               planes.parts.put(planes.layers.front(), kinds);
+                               return only_layer(std::move(planes.layers));
+                           });
     }
 
     std::string_view bytes_;
@@ -461,27 +615,8 @@ class OvfReader {
     ProgressMeter progress_;
     OvfMessages messages_;
     JobShell job_;
-    std::vector<RawLayer> layers_;
-    PartNumbers<BlockKind> parts_;
-    std::uint64_t last_number_ = 0; ///< of the last work plane
-    CountedWarning other_blocks_{"work plane announces another number of blocks than the file has",
-                                 "work planes announce another number of blocks than the file has"};
-    CountedWarning other_numbers_{
-        "number of a work plane does not follow that of the one before; planes may be missing",
-        "numbers of work planes do not follow those of the ones before; planes may be missing"};
-    CountedWarning moved_{"work plane is moved or rotated; its vectors were read as they stand",
-                          "work planes are moved or rotated; their vectors were read as they stand"};
-    CountedWarning other_vectors_{"block holds other vectors than lines and hatches; it was left out",
-                                  "blocks hold other vectors than lines and hatches; they were left out"};
-    CountedWarning repeated_blocks_{"block is to be executed more than once; its vectors were read once",
-                                    "blocks are to be executed more than once; their vectors were read once"};
-    CountedWarning repeated_planes_{
-        "work plane is to be executed more than once; its vectors were read once",
-        "work planes are to be executed more than once; their vectors were read once"};
-    CountedWarning other_lasers_{"block is for another laser than the first; which one was left out",
-                                 "blocks are for another laser than the first; which one was left out"};
+    Planes all_;
     DistinctNames names_;
-    DroppedContours dropped_;
 };
 
 } // namespace

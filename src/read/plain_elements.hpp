@@ -32,15 +32,15 @@ class PlainTags {
     /// Returns whether only blanks are left.
     bool done() { return next() == end_; }
 
-  protected:
-    static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
-
     /// Skips blanks and returns the position.
     const char* next() {
         while (is_blank(*at_))
             ++at_;
         return at_;
     }
+
+  protected:
+    static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\r' || c == '\t'; }
 
     /// Moves to this position; returns false if it is null.
     bool move(const char* to) {
@@ -60,6 +60,9 @@ struct PlainValue {
     const char* end = nullptr; ///< end of the value; null if the value is invalid
 };
 
+/// The end of a tag: that of a whole element, or of its start tag; `none` if the tag is not plain.
+enum class PlainTagEnd { none, element, start_tag };
+
 /// A cursor over a sequence of elements.
 class PlainElements : public PlainTags {
   public:
@@ -67,31 +70,38 @@ class PlainElements : public PlainTags {
     PlainElements(std::string_view run, std::span<const std::string> prefixes)
         : PlainTags(run), prefixes_(prefixes) {}
 
-    /// Reads the next element, which begins with `tag`, and each of its `wanted` attributes by calling
-    /// read(name, length of the name, value), which returns a PlainValue. Returns false if the element is not
-    /// plain or lacks one of these attributes.
+    using PlainTags::take;
+
+    /// Reads the next element, which begins with `tag` and is empty, as take_attributes does.
     template <class Read>
     bool take(std::string_view tag, int wanted, const Read& read) {
-        if (!PlainTags::take(tag))
-            return false;
+        return PlainTags::take(tag) && take_attributes(wanted, read) == PlainTagEnd::element;
+    }
+
+    /// Reads the rest of a tag, and each of its `wanted` attributes by calling read(name, length of the name,
+    /// value), which returns a PlainValue. The tag is not plain if it lacks one of these attributes.
+    template <class Read>
+    PlainTagEnd take_attributes(int wanted, const Read& read) {
         unsigned seen = 0;
         std::size_t others = 0;
         for (;;) {
             const char* at = at_;
             while (is_blank(*at))
                 ++at;
-            if (*at == '/') {
-                at_ = at + 2;
-                return at[1] == '>' && seen == (1U << wanted) - 1;
+            const bool is_empty = *at == '/';
+            if (is_empty || *at == '>') {
+                at_ = at + (is_empty ? 2 : 1);
+                const bool plain = at_[-1] == '>' && seen == (1U << wanted) - 1;
+                return !plain ? PlainTagEnd::none : is_empty ? PlainTagEnd::element : PlainTagEnd::start_tag;
             }
             if (at == at_)
-                return false; // no blank before the attribute
+                return PlainTagEnd::none; // no blank before the attribute
             const char* const name = at;
             while (is_name(*at))
                 ++at;
             const auto length = static_cast<std::size_t>(at - name);
             if (length == 0 || *at != '=' || (at[1] != '"' && at[1] != '\''))
-                return false;
+                return PlainTagEnd::none;
             const char quote = at[1];
             const PlainValue value = read(name, length, at + 2);
             const char* stop = value.end;
@@ -99,11 +109,11 @@ class PlainElements : public PlainTags {
                 stop = is_new({name, length}, others) ? end_of_value(at + 2, quote) : nullptr;
             } else {
                 if ((seen >> value.index & 1) != 0)
-                    return false;
+                    return PlainTagEnd::none;
                 seen |= 1U << value.index;
             }
             if (stop == nullptr || *stop != quote)
-                return false;
+                return PlainTagEnd::none;
             at_ = stop + 1;
         }
     }

@@ -46,6 +46,13 @@ template <class Options>
     return options.max_memory == 0 ? 0 : memory_left(options.max_memory, options.held);
 }
 
+/// Returns whether the layers of a slice file of this size may not fit a limit. Besides the layers, each of
+/// several threads holds a piece of the file as text and as numbers.
+[[nodiscard]] constexpr bool is_tight_for_layers(std::uint64_t max_memory, std::uint64_t bytes) noexcept {
+    constexpr std::uint64_t ample = 8; // times the size of the file
+    return max_memory / ample < bytes;
+}
+
 /// Counts, from any thread, the triangles and bytes that a reader is about to create. Throws Error{limit} if
 /// a limit is exceeded, with the position in the file if it is given.
 class ReadLimits {
@@ -54,7 +61,24 @@ class ReadLimits {
     ReadLimits(const ByteSource& source, const MeshReadOptions& options)
         : ReadLimits(source, options.max_triangles, options.max_memory, options.held) {}
     ReadLimits(const ByteSource& source, const LayerReadOptions& options)
-        : ReadLimits(source, 0, options.max_memory, options.held) {}
+        : ReadLimits(source, 0, options.max_memory, options.held) {
+        layers_ = options.layers;
+    }
+    /// A copy counts on by itself.
+    ReadLimits(const ReadLimits& other)
+        : file_name_(other.file_name_), max_triangles_(other.max_triangles_), asked_(other.asked_),
+          limit_(other.limit_), max_memory_(other.max_memory_), held_(other.held_), layers_(other.layers_),
+          triangles_(other.triangles_.load()), bytes_(other.bytes_.load()) {}
+
+    /// Returns whether the reader keeps layers in memory. If not, it parses them again later.
+    [[nodiscard]] bool in_memory() const noexcept { return layers_ == LayersKept::all; }
+    /// For formats whose layers cannot be parsed one by one.
+    void keep_in_memory() noexcept { layers_ = LayersKept::all; }
+    /// For text formats; `bytes` is the size of the text.
+    void keep_text_in_memory(std::uint64_t bytes) noexcept {
+        if (layers_ == LayersKept::if_faster && !is_tight_for_layers(max_memory_, bytes))
+            keep_in_memory();
+    }
 
     void add_triangles(std::uint64_t count, std::string_view location = {}) {
         check_triangles(triangles_.fetch_add(count) + count, location);
@@ -94,6 +118,8 @@ class ReadLimits {
         bytes_.fetch_sub(bytes);
     }
 
+    /// Returns the bytes that were counted and not given back.
+    [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
     /// Returns the number of triangles that the limit still allows.
     [[nodiscard]] std::uint64_t triangles_left() const noexcept {
         return max_triangles_ == 0 ? std::numeric_limits<std::uint64_t>::max() : max_triangles_ - triangles_;
@@ -128,19 +154,21 @@ class ReadLimits {
     std::uint64_t limit_;
     std::uint64_t max_memory_; ///< what the limit leaves this file
     std::uint64_t held_;
+    LayersKept layers_ = LayersKept::all;
     std::atomic<std::uint64_t> triangles_{0};
     std::atomic<std::uint64_t> bytes_{0};
 };
 
 /// Unpacks an entry of an archive. Its bytes count before they are unpacked, and until the last copy of the
-/// result is gone; the limits must live as long.
+/// result is gone; the limits must live as long. For `helpers`, see ZipReader::read.
 [[nodiscard]] inline ByteSource unpacked_entry(const ZipReader& zip, const ZipEntry& entry,
-                                               ReadLimits& limits) {
+                                               ReadLimits& limits, Executor* helpers = nullptr) {
     std::uint64_t taken = 0;
-    ByteSource source = zip.read(entry, [&](std::uint64_t bytes) {
+    const auto count = [&](std::uint64_t bytes) {
         limits.add_bytes_at(bytes, [&] { return fmt::format("zip entry '{}'", printable(entry.name, 100)); });
         taken = bytes;
-    });
+    };
+    ByteSource source = zip.read(entry, count, helpers);
     if (taken != 0)
         source.owner = std::shared_ptr<const void>(
             source.bytes.data(),

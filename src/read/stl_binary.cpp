@@ -10,7 +10,9 @@
 #include "read/remarks.hpp"
 #include "system/memory_size.hpp"
 
+#define XXH_INLINE_ALL
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -249,6 +251,30 @@ MeshFile describe(const ByteSource& source, std::uint64_t stored, std::uint64_t 
     return file;
 }
 
+/// Reads the records chunk by chunk, on all threads, each into a buffer of its own. Calls
+/// body(buffer, begin, end); `begin` and `end` are counted from the first of the records.
+template <class Body>
+void for_batches(const ByteSource& source, RecordRange records, Executor& executor, const Body& body) {
+    const std::uint64_t count = records.end - records.begin;
+    // A thread reads some chunks in succession: edges at the border of two chunks are found sooner then.
+    const std::uint64_t successive =
+        std::clamp<std::uint64_t>(count / batch_triangles / (8 * executor.workers()), 1, 8) * batch_triangles;
+    std::vector<std::shared_ptr<PageArray<std::byte>>> batches(executor.workers());
+    executor.for_chunks(count, successive, [&](std::uint64_t first, std::uint64_t last, unsigned worker) {
+        std::shared_ptr<PageArray<std::byte>>& batch = batches[worker];
+        if (!batch)
+            batch =
+                std::make_shared<PageArray<std::byte>>(std::min(count, batch_triangles) * stl_record_bytes);
+        for (std::uint64_t begin = first; begin < last && !executor.stopping(); begin += batch_triangles) {
+            const std::uint64_t end = std::min(last, begin + batch_triangles);
+            copy_out(source, corners_at + (records.begin + begin) * stl_record_bytes,
+                     batch->span().first((end - begin) * stl_record_bytes - normal_bytes));
+            body(batch, begin, end);
+        }
+    });
+    executor.check_cancelled();
+}
+
 } // namespace
 
 void judge_nonfinite(std::uint64_t count, std::uint64_t first, std::uint64_t stored, Remarks& remarks) {
@@ -299,15 +325,8 @@ MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink, c
     std::atomic<std::uint64_t> first_nonfinite{stored};
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, stl_record_bytes * count);
-    std::vector<std::shared_ptr<PageArray<std::byte>>> batches(executor.workers());
-    executor.for_chunks(count, batch_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
-        std::shared_ptr<PageArray<std::byte>>& batch = batches[worker];
-        if (!batch)
-            batch =
-                std::make_shared<PageArray<std::byte>>(std::min(count, batch_triangles) * stl_record_bytes);
+    for_batches(source, records, executor, [&](const auto& batch, std::uint64_t begin, std::uint64_t end) {
         const std::byte* const at = batch->data();
-        copy_out(source, corners_at + (records.begin + begin) * stl_record_bytes,
-                 batch->span().first((end - begin) * stl_record_bytes - normal_bytes));
         const Survey surveyed = survey(at, end - begin);
         if (surveyed.finite) {
             sink(TriangleSoup(TriangleSoup::KnownFinite{}, batch, at, stl_record_bytes, end - begin,
@@ -331,11 +350,30 @@ MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink, c
         }
         progress.add((end - begin) * stl_record_bytes);
     });
-    executor.check_cancelled();
     if (!share)
         judge_nonfinite(nonfinite, first_nonfinite, stored, remarks);
     progress.finish();
     return describe(source, stored, nonfinite, first_nonfinite, remarks);
+}
+
+std::uint64_t stl_chunk_hash(const TriangleSoup& chunk) {
+    return XXH3_64bits(chunk.data(), (chunk.size() - 1) * chunk.stride() + sizeof(Triangle3f));
+}
+
+void stream_stl_binary_again(const ByteSource& source, const TriangleSink& sink, const ChunkHashes& hashes,
+                             const Execution& execution) {
+    const StlExtent extent = stl_extent(source.size(), stl_declared_count(source.bytes));
+    Executor executor(execution);
+    for_batches(source, {0, extent.triangles}, executor,
+                [&](const auto& batch, std::uint64_t begin, std::uint64_t end) {
+                    const std::uint64_t number = begin / batch_triangles;
+                    const TriangleSoup chunk(TriangleSoup::KnownFinite{}, batch, batch->data(),
+                                             stl_record_bytes, end - begin);
+                    if (stl_chunk_hash(chunk) != hashes.at(number))
+                        throw Error(ErrorKind::input,
+                                    fmt::format("{}: was changed while it was read", source.name));
+                    sink(chunk, number);
+                });
 }
 
 } // namespace lamella

@@ -47,4 +47,11 @@ void judge_nonfinite(std::uint64_t count, std::uint64_t first, std::uint64_t sto
                                          const MeshReadOptions& options, const Execution& execution,
                                          const std::optional<RecordRange>& share);
 
+/// Returns a hash of all bytes from the first corner of a chunk to the last one.
+[[nodiscard]] std::uint64_t stl_chunk_hash(const TriangleSoup& chunk);
+
+/// Passes the triangles to the sink; see MeshInput::stream_again.
+void stream_stl_binary_again(const ByteSource& source, const TriangleSink& sink, const ChunkHashes& hashes,
+                             const Execution& execution);
+
 } // namespace lamella

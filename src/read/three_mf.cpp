@@ -165,23 +165,28 @@ class PartLoader {
         others.push_back(use.part);
     }
 
-    /// Decompresses and reads parts in parallel: first their structure, then the numbers of all meshes.
+    /// Decompresses and reads parts in parallel: first their structure, then the numbers of all meshes. All
+    /// threads read the structure of a single part.
     void load_parts_from(std::size_t first) {
+        const bool single = parts_.size() - first == 1;
         executor_.for_chunks(parts_.size() - first, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
             Part& part = parts_[first + i];
-            part.bytes = unpacked_entry(package_, *package_.find(part.model.part), limits_);
+            Executor alone({.threads = 1});
+            Executor& of_part = single ? executor_ : alone;
+            part.bytes = unpacked_entry(package_, *package_.find(part.model.part), limits_, &of_part);
             if (no_slices_ && part.bytes.text().find(three_mf::slices) != std::string_view::npos)
                 throw MayHaveSlices();
-            part.model = skimmed_or_parsed([&](bool skim) { return parsed(part, skim); });
+            part.model =
+                skimmed_or_parsed([&](bool skim) { return parsed(part, skim ? &of_part : nullptr); });
         });
         read_meshes(first);
     }
 
-    ThreeMfModel parsed(const Part& part, bool skim) {
+    ThreeMfModel parsed(const Part& part, Executor* skim) {
         return read_three_mf_model(part.bytes, part.model.part, &part == &parts_[0], skim, limits_,
                                    [&](std::size_t read) {
                                        executor_.check_cancelled();
-                                       progress_.add(skim ? read : 0);
+                                       progress_.add(skim != nullptr ? read : 0);
                                    });
     }
 
@@ -194,7 +199,7 @@ class PartLoader {
         for (std::size_t i = first; i < parts_.size(); ++i) {
             Part& part = parts_[i];
             if (!plain[i - first])
-                part.model = parsed(part, false);
+                part.model = parsed(part, nullptr);
             part.bytes = {};
         }
     }

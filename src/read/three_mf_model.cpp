@@ -125,7 +125,7 @@ enum class ModelElement {
 
 class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
   public:
-    ModelReader(const ByteSource& source, const std::string& part, bool is_root, bool skim,
+    ModelReader(const ByteSource& source, const std::string& part, bool is_root, Executor* skim,
                 ReadLimits& limits)
         : MeshDocumentReader(source.name, fmt::format("part '{}', ", printable(part, longest_object_name)),
                              skim, limits),
@@ -154,9 +154,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
         if (is_root_ && !seen_.contains(Where::build))
             fail("found no <build>, expected one in <model>");
         model.title = printable(trimmed(model.title), longest_model_title);
-        for (const auto& [prefix, space] : spaces_)
-            if (!prefix.empty())
-                model.prefixes.push_back(prefix);
+        model.prefixes = plain_prefixes(spaces_);
         for (ThreeMfObject& object : model.objects)
             object.text.prefixes = model.prefixes; // valid even after the model is moved
         return take();
@@ -375,7 +373,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
     std::string setting_; ///< name of the current setting
     std::string setting_value_;
     std::set<Where> seen_; ///< elements that must not occur twice; vertices and triangles of this object
-    std::map<std::string, std::string> spaces_; ///< prefixes declared by the root element
+    ThreeMfSpaces spaces_;
     std::set<std::string> required_;
     std::set<std::string> metadata_;
     ResourceIds ids_;
@@ -432,8 +430,9 @@ MeshRole role_of(ThreeMfObjectType type) noexcept {
     return MeshRole::part;
 }
 
-ThreeMfModel read_three_mf_model(const ByteSource& source, const std::string& part, bool is_root, bool skim,
-                                 ReadLimits& limits, const std::function<void(std::size_t)>& progress) {
+ThreeMfModel read_three_mf_model(const ByteSource& source, const std::string& part, bool is_root,
+                                 Executor* skim, ReadLimits& limits,
+                                 const std::function<void(std::size_t)>& progress) {
     return ModelReader(source, part, is_root, skim, limits).read(source.text(), progress);
 }
 

@@ -187,32 +187,72 @@ std::string root_model(const ZipReader& package) {
     return std::string(three_mf::usual_root);
 }
 
-ByteSource unpack_part(const ZipReader& package, const std::string& name, ReadLimits& limits) {
+ByteSource unpack_part(const ZipReader& package, const std::string& name, ReadLimits& limits,
+                       Executor* helpers) {
     const ZipEntry* const entry = package.find(name);
     if (entry == nullptr)
         throw Error(ErrorKind::input, fmt::format("{}: found no part '{}', to which the package refers",
                                                   package.name(), printable(name, 100)));
-    return unpacked_entry(package, *entry, limits);
+    return unpacked_entry(package, *entry, limits, helpers);
 }
 
-void parse_part(const ByteSource& part, const std::function<void(const ThreeMfElement&)>& start,
-                const std::function<void(XmlName)>& end, Executor& executor) {
-    XmlHandlers handlers;
-    std::map<std::string, std::string> spaces;
+void parse_part(const ByteSource& part, const ThreeMfHandlers& handlers, Executor& executor) {
+    ThreeMfSpaces spaces;
     bool in_root = false;
-    handlers.declare = [&](std::string_view prefix, std::string_view space) {
+    bool usual_spaces = true;
+    XmlHandlers of_xml;
+    of_xml.declare = [&](std::string_view prefix, std::string_view space) {
         if (!in_root)
             spaces.emplace(prefix, space);
+        usual_spaces =
+            usual_spaces && !in_root && space.find_first_of("&<\"\t\r\n") == std::string_view::npos;
     };
-    handlers.start = [&](XmlName name, const XmlAttributes& attributes, std::size_t line) {
+    of_xml.start = [&](XmlName name, const XmlAttributes& attributes, std::size_t line) {
         in_root = true;
-        start({part.name, name, attributes, line, spaces});
+        handlers.start({part.name, name, attributes, line, spaces});
     };
-    handlers.end = end;
-    handlers.progress = [&](std::size_t) {
+    of_xml.end = handlers.end;
+    of_xml.progress = [&](std::size_t) {
         executor.check_cancelled();
     };
-    parse_xml(part.text(), part.name, handlers, three_mf_rules);
+    if (!handlers.many.empty()) {
+        of_xml.many = {handlers.many};
+        of_xml.skim = [&](std::string_view, std::size_t position) {
+            return usual_spaces ? handlers.skim(position) : XmlSkimmed();
+        };
+    }
+    parse_xml(part.text(), part.name, of_xml, three_mf_rules);
+}
+
+std::size_t parse_part_elements(const ByteSource& part, std::size_t begin, std::size_t limit,
+                                std::string_view parent, const ThreeMfSpaces& spaces, std::uint64_t line,
+                                const ThreeMfHandlers& handlers, const Executor& executor) {
+    std::string tag = fmt::format("<{}", parent);
+    for (const auto& [prefix, space] : spaces)
+        tag += fmt::format(" xmlns{}{}=\"{}\"", prefix.empty() ? "" : ":", prefix, space);
+    tag += '>';
+    XmlHandlers of_xml;
+    of_xml.start = [&](XmlName name, const XmlAttributes& attributes, std::size_t line_from_begin) {
+        const auto line_of_part = static_cast<std::size_t>(line + line_from_begin - 1);
+        handlers.start({part.name, name, attributes, line_of_part, spaces});
+    };
+    of_xml.end = handlers.end;
+    of_xml.progress = [&](std::size_t) {
+        executor.check_cancelled();
+    };
+    return parse_xml_elements(part.text(), begin, limit, tag, part.name, of_xml, three_mf_rules);
+}
+
+std::vector<std::string> plain_prefixes(const ThreeMfSpaces& spaces) {
+    std::vector<std::string> prefixes;
+    for (const auto& declared : spaces) {
+        const auto same_space = [&](const auto& other) {
+            return !other.first.empty() && other.first != declared.first && other.second == declared.second;
+        };
+        if (!declared.first.empty() && std::none_of(spaces.begin(), spaces.end(), same_space))
+            prefixes.push_back(declared.first);
+    }
+    return prefixes;
 }
 
 } // namespace lamella

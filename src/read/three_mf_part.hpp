@@ -17,6 +17,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lamella {
 
@@ -24,6 +25,9 @@ class ReadLimits;
 
 class Executor;
 struct ThreeMfElement;
+
+/// Namespaces by the prefixes that the root element of a part declares.
+using ThreeMfSpaces = std::map<std::string, std::string>;
 
 enum class ThreeMfObjectType { model, solid_support, support, surface, other };
 
@@ -62,7 +66,7 @@ struct ThreeMfElement {
     XmlName name;
     const XmlAttributes& attributes;
     std::size_t line;
-    const std::map<std::string, std::string>& spaces; ///< by the prefixes declared by the root element
+    const ThreeMfSpaces& spaces;
 
     [[nodiscard]] ThreeMfValue operator[](std::string_view attribute) const;
     [[nodiscard]] ThreeMfValue operator[](XmlName attribute) const;
@@ -93,11 +97,33 @@ struct ThreeMfElement {
 
 /// Unpacks a part within the limits (see `unpacked_entry`). Throws Error{input} if there is no part with this
 /// name.
-[[nodiscard]] ByteSource unpack_part(const ZipReader& package, const std::string& name, ReadLimits& limits);
+[[nodiscard]] ByteSource unpack_part(const ZipReader& package, const std::string& name, ReadLimits& limits,
+                                     Executor* helpers = nullptr);
 
-/// Parses a part. Calls `start` for each element, and `end` with the name of each element that ends.
-void parse_part(const ByteSource& part, const std::function<void(const ThreeMfElement&)>& start,
-                const std::function<void(XmlName)>& end, Executor& executor);
+/// Functions that are called for each element, and with the name of each element that ends.
+struct ThreeMfHandlers {
+    std::function<void(const ThreeMfElement&)> start;
+    std::function<void(XmlName)> end = [](XmlName) {
+    };
+    /// Beginning of the tags of numerous elements, and a function that reads such elements at an offset; see
+    /// XmlHandlers. It is called only if all namespaces so far are declared by the root element, and can be
+    /// written without escapes.
+    std::string_view many = {};
+    std::function<XmlSkimmed(std::size_t position)> skim = {};
+};
+
+/// Parses a part.
+void parse_part(const ByteSource& part, const ThreeMfHandlers& handlers, Executor& executor);
+
+/// Parses elements of a part from `begin`, which is on line `line`, as parse_xml_elements does, where a part
+/// may be skimmed. `parent` is the name of their parent as written.
+[[nodiscard]] std::size_t parse_part_elements(const ByteSource& part, std::size_t begin, std::size_t limit,
+                                              std::string_view parent, const ThreeMfSpaces& spaces,
+                                              std::uint64_t line, const ThreeMfHandlers& handlers,
+                                              const Executor& executor);
+
+/// Returns the prefixes that attributes may have without being the same as another attribute, ascending.
+[[nodiscard]] std::vector<std::string> plain_prefixes(const ThreeMfSpaces& spaces);
 
 /// Rules of XML that each part of a 3MF package must satisfy.
 inline constexpr XmlRules three_mf_rules{.namespaces = true, .utf8_only = true, .no_document_type = true};

@@ -9,6 +9,7 @@
 #include "container/xml.hpp"
 #include "core/executor.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_pieces.hpp"
 #include "read/layer_readers.hpp"
 #include "read/read_limits.hpp"
 #include "read/three_mf_part.hpp"
@@ -18,6 +19,7 @@
 
 #include <algorithm>
 #include <compare>
+#include <exception>
 #include <map>
 #include <optional>
 #include <set>
@@ -299,27 +301,21 @@ class ToolpathReader {
 
     void read() {
         const std::string root = root_model(package_);
-        const ByteSource source = unpack_part(package_, root, limits_);
+        const ByteSource source = unpack_part(package_, root, limits_, &executor_);
         ToolpathModelReader reader(limits_);
-        parse_part(
-            source, [&](const ThreeMfElement& element) { reader.start(element); }, [](XmlName) {}, executor_);
+        parse_part(source,
+                   {.start =
+                        [&](const ThreeMfElement& element) {
+                            reader.start(element);
+                        }},
+                   executor_);
         model_ = reader.take();
         const Toolpath& toolpath = chosen(source.name);
         file_.units_mm = toolpath.unit * model_.unit_mm;
         file_.rounding = {.step_mm = file_.units_mm};
         std::vector<RawLayer> layers;
-        std::set<const ZipEntry*> known;
-        for (const Toolpath::Listed& listed : toolpath.layers) {
-            const std::string part = opc_resolved(package_, root, listed.path);
-            if (!known.insert(package_.find(part)).second)
-                throw Error(
-                    ErrorKind::input,
-                    fmt::format("{}, line {}: found the layer '{}' a second time; each has a part of its own",
-                                source.name, listed.line, printable(listed.path, 100)));
-            limits_.make_room(layers, 1, at_line(listed.line));
-            layers.emplace_back().z = listed.top * file_.units_mm;
-            read_layer(part, toolpath, layers.back());
-        }
+        limits_.make_room(layers, toolpath.layers.size(), [] { return std::string_view("the layers"); });
+        read_layers(root, source.name, toolpath, layers);
         if (layers.empty())
             throw Error(
                 ErrorKind::input,
@@ -341,14 +337,78 @@ class ToolpathReader {
         return found->second;
     }
 
-    void read_layer(const std::string& name, const Toolpath& toolpath, RawLayer& raw) {
+    /// One layer.
+    struct Piece {
+        RawLayer raw;
+        PartNumbers<SegmentKind> kinds;
+        CountedWarning other_lasers;
+        DroppedContours dropped = {};
+        std::size_t end; ///< number of the next layer
+    };
+
+    void read_layers(const std::string& root, const std::string& document, const Toolpath& toolpath,
+                     std::vector<RawLayer>& layers) {
+        std::vector<std::string> names;
+        std::set<const ZipEntry*> known;
+        std::exception_ptr error; // of the layer after those named
+        try {
+            for (const Toolpath::Listed& listed : toolpath.layers) {
+                std::string part = opc_resolved(package_, root, listed.path);
+                if (!known.insert(package_.find(part)).second)
+                    throw Error(
+                        ErrorKind::input,
+                        fmt::format(
+                            "{}, line {}: found the layer '{}' a second time; each has a part of its own",
+                            document, listed.line, printable(listed.path, 100)));
+                limits_.add_bytes_at(sizeof part + part.size() + node_bytes, at_line(listed.line));
+                names.push_back(std::move(part));
+            }
+        } catch (const Error&) {
+            error = std::current_exception();
+        }
+        PieceBegins begins;
+        for (std::size_t i = 0; i < names.size(); ++i)
+            begins.push_back(i);
+        if (!begins.empty())
+            read_pieces(
+                begins, names.size(), executor_,
+                [&](std::size_t i, std::size_t) { return read_layer(names[i], toolpath, i); },
+                [&](Piece&& piece) {
+                    kinds_.add(
+                        piece.kinds, {&piece.raw, 1}, [](const SegmentKind& kind) { return kind; },
+                        [&] { return std::string_view(piece.raw.location); });
+                    other_lasers_.add(piece.other_lasers);
+                    dropped_.add(piece.dropped);
+                    layers.push_back(std::move(piece.raw));
+                });
+        if (error)
+            std::rethrow_exception(error);
+    }
+
+    Piece read_layer(const std::string& name, const Toolpath& toolpath, std::size_t number) {
         executor_.check_cancelled();
+        Piece piece{.raw = {},
+                    .kinds = PartNumbers<SegmentKind>(limits_),
+                    .other_lasers = of_other_lasers(),
+                    .end = number + 1};
+        piece.raw.z = toolpath.layers[number].top * file_.units_mm;
         const ByteSource source = unpack_part(package_, name, limits_);
-        raw.location = source.name;
-        LayerReader reader(source.name, model_, toolpath, kinds_, other_lasers_, raw, limits_);
-        parse_part(
-            source, [&](const ThreeMfElement& element) { reader.start(element); },
-            [&](XmlName element) { reader.end(element, dropped_); }, executor_);
+        piece.raw.location = source.name;
+        LayerReader reader(source.name, model_, toolpath, piece.kinds, piece.other_lasers, piece.raw,
+                           limits_);
+        parse_part(source,
+                   {.start = [&](const ThreeMfElement& element) { reader.start(element); },
+                    .end =
+                        [&](XmlName element) {
+                            reader.end(element, piece.dropped);
+                        }},
+                   executor_);
+        return piece;
+    }
+
+    static CountedWarning of_other_lasers() {
+        return {"segment is for another laser than the first; which one was left out",
+                "segments are for another laser than the first; which one was left out"};
     }
 
     /// Numbers parts in the order of the build, and exposures of each part in that of the profiles.
@@ -391,7 +451,7 @@ class ToolpathReader {
         sort_by_height(layers, file_.warnings);
         check_part_planes(file_, layers.size(), package_.unpacked());
         const double bottom = std::min(toolpath.bottom * file_.units_mm, layers.front().z);
-        add_layers_by_tops(file_, layers, bottom, limits_);
+        add_layers_by_tops(file_, layers, bottom, limits_, executor_);
     }
 
     const ZipReader& package_;
@@ -401,8 +461,7 @@ class ToolpathReader {
     Model model_;
     PartNumbers<SegmentKind> kinds_;
     DistinctNames names_;
-    CountedWarning other_lasers_{"segment is for another laser than the first; which one was left out",
-                                 "segments are for another laser than the first; which one was left out"};
+    CountedWarning other_lasers_ = of_other_lasers();
     DroppedContours dropped_;
 };
 

@@ -6,13 +6,17 @@
 #include <gtest/gtest.h>
 #include <lamella/io.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <random>
 #include <span>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace lamella {
@@ -248,8 +252,66 @@ TEST(SliceFormats, SayWhatTheyLeaveOut) {
     }
 }
 
+// Everything that a reader returns, or its error.
+struct Outcome {
+    LayerFile file;
+    std::vector<ScanVectors> planes;
+    std::string error;
+};
+
+Outcome outcome(std::string_view bytes, LayersKept layers, unsigned threads) {
+    Outcome outcome;
+    try {
+        outcome.file =
+            read_layers(std::as_bytes(std::span(bytes)), "test", {.layers = layers}, {.threads = threads});
+        for (std::size_t i = 0; i < outcome.file.planes().size(); ++i)
+            outcome.planes.push_back(outcome.file.plane(i));
+    } catch (const Error& error) {
+        outcome.error = error.what();
+    }
+    return outcome;
+}
+
+// The same with layers in memory and without. Returns whether the latter was possible.
+bool expect_same_stream(std::string_view bytes, unsigned threads) {
+    const Outcome held = outcome(bytes, LayersKept::all, 1);
+    const Outcome passed = outcome(bytes, LayersKept::none, threads);
+    EXPECT_EQ(passed.error, held.error);
+    EXPECT_EQ(passed.file.warnings, held.file.warnings);
+    EXPECT_EQ(passed.file.guess, held.file.guess);
+    EXPECT_EQ(passed.file.rounding, held.file.rounding);
+    EXPECT_EQ(passed.file.parts.size(), held.file.parts.size());
+    EXPECT_EQ(passed.planes.size(), held.planes.size());
+    if (testing::Test::HasFailure())
+        return false;
+    for (std::size_t i = 0; i < held.file.parts.size(); ++i) {
+        const LayerPart& part = held.file.parts[i];
+        EXPECT_EQ(passed.file.parts[i].label, part.label);
+        EXPECT_EQ(passed.file.parts[i].exposure.has_value(), part.exposure.has_value());
+        EXPECT_EQ(passed.file.hatch_lines(i), part.hatch_lines());
+        if (passed.file.stream) {
+            EXPECT_EQ(passed.file.stream->boxes[i], part_box(part.layers, part.hatches));
+        }
+    }
+    for (std::size_t i = 0; i < held.planes.size(); ++i) {
+        EXPECT_EQ(content_hash(passed.planes[i]), content_hash(held.planes[i])) << i;
+        for (std::size_t part = 0; part < held.file.parts.size(); ++part) {
+            const Layer& one = passed.planes[i].polylines[part];
+            const Layer& other = held.planes[i].polylines[part];
+            EXPECT_EQ(std::tie(one.index, one.z, one.bottom, one.top),
+                      std::tie(other.index, other.z, other.bottom, other.top));
+        }
+        const Layer& plane = passed.file.planes()[i];
+        const Layer& other = held.file.planes()[i];
+        EXPECT_EQ(std::tie(plane.index, plane.z, plane.bottom, plane.top),
+                  std::tie(other.index, other.z, other.bottom, other.top));
+    }
+    return passed.file.stream != nullptr;
+}
+
 // An input error, or layers in normal form.
 void expect_harmless(std::string_view bytes) {
+    expect_same_stream(bytes, 1);
     try {
         const LayerFile file = read(bytes);
         ASSERT_FALSE(file.parts.empty());
@@ -262,6 +324,102 @@ void expect_harmless(std::string_view bytes) {
         ASSERT_EQ(error.kind(), ErrorKind::input) << error.what();
         ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
     }
+}
+
+TEST(SliceFormats, AreTheSameWhereLayersAreParsedWhenTheyAreNeeded) {
+    for (const Resolution& format : readable()) {
+        const bool parses_twice =
+            format.format != std::string("3mf") && format.format != std::string("npz") &&
+            format.format != std::string("ilt") && format.format != std::string("3mf-toolpath");
+        const std::string bytes = written(format.format, random_parts(9, format.parts ? 3 : 1, 400));
+        for (const unsigned threads : {1U, 2U, 3U, 7U, 16U})
+            EXPECT_EQ(expect_same_stream(bytes, threads), parses_twice) << format.format;
+    }
+}
+
+// Counts the planes of a file whose layers are in memory at the same time.
+class CountedPlanes {
+  public:
+    // Returns the file; `fail_at` is a plane that cannot be parsed.
+    LayerFile counted(LayerFile file, std::size_t fail_at) {
+        LayerStream stream = *file.stream;
+        stream.parse = [this, file, fail_at](std::size_t position) {
+            if (position == fail_at)
+                throw Error(ErrorKind::input, "no such plane");
+            ScanVectors plane = file.stream->parse(position);
+            note(plane);
+            return plane;
+        };
+        file.stream = std::make_shared<const LayerStream>(std::move(stream));
+        return file;
+    }
+    std::size_t most() const { return most_; }
+
+  private:
+    void note(const ScanVectors& plane) {
+        const std::lock_guard lock(mutex_);
+        std::erase_if(alive_, [](const std::weak_ptr<const void>& owner) { return owner.expired(); });
+        for (const Layer& layer : plane.polylines)
+            if (!layer.points.empty())
+                alive_.push_back(layer.points.owner());
+        most_ = std::max(most_, alive_.size());
+    }
+
+    std::mutex mutex_;
+    std::vector<std::weak_ptr<const void>> alive_;
+    std::size_t most_ = 0;
+};
+
+constexpr std::size_t many_planes = 600;
+constexpr std::size_t no_plane = many_planes;
+
+LayerFile without_layers(CountedPlanes& planes, std::size_t fail_at) {
+    const std::string bytes = written("cli", random_parts(9, 1, many_planes));
+    return planes.counted(
+        read_layers(std::as_bytes(std::span(bytes)), "test.cli", {.layers = LayersKept::none}), fail_at);
+}
+
+LayerFileInfo info_of_one_part(const LayerFile& file) {
+    LayerFileInfo info{.box = file.stream->boxes.front(),
+                       .layers = file.planes().size(),
+                       .bottom = file.planes().front().bottom};
+    info.parts.front().box = info.box;
+    return info;
+}
+
+TEST(SliceFormats, KeepFewPlanesInMemoryWhileTheyAreWritten) {
+    const TemporaryFolder folder;
+    for (const char* format : {"cli", "svg", "slc", "3mf", "json", "npz", "ovf", "dxf"}) {
+        CountedPlanes planes;
+        const LayerFile file = without_layers(planes, no_plane);
+        const auto writer =
+            open_layer_writer(folder.file("out"), layer_format(format, ""), info_of_one_part(file), {});
+        write_planes(*writer, file.planes().size(), [&](std::size_t i) { return file.plane(i); },
+                     {.threads = 3});
+        writer->finish();
+        EXPECT_LE(planes.most(), 9U) << format;
+    }
+}
+
+TEST(SliceFormats, KeepFewPlanesInMemoryWhileTheyAreScanned) {
+    const TemporaryFolder folder;
+    ScanStrategy strategy;
+    CountedPlanes planes;
+    const LayerFile file = without_layers(planes, no_plane);
+    const FileResult result = scan_layers(folder.file("job.cli"), layer_format("cli", ""), file,
+                                          info_of_one_part(file), strategy, {}, {.threads = 3});
+    EXPECT_EQ(result.layers.size(), many_planes);
+    EXPECT_LE(planes.most(), 60U); // with neighbours
+}
+
+TEST(SliceFormats, LeaveNoOutputIfAPlaneCannotBeParsedAgain) {
+    const TemporaryFolder folder;
+    CountedPlanes planes;
+    const LayerFile file = without_layers(planes, many_planes - 1);
+    EXPECT_THROW(static_cast<void>(scan_layers(folder.file("job.cli"), layer_format("cli", ""), file,
+                                               info_of_one_part(file), {}, {}, {.threads = 3})),
+                 Error);
+    EXPECT_FALSE(std::filesystem::exists(folder.file("job.cli")));
 }
 
 TEST(SliceFormats, TruncatedFilesAreErrorsOrLessLayers) {

@@ -75,8 +75,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     try {
         const ScanStrategy strategy = read({reinterpret_cast<const char*>(data), size});
         check_strategy(strategy);
-        const std::string text = app::strategy_text(strategy);
-        require(app::strategy_text(read(text)) == text);
+        const std::string text = strategy_text(strategy);
+        require(strategy_text(read(text)) == text);
         scan_and_check(strategy);
     } catch (const Error& error) {
         require(error.kind() == ErrorKind::usage);

@@ -125,10 +125,11 @@ TEST(LayerAssembly, StacksLayersWithoutGaps) {
             raw.back().end_contour(true, static_cast<std::uint32_t>(i % 2), limited.limits, here, dropped);
         }
         const double other = tops ? 1 : z + 0.5;
+        Executor executor({.threads = 3});
         if (tops)
-            add_layers_by_tops(file, raw, other, limited.limits);
+            add_layers_by_tops(file, raw, other, limited.limits, executor);
         else
-            add_layers_by_bottoms(file, raw, other, limited.limits);
+            add_layers_by_bottoms(file, raw, other, limited.limits, executor);
         for (const LayerPart& part : file.parts) {
             ASSERT_EQ(part.layers.size(), heights.size()) << "each part has each plane";
             for (std::size_t i = 0; i < heights.size(); ++i) {

@@ -1,12 +1,16 @@
+#include "lamella/contour/exposure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "fixtures/expect_error.hpp"
 #include "read/gzip.hpp"
 #include "read/layer_assembly.hpp"
+#include "read/layer_pieces.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -89,6 +93,74 @@ TEST(LayerFile, PackedWithGzipAndCutOffIsAnError) {
         GTEST_SKIP() << "no gzip program";
     for (std::size_t length = 4; length < content.size(); ++length)
         EXPECT_THROW(static_cast<void>(read_compressed(content.substr(0, length))), Error) << length;
+}
+
+/// Returns a file of many pieces, in which layers occur out of order, heights twice, and comments look like
+/// layers. With `settings`, they apply to the vectors of later layers.
+std::string many_pieces(bool settings) {
+    std::string text = "$$HEADERSTART\n$$ASCII\n$$UNITS/0.001\n$$VERSION/200\n$$HEADEREND\n$$GEOMETRYSTART\n";
+    for (std::size_t i = 0; text.size() < 4 * layer_piece_bytes; ++i) {
+        const std::size_t z = i % 50 == 7 ? 100 + i / 2 : i % 50 == 9 ? 99 + i : 100 + i;
+        if (settings && i % 400 == 100)
+            text += fmt::format("$$POWER/{}\n$$SPEED/700\n", 100 + i);
+        text += fmt::format("$$LAYER/{}\n// $$LAYER/{} //\n", z, z + 1);
+        if (settings && i % 300 == 50)
+            text += fmt::format("$$FOCUS/{}\n", i);
+        for (std::size_t k = 0; k < 1 + i % 3; ++k)
+            text += fmt::format("$$POLYLINE/{},1,5,{},0,{},0,{},{},{},{},{},0\n", 1 + k, i, i + 900, i + 900,
+                                700 + k, i, 700 + k, i);
+        if (i % 5 == 0)
+            text += fmt::format("$$HATCHES/1,2,{},5,{},5,{},9,{},9\n", i, i + 90, i + 90, i);
+    }
+    return text + "$$GEOMETRYEND\n";
+}
+
+TEST(LayerFile, WhoseLayersAreNotInMemoryHasTheSamePlanes) {
+    for (const bool settings : {false, true}) {
+        const std::string text = many_pieces(settings);
+        const auto bytes = std::as_bytes(std::span(text));
+        const LayerFile held = read_layers(bytes, "a.cli", {}, {.threads = 1});
+        ASSERT_GT(held.planes().size(), 1000U);
+        EXPECT_GT(held.parts.size(), settings ? 10U : 2U);
+        for (const unsigned threads : {1U, 2U, 3U, 7U, 16U}) {
+            const LayerFile file =
+                read_layers(bytes, "a.cli", {.layers = LayersKept::none}, {.threads = threads});
+            ASSERT_TRUE(file.stream);
+            EXPECT_EQ(file.warnings, held.warnings);
+            ASSERT_EQ(file.parts.size(), held.parts.size());
+            for (std::size_t i = 0; i < file.parts.size(); ++i) {
+                EXPECT_TRUE(file.parts[i].layers.empty());
+                EXPECT_EQ(file.parts[i].label, held.parts[i].label);
+                EXPECT_EQ(file.hatch_lines(i), held.hatch_lines(i));
+            }
+            ASSERT_EQ(file.planes().size(), held.planes().size());
+            for (std::size_t i = 0; i < file.planes().size(); ++i)
+                ASSERT_EQ(content_hash(file.plane(i)), content_hash(held.plane(i))) << i;
+            const LayerStack merged = file.merged();
+            ASSERT_EQ(merged.size(), held.planes().size());
+            EXPECT_EQ(content_hash(merged[30]), content_hash(held.merged()[30]));
+        }
+    }
+}
+
+TEST(LayerFile, WhoseLayersAreNotInMemoryNeedsNoMemoryForThem) {
+    std::string text = "$$HEADERSTART\n$$ASCII\n$$UNITS/1\n$$VERSION/200\n$$HEADEREND\n$$GEOMETRYSTART\n";
+    for (int z = 1; text.size() < 8 * layer_piece_bytes; ++z) {
+        text += fmt::format("$$LAYER/{}\n$$POLYLINE/1,1,2000", z);
+        for (int i = 0; i < 1000; ++i)
+            text += ",0,0,9,9";
+        text += '\n';
+    }
+    text += "$$GEOMETRYEND\n";
+    const auto bytes = std::as_bytes(std::span(text));
+    const std::uint64_t max_memory = 4 * text.size();
+    test::expect_error(ErrorKind::limit, {"max_memory"}, [&] {
+        static_cast<void>(read_layers(bytes, "a.cli", {.max_memory = max_memory}, {.threads = 1}));
+    });
+    const LayerFile file = read_layers(
+        bytes, "a.cli", {.max_memory = max_memory, .layers = LayersKept::if_faster}, {.threads = 1});
+    for (std::size_t i = 0; i < file.planes().size(); ++i)
+        ASSERT_EQ(file.plane(i).polylines.front().points.size(), 2000U);
 }
 
 } // namespace

@@ -164,10 +164,34 @@ TEST(MeshText, LeavesTextsThatAreNotPlainToTheParser) {
 TEST(MeshText, TakesARunUpToTheEndOfItsList) {
     const std::string_view document = "<vertices><vertex/><vertex/></vertices>";
     std::vector<std::string_view> runs;
-    EXPECT_EQ(take_run(document, 10, "</vertices", runs), 18U);
+    Executor executor({.threads = 1});
+    EXPECT_EQ(take_run(document, 10, "</vertices", runs, executor).bytes, 18U);
     EXPECT_EQ(runs, std::vector<std::string_view>{"<vertex/><vertex/>"});
-    EXPECT_EQ(take_run(document, 10, "</triangles", runs), 0U);
+    EXPECT_EQ(take_run(document, 10, "</triangles", runs, executor).bytes, 0U);
     EXPECT_EQ(runs.size(), 1U);
+}
+
+TEST(MeshText, TakesLongRunsAlikeWithAnyNumberOfThreads) {
+    test::Random random(9);
+    for (int round = 0; round < test::rounds_within_reason(30); ++round) {
+        std::string document(static_cast<std::size_t>(random.integer(1, 12'000'000)), 'v');
+        for (int i = 0; i < 1000; ++i)
+            document[static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(document.size()) -
+                                                                    1))] = "\r\n"[random.integer(0, 1)];
+        const auto location = static_cast<std::size_t>(
+            random.integer(0, static_cast<std::int64_t>(std::min<std::size_t>(document.size(), 3'000'000))));
+        const std::size_t length = document.size() - location;
+        document += "</v></v>";
+        for (const unsigned threads : {1U, 2U, 5U}) {
+            Executor executor({.threads = threads});
+            std::vector<std::string_view> runs;
+            const XmlSkimmed run = take_run(document, location, "</v", runs, executor);
+            EXPECT_EQ(run.bytes, length) << threads;
+            EXPECT_EQ(run.lines, line_at(std::string_view(document).substr(location), length) - 1) << threads;
+            EXPECT_EQ(runs.size(), 1U);
+            EXPECT_EQ(take_run(document, location, "</w", runs, executor).bytes, 0U);
+        }
+    }
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
@@ -42,14 +43,21 @@ std::string object(int id, int stack) {
            std::to_string(stack) + "\"/>";
 }
 
-LayerFile read(const std::string& root, const std::string& other = "") {
+LayerFile read(const std::string& root, const std::string& other = "", unsigned threads = 0) {
     const TemporaryFolder folder;
     ZipWriter zip(folder.file("a.3mf"));
     zip.add("3D/3dmodel.model", root, ZipMethod::deflated);
     if (!other.empty())
         zip.add("2D/other.model", other);
     zip.finish();
-    return read_layers(folder.file("a.3mf"));
+    return read_layers(folder.file("a.3mf"), {}, {.threads = threads});
+}
+
+std::vector<std::uint64_t> hashes(const LayerPart& part) {
+    std::vector<std::uint64_t> hashes;
+    for (const Layer& layer : part.layers)
+        hashes.push_back(content_hash(layer));
+    return hashes;
 }
 
 std::string error_of(const std::string& root, const std::string& other = "") {
@@ -194,6 +202,32 @@ TEST(ReadSlices3mf, PartsOfDifferentHeightsAreDividedAtAll) {
             EXPECT_DOUBLE_EQ(measure(file.parts[part].layers[i]).area_mm2, areas[part][i]);
             EXPECT_DOUBLE_EQ(file.parts[part].layers[i].bottom, static_cast<double>(i));
         }
+    }
+}
+
+// All parts take several pieces of their text, and share the slices of one stack.
+TEST(ReadSlices3mf, ReferencesAreReadAlikeByAnyNumberOfThreads) {
+    const auto tall = [](int bottom) {
+        std::string slices;
+        for (int top = bottom + 1; top <= bottom + 3000; ++top)
+            slices += slice(std::to_string(top), top % 1000 == 0 ? "1" : "0") + '\n';
+        return slices;
+    };
+    const std::string reference = "<t:sliceref slicestackid=\"7\" slicepath=\"/2D/other.model\"/>";
+    const std::string root = model(stack(1, reference) + object(2, 1) + stack(3, tall(0) + reference) +
+                                       object(4, 3) + stack(5, tall(2)) + object(6, 5),
+                                   "<item objectid=\"2\"/><item objectid=\"4\"/><item objectid=\"6\"/>"
+                                   "<item objectid=\"2\" transform=\"-1 0 0 0 1 0 0 0 1 0 0 0.5\"/>");
+    const std::string other = model(stack(7, tall(3000)), "");
+    const LayerFile one = read(root, other, 1);
+    EXPECT_EQ(one.warnings, (std::vector<std::string>{"3 contours are open (first at line 1000)",
+                                                      "6 contours are open (first at line 1000)"}));
+    ASSERT_EQ(one.parts.size(), 4U);
+    for (const unsigned threads : {2U, 3U, 7U, 16U}) {
+        const LayerFile many = read(root, other, threads);
+        EXPECT_EQ(many.warnings, one.warnings);
+        for (std::size_t part = 0; part < 4; ++part)
+            EXPECT_EQ(hashes(many.parts[part]), hashes(one.parts[part])) << threads << " threads";
     }
 }
 

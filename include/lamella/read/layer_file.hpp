@@ -7,9 +7,12 @@
 #include "lamella/contour/plane_rule.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/point.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -18,12 +21,22 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
+/// The layers that stay in memory while a file is open. All others are parsed again; see LayerStream.
+enum class LayersKept {
+    all,
+    /// Only those of text formats (ASCII Common Layer Interface, SVG, JSON), which take long to parse, and
+    /// only if `max_memory` is at least eight times the size of the file.
+    if_faster,
+    none, ///< none if the format allows it
+};
+
 struct LayerReadOptions {
     /// Largest number of bytes that the decompressed file and the layers may take; otherwise Error{limit} is
     /// thrown before they are allocated. 0: three quarters of the available memory.
     std::uint64_t max_memory = 0;
     /// Bytes of `max_memory` that previously read files still take (see `memory_of`).
     std::uint64_t held = 0;
+    LayersKept layers = LayersKept::all;
 };
 
 /// A part of a slice file.
@@ -45,6 +58,20 @@ struct LayerPart {
     [[nodiscard]] std::uint64_t hatch_lines() const noexcept;
 };
 
+/// The layers of a file that is parsed twice: once for what is known of the whole file, and then plane by
+/// plane, when a plane is needed. So only a few layers are in memory at a time. The bytes of the file stay in
+/// memory, or in a temporary file if they are large.
+struct LayerStream {
+    /// The planes as layers without contours, ascending.
+    LayerStack planes = {};
+    std::vector<Box3> boxes = {};                ///< of each part, like `part_box`
+    std::vector<std::uint64_t> hatch_lines = {}; ///< number of hatch lines of each part
+    std::uint64_t bytes = 0;                     ///< memory that it takes
+    /// Parses the contours and hatch lines of the plane at this position, without its heights. May be called
+    /// by any number of threads at once.
+    std::function<ScanVectors(std::size_t position)> parse = {};
+};
+
 struct LayerFile {
     std::string path;
     std::string format;  ///< name of the format as in `layer_formats`, such as "cli"
@@ -58,13 +85,27 @@ struct LayerFile {
     /// The warning that the heights in the file are interpreted as bottoms of layers although the format
     /// defines them as tops; empty unless the reader guessed so.
     std::string guess = {};
+    /// Set if the layers are not in memory: then parts have no layers and no hatch lines, and `planes`,
+    /// `hatch_lines` and `plane` return those of the stream. Not set with LayersKept::all.
+    std::shared_ptr<const LayerStream> stream = nullptr;
+
+    /// Returns the layers of the first part, whose heights are those of all parts. If the layers are not in
+    /// memory, they have no contours.
+    [[nodiscard]] const LayerStack& planes() const noexcept;
+    /// Returns the number of hatch lines of a part.
+    [[nodiscard]] std::uint64_t hatch_lines(std::size_t part) const;
+
+    /// Parses all layers of a stream, so that they are in memory. Parallel. Throws the errors of
+    /// `read_layers` for these options.
+    void keep_layers(const LayerReadOptions& options = {}, const Execution& execution = {});
 
     /// Returns all parts as one stack: the layers of the only part, or one layer per plane with the contours
-    /// of all parts. O(points). Throws Error{usage} if the caller changed the parts so that their numbers of
-    /// layers differ.
-    [[nodiscard]] LayerStack merged() const;
+    /// of all parts. O(points), parallel. Throws Error{usage} if the caller changed the parts so that their
+    /// numbers of layers differ, and Error{cancelled}.
+    [[nodiscard]] LayerStack merged(const Execution& execution = {.threads = 1}) const;
 
-    /// Returns the layers of all parts on a plane, with their hatch lines. O(contours).
+    /// Returns the layers of all parts on a plane, with their hatch lines. O(contours), or, if the layers are
+    /// not in memory, the time for parsing them.
     [[nodiscard]] ScanVectors plane(std::size_t position) const;
 };
 

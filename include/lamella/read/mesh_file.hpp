@@ -43,6 +43,8 @@ struct MeshReadOptions {
     std::uint64_t max_memory = 0;
     /// Bytes of `max_memory` that files read before still take.
     std::uint64_t held = 0;
+    /// For `read_any`: whether a slice file is read with LayersKept::if_faster instead of LayersKept::all.
+    bool stream_layers = false;
 };
 
 /// A mesh of a file as stored: in the file's unit, without placement.

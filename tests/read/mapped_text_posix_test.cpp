@@ -20,7 +20,7 @@
 #include <string>
 #include <string_view>
 
-namespace lamella {
+namespace lamella::mapped_text_posix_cases {
 namespace {
 
 constexpr std::size_t rows = 200'000;
@@ -135,4 +135,4 @@ TEST(MappedText, PackedEntriesAreLetGoOf) {
 }
 
 } // namespace
-} // namespace lamella
+} // namespace lamella::mapped_text_posix_cases
