@@ -354,4 +354,14 @@ ClosedGaps close_gaps(const Layer& layer, double within_mm) {
     return result;
 }
 
+ClosedPlane close_gaps_on_plane(std::span<const Layer> layers, double within_mm) {
+    ClosedPlane plane;
+    for (const Layer& layer : layers) {
+        ClosedGaps closed = close_gaps(layer, within_mm);
+        plane.joins.insert(plane.joins.end(), closed.joins.begin(), closed.joins.end());
+        plane.layers.push_back(std::move(closed.layer));
+    }
+    return plane;
+}
+
 } // namespace lamella

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -21,9 +22,16 @@ namespace lamella {
 
 class BoxTree {
   public:
-    /// Builds the tree of the triangles for which use(i) is true. All vertex indices must be valid.
+    /// Builds the tree of the triangles i < `triangles` for which use(i) is true; corners(i) returns their
+    /// corners, within `box`.
+    template <class Corners, class Use>
+    BoxTree(Executor& executor, std::size_t triangles, const Box3& box, const Corners& corners,
+            const Use& use);
+    /// Builds the tree of some triangles of a mesh, whose vertex indices must all be valid.
     template <class Use>
-    BoxTree(Executor& executor, const IndexedMesh& mesh, const Box3& box, const Use& use);
+    BoxTree(Executor& executor, const IndexedMesh& mesh, const Box3& box, const Use& use)
+        : BoxTree(
+              executor, mesh.triangles.size(), box, [&](std::uint32_t i) { return corners(mesh, i); }, use) {}
 
     /// Number of leaves; a leaf has up to `leaf_size` positions.
     [[nodiscard]] std::size_t leaves() const noexcept { return levels_.empty() ? 0 : levels_[0].size(); }
@@ -38,6 +46,10 @@ class BoxTree {
     /// point_a in the leaf.
     template <class Visit>
     void close_to_leaf(std::size_t leaf, const Visit& visit) const;
+    /// Calls visit(triangle) for all triangles whose boxes the plane meets, and for some whose boxes it
+    /// almost meets. The normal must not be 0.
+    template <class Visit>
+    void near_plane(const Point3& origin, const Point3& normal, const Visit& visit) const;
 
   private:
     struct Bounds {
@@ -72,8 +84,11 @@ class BoxTree {
                 std::max({box.max.x / 4 - low[0], box.max.y / 4 - low[1], box.max.z / 4 - low[2]});
             scale = extent > 1e-300 ? 1 / extent : 0;
         }
+        [[nodiscard]] double exact(double x, std::size_t axis) const noexcept {
+            return (x / 4 - low[axis]) * scale;
+        }
         [[nodiscard]] float position(double x, std::size_t axis) const noexcept {
-            return static_cast<float>((x / 4 - low[axis]) * scale);
+            return static_cast<float>(exact(x, axis));
         }
     };
 
@@ -93,25 +108,26 @@ class BoxTree {
         return code;
     }
 
+    Frame frame_;
     std::vector<std::uint32_t> order_;
     std::vector<Bounds> boxes_;               ///< by position
     std::vector<std::vector<Bounds>> levels_; ///< leaves first; the last one has one box
 };
 
-template <class Use>
-BoxTree::BoxTree(Executor& executor, const IndexedMesh& mesh, const Box3& box, const Use& use) {
-    const Frame frame(box);
+template <class Corners, class Use>
+BoxTree::BoxTree(Executor& executor, std::size_t triangles, const Box3& box, const Corners& corners,
+                 const Use& use)
+    : frame_(box) {
     const auto bounds_of = [&](std::uint32_t i) {
         Bounds bounds;
-        for (const std::uint32_t v : mesh.triangles[i]) {
-            const Point3& p = mesh.vertices[v];
-            const std::array at{frame.position(p.x, 0), frame.position(p.y, 1), frame.position(p.z, 2)};
+        for (const Point3& p : corners(i)) {
+            const std::array at{frame_.position(p.x, 0), frame_.position(p.y, 1), frame_.position(p.z, 2)};
             bounds.add({at, at});
         }
         return bounds;
     };
     std::vector<std::pair<std::uint64_t, std::uint32_t>> sorted;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
+    for (std::uint32_t i = 0; i < triangles; ++i)
         if (use(i))
             sorted.emplace_back(0, i);
     executor.for_chunks(sorted.size(), chunk, [&](std::size_t begin, std::size_t end, unsigned) {
@@ -170,6 +186,47 @@ void BoxTree::close_to_leaf(std::size_t leaf, const Visit& visit) const {
         for (std::size_t child = std::max(number * children, first_wanted); child < last; ++child)
             if (mine.overlaps(below[child]))
                 stack[size++] = {level - 1, child};
+    }
+}
+
+template <class Visit>
+void BoxTree::near_plane(const Point3& origin, const Point3& normal, const Visit& visit) const {
+    if (levels_.empty())
+        return;
+    const double longest = std::max({std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)});
+    const std::array n{normal.x / longest, normal.y / longest, normal.z / longest};
+    const std::array at{frame_.exact(origin.x, 0), frame_.exact(origin.y, 1), frame_.exact(origin.z, 2)};
+    const auto meets = [&](const Bounds& box) {
+        // The plane is tested in double precision against boxes in single precision, which lie in [0, 1].
+        constexpr double rounding = 1e-6;
+        double from_middle = 0;
+        double reach = rounding;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const double low = static_cast<double>(box.min[k]) - at[k];
+            const double high = static_cast<double>(box.max[k]) - at[k];
+            from_middle += n[k] * (low + high);
+            reach += std::abs(n[k]) * (high - low);
+            reach += 1e-15 * std::abs(at[k]);
+        }
+        return std::abs(from_middle) <= reach;
+    };
+    std::array<std::pair<std::uint32_t, std::size_t>, children * 24> stack; // 4^24 leaves at most
+    std::size_t size = 0;
+    stack[size++] = {static_cast<std::uint32_t>(levels_.size() - 1), 0};
+    while (size > 0) {
+        const auto [level, number] = stack[--size];
+        if (!meets(levels_[level][number]))
+            continue;
+        if (level == 0) {
+            const auto [from, to] = positions(number);
+            for (std::size_t position = from; position < to; ++position)
+                if (meets(boxes_[position]))
+                    visit(order_[position]);
+            continue;
+        }
+        const std::size_t last = std::min((number + 1) * children, levels_[level - 1].size());
+        for (std::size_t child = number * children; child < last; ++child)
+            stack[size++] = {level - 1, child};
     }
 }
 

@@ -133,11 +133,17 @@ class RangeSurvey {
     std::vector<SumsBefore> before_; ///< one per plane, and one more
 };
 
-/// Returns the default bound of slice_to on points in flight: 56 MB for each thread, and at least 112 MB.
-/// This is only a few layers of a million points each. A smaller bound costs time, because edges are laid out
-/// again for each range of layers in flight.
-[[nodiscard]] constexpr std::uint64_t usual_points_in_flight(unsigned threads) noexcept {
-    return (std::uint64_t{56} << 20) / sizeof(Point2) * std::max(threads, 2U);
+/// The smallest default bound of slice_to on points in flight, 112 MB. It does not depend on the threads:
+/// memory that is used again, perhaps from the cache, costs less than fresh memory for each of them. This is
+/// only a few layers of a million points each; a smaller bound costs time, because edges are laid out again
+/// for each range of layers in flight.
+inline constexpr std::uint64_t least_points_in_flight = (std::uint64_t{112} << 20) / sizeof(Point2);
+
+/// Returns the default bound of slice_to. Layers of large meshes are large, too. If no more than a few of
+/// them could be in flight, the tasks of many threads would be so short that walks took most of the time.
+/// One point per triangle takes a tenth of the memory of the cut graph.
+[[nodiscard]] constexpr std::uint64_t usual_points_in_flight(std::uint64_t triangles) noexcept {
+    return std::max(least_points_in_flight, triangles);
 }
 
 /// The parameters of slicing a range that determine its memory.

@@ -77,6 +77,18 @@ TEST(CloseGaps, ClosesAGapThatIsJustAsLongWhateverItsDirection) {
     EXPECT_EQ(close_gaps(normal_layer({}, {{{0, 5}, {0, 0.8}}, {{0, 0.3}, {0, -5}}}), 0.5).joins.size(), 1U);
 }
 
+TEST(CloseGaps, OnAPlaneJoinsNoEndsOfDifferentLayers) {
+    const std::vector<Layer> layers{test::normal_layer({}, {{{0, 0}, {4, 0}, {4, 4}, {0, 1}}}),
+                                    test::normal_layer({}, {{{0, 0.5}, {-4, 0}, {-4, 4}}})};
+    const ClosedPlane plane = close_gaps_on_plane(layers, 1);
+    ASSERT_EQ(plane.layers.size(), 2U);
+    EXPECT_EQ(plane.joins.size(), 1U);
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        EXPECT_TRUE(same_contours(plane.layers[i], close_gaps(layers[i], 1).layer));
+    EXPECT_EQ(plane.layers[0].rings, 1U);
+    EXPECT_EQ(plane.layers[1].open_chains(), 1U);
+}
+
 TEST(CloseGaps, LeavesOutARepeatedPoint) {
     const ClosedGaps closed =
         close_gaps(normal_layer({}, {{{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0}}}), 0.1);

@@ -13,7 +13,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -25,11 +27,24 @@ std::atomic<std::int64_t> left{0}; // allocations until one fails
 void* allocated(std::size_t bytes, std::size_t alignment) {
     if (counting.load() && left.fetch_sub(1) == 0)
         throw std::bad_alloc();
-    const std::size_t rounded = (bytes + alignment - 1) / alignment * alignment;
-    void* const memory = std::aligned_alloc(alignment, rounded == 0 ? alignment : rounded);
-    if (memory == nullptr)
+    // No function of the standard library gives aligned memory on all systems. The address of the whole is in
+    // front.
+    auto* const whole = static_cast<std::byte*>(std::malloc(bytes + alignment + sizeof(void*)));
+    if (whole == nullptr)
         throw std::bad_alloc();
+    void* memory = whole + sizeof(void*);
+    std::size_t space = bytes + alignment;
+    std::align(alignment, bytes, memory, space);
+    std::memcpy(static_cast<std::byte*>(memory) - sizeof(void*), &whole, sizeof whole);
     return memory;
+}
+
+void release(void* memory) {
+    if (memory == nullptr)
+        return;
+    void* whole = nullptr;
+    std::memcpy(&whole, static_cast<std::byte*>(memory) - sizeof(void*), sizeof whole);
+    std::free(whole);
 }
 
 } // namespace
@@ -49,19 +64,19 @@ void* allocated(std::size_t bytes, std::size_t alignment) {
     }
 }
 [[gnu::noinline]] void operator delete(void* memory, const std::nothrow_t& /*nothrow*/) noexcept {
-    std::free(memory);
+    release(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory) noexcept {
-    std::free(memory);
+    release(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
+    release(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    release(memory);
 }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    release(memory);
 }
 
 namespace lamella::allocation_cases {

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 LAMELLA_API_BEGIN
@@ -44,6 +45,14 @@ struct ClosedGaps {
 /// A layer without chains is returned as it is. Throws Error{usage} for a distance that is not a positive
 /// finite number. O(n + c log c) for n points and c chains if each chain is close to few others.
 [[nodiscard]] ClosedGaps close_gaps(const Layer& layer, double within_mm);
+
+struct ClosedPlane {
+    std::vector<Layer> layers;
+    std::vector<GapJoin> joins; ///< of the first layer, then of the second, and so on
+};
+
+/// Closes the gaps of several layers on one plane, each by itself.
+[[nodiscard]] ClosedPlane close_gaps_on_plane(std::span<const Layer> layers, double within_mm);
 
 } // namespace lamella
 LAMELLA_API_END

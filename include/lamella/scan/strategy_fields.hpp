@@ -55,5 +55,16 @@ struct NamedValues {
 [[nodiscard]] NamedValues<ContourOrder> named_values(ContourOrder) noexcept;
 [[nodiscard]] NamedValues<ThinWalls> named_values(ThinWalls) noexcept;
 
+/// Returns each parameter set of the strategy once, in the order of its rules. Throws Error{usage} if sets of
+/// one name differ, or one has no name.
+[[nodiscard]] std::vector<ParameterSet> parameter_sets(const ScanStrategy& strategy);
+
+/// Returns the whole strategy as a TOML file, with comments that explain units and meanings. Throws
+/// Error{usage} for such sets, for names that are not UTF-8, and for a seed of 2^63 or more.
+[[nodiscard]] std::string strategy_text(const ScanStrategy& strategy);
+
+/// Returns a text as a TOML string. Throws Error{usage} if it is not UTF-8.
+[[nodiscard]] std::string toml_quoted(std::string_view text);
+
 } // namespace lamella
 LAMELLA_API_END

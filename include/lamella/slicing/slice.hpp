@@ -104,8 +104,8 @@ struct SliceOptions {
     Execution execution = {};
     Engine engine = engines().front();
     /// Largest number of points handed to a sink and not yet released by its commits; 0: no bound. By
-    /// default, 56 MB of points per thread, and at least 112 MB; for a plate, 64 MB. A single larger layer is
-    /// always permitted. `slice` holds all layers anyway and ignores it.
+    /// default, one point per triangle, and at least 112 MB of points; for a plate of several bodies, 64 MB.
+    /// A single larger layer is always permitted. `slice` holds all layers anyway and ignores it.
     std::optional<std::uint64_t> points_in_flight = {};
     TriangleVisitor visitor = {}; ///< receives the mesh; if it is indexed, with equal vertices joined
 };

@@ -14,6 +14,10 @@
 #include <cassert>
 #include <cstring>
 #include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 // Construction of the graph
@@ -37,7 +41,7 @@ namespace {
 /// Different edges rarely agree in both.
 using NodePartitions = KeyPartitions<std::uint32_t>;
 
-// Sources of triangles. A Corner holds the bits that identify a vertex; they are the same in all triangles of
+// Chunks of triangles. A Corner holds the bits that identify a vertex; they are the same in all triangles of
 // the vertex.
 
 struct FloatCorners {
@@ -49,10 +53,10 @@ struct FloatCorners {
         friend bool operator==(const Corner&, const Corner&) = default;
     };
 
-    FloatCorners(const TriangleSoup& soup, const Ranks& ranks)
-        : data_(soup.data()), stride_(soup.stride()), ranks_(ranks) {}
+    FloatCorners(const TriangleSoup& chunk, const Ranks& ranks)
+        : data_(chunk.data()), stride_(chunk.stride()), ranks_(ranks) {}
 
-    /// Returns false if no plane cuts triangle i.
+    /// Returns false if no plane cuts triangle i of the chunk.
     bool load(std::uint64_t i, std::array<Corner, 3>& corners, std::array<std::uint32_t, 3>& rank) const {
         const std::byte* const triangle = data_ + i * stride_;
         std::array<float, 3> z;
@@ -95,10 +99,10 @@ struct PlacedCorners {
     using Ends = DoubleEnds;
     using Corner = Point3;
 
-    PlacedCorners(const TriangleSoup& soup, const Ranks& ranks) : soup_(soup), ranks_(ranks) {}
+    PlacedCorners(TriangleSoup chunk, const Ranks& ranks) : chunk_(std::move(chunk)), ranks_(ranks) {}
 
     bool load(std::uint64_t i, std::array<Corner, 3>& corners, std::array<std::uint32_t, 3>& rank) const {
-        corners = soup_.placed(i);
+        corners = chunk_.placed(i);
         for (std::size_t k = 0; k < 3; ++k)
             rank[k] = ranks_(corners[k].z);
         return !(rank[0] == rank[1] && rank[1] == rank[2]);
@@ -111,7 +115,7 @@ struct PlacedCorners {
     static void store(const Corner& c, Point3& to) { to = c; }
 
   private:
-    const TriangleSoup& soup_;
+    TriangleSoup chunk_;
     const Ranks& ranks_;
 };
 
@@ -119,11 +123,12 @@ struct IndexedCorners {
     using Ends = IndexEnds;
     using Corner = std::uint32_t;
 
-    IndexedCorners(const IndexedMesh& mesh, const PageArray<std::uint32_t>& vertex_ranks)
-        : mesh_(mesh), ranks_(vertex_ranks) {}
+    IndexedCorners(std::span<const std::array<std::uint32_t, 3>> chunk,
+                   const PageArray<std::uint32_t>& vertex_ranks)
+        : chunk_(chunk), ranks_(vertex_ranks) {}
 
     bool load(std::uint64_t i, std::array<Corner, 3>& corners, std::array<std::uint32_t, 3>& rank) const {
-        corners = mesh_.triangles[i];
+        corners = chunk_[i];
         for (std::size_t k = 0; k < 3; ++k)
             rank[k] = ranks_[corners[k]];
         return !(rank[0] == rank[1] && rank[1] == rank[2]);
@@ -133,7 +138,7 @@ struct IndexedCorners {
     static void store(Corner vertex, std::uint32_t& to) { to = vertex; }
 
   private:
-    const IndexedMesh& mesh_;
+    std::span<const std::array<std::uint32_t, 3>> chunk_;
     const PageArray<std::uint32_t>& ranks_;
 };
 
@@ -174,15 +179,20 @@ class alignas(128) Collector {
 
   public:
     /// Requires a power of two as `table_size`.
-    Collector(const Corners& corners, const CutGraph<Ends>& graph, const NodePartitions& partitions,
-              CutNodePool& pool, std::uint32_t block_size, std::size_t table_size)
-        : corners_(corners), nodes_(graph.nodes.data()), spans_(graph.spans.data()), partitions_(partitions),
-          pool_(pool), hashes_(block_size), table_(table_size, Fill::zero) {}
+    Collector(const CutGraph<Ends>& graph, const NodePartitions& partitions, CutNodePool& pool,
+              std::uint32_t block_size, std::size_t table_size)
+        : nodes_(graph.nodes.data()), spans_(graph.spans.data()), partitions_(partitions), pool_(pool),
+          hashes_(block_size), table_(table_size, Fill::zero) {}
 
-    void add(std::uint64_t begin, std::uint64_t end) {
+    /// Adds the triangles [begin, end) of a chunk; `first` is the number of the first triangle of the chunk.
+    void add(Corners corners, std::uint64_t first, std::uint64_t begin, std::uint64_t end) {
         for (std::uint64_t i = begin; i < end; ++i)
-            add(i);
+            add_triangle(corners, i, first + i);
+        end_ = first + end;
     }
+
+    /// Returns the number after that of the last triangle.
+    [[nodiscard]] std::uint64_t end() const noexcept { return end_; }
 
     /// Must be called after the last triangle.
     void finish() { put_hashes(); }
@@ -194,10 +204,10 @@ class alignas(128) Collector {
         std::uint32_t node;
     };
 
-    void add(std::uint64_t i) {
+    void add_triangle(const Corners& corners, std::uint64_t i, std::uint64_t number) {
         std::array<Corner, 3> corner;
         std::array<std::uint32_t, 3> rank;
-        if (!corners_.load(i, corner, rank))
+        if (!corners.load(i, corner, rank))
             return;
         if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0])
             return; // no area and no effect on the topology: its two cut edges, if any, coincide
@@ -231,7 +241,7 @@ class alignas(128) Collector {
             leaving.next_low = above_lower ? at_lower : at_upper;
             leaving.next_high = below_upper ? at_upper : at_lower;
             leaving.split = above_lower && below_upper ? third_rank : lower_rank;
-            leaving.triangle = static_cast<std::uint32_t>(i);
+            leaving.triangle = static_cast<std::uint32_t>(number);
             assert(leaving.next_low != no_node && leaving.next_high != no_node);
         };
         link(node01, rank[0], rank[1], rank[2], node12, node20);
@@ -289,13 +299,13 @@ class alignas(128) Collector {
                 });
     }
 
-    Corners corners_;
     Node* nodes_;
     PlaneSpan* spans_;
     const NodePartitions& partitions_;
     CutNodePool& pool_;
     CutNodePool::Block block_;
-    std::uint32_t next_ = 0;          ///< the next number to assign
+    std::uint32_t next_ = 0; ///< the next number to assign
+    std::uint64_t end_ = 0;
     PageArray<std::uint64_t> hashes_; ///< hashes of the nodes with these numbers
     PageArray<Slot> table_;
 };
@@ -334,30 +344,48 @@ class Builder {
     using Node = CutNode<Ends>;
 
   public:
-    Builder(const Corners& corners, std::uint64_t triangles, const Point3* vertices, Executor& executor,
-            ProgressMeter& progress, const RangeVisitor& visit)
-        : corners_(corners), triangles_(triangles), executor_(executor), progress_(progress), visit_(visit),
-          workers_(executor.workers()), partitions_(triangles * 3 / 2) {
+    Builder(std::uint64_t triangles, const Point3* vertices, Executor& executor, ProgressMeter& progress)
+        : triangles_(triangles), executor_(executor), progress_(progress), workers_(executor.workers()),
+          partitions_(triangles * 3 / 2) {
         graph_.vertices = vertices;
-    }
-
-    CutGraph<Ends> build() {
         // There are at most three nodes per triangle, and one partly used chunk of numbers per worker.
-        const auto block = static_cast<std::uint32_t>(
-            std::clamp<std::uint64_t>(3 * triangles_ / workers_ + 3, 3, partitions_.block_size()));
-        const std::uint64_t capacity = 3 * triangles_ + std::uint64_t{block} * workers_;
+        block_ = static_cast<std::uint32_t>(
+            std::clamp<std::uint64_t>(3 * triangles / workers_ + 3, 3, partitions_.block_size()));
+        const std::uint64_t capacity = 3 * triangles + std::uint64_t{block_} * workers_;
         if (capacity >= no_node)
             throw Error(ErrorKind::limit,
                         fmt::format("{} triangles are more than can be sliced at once in 32-bit "
                                     "numbers ({})",
-                                    triangles_, no_node / 3));
+                                    triangles, no_node / 3));
         graph_.nodes = PageArray<Node>(capacity, Fill::zero); // a node of zeros is not in use
         graph_.spans = PageArray<PlaneSpan>(capacity, Fill::zero);
-        partitions_.reserve(capacity / block + 1, block);
-        CutNodePool pool(capacity, block);
+        partitions_.reserve(capacity / block_ + 1, block_);
+        pool_.emplace(capacity, block_);
+    }
 
-        collect(pool, block);
-        graph_.count = pool.used();
+    /// Collects the `count` triangles of a chunk. May be called by as many threads at once as there are
+    /// workers. All chunks together must have the number of triangles of the mesh.
+    void add(const Corners& chunk, std::uint64_t first, std::uint64_t count, const RangeVisitor& visit = {}) {
+        std::unique_ptr<Collector<Corners>> collector = take_collector(first);
+        // Chunks that are visited are added in parts that are still in the cache when they are added.
+        const std::uint64_t part = visit ? 1024 : count;
+        for (std::uint64_t begin = 0; begin < count; begin += part) {
+            const std::uint64_t end = std::min(count, begin + part);
+            if (visit)
+                visit(first + begin, first + end);
+            collector->add(chunk, first, begin, end);
+        }
+        progress_.add(count);
+        const std::lock_guard lock(mutex_);
+        collectors_.push_back(std::move(collector));
+    }
+
+    /// Must be called after all triangles were added.
+    CutGraph<Ends> finish() {
+        for (const std::unique_ptr<Collector<Corners>>& collector : collectors_)
+            collector->finish();
+        collectors_.clear();
+        graph_.count = pool_->used();
         join();
         if (!non_manifold_.empty())
             graph_.nonmanifold_edges = pair_non_manifold_edges(graph_, non_manifold_, executor_);
@@ -373,7 +401,6 @@ class Builder {
     };
 
     struct Worker {
-        std::unique_ptr<Collector<Corners>> collector;
         std::array<TriangleIntersection, 16>
             intersections; ///< pending ones, as a ring buffer: the oldest is at `met` modulo its size
         std::size_t met = 0;
@@ -381,38 +408,29 @@ class Builder {
             non_manifold; ///< nodes that share their hash with others, with repetitions
     };
 
-    void collect(CutNodePool& pool, std::uint32_t block) {
+    /// Returns a collector that no thread uses; if possible, that of the triangles right before `first`. Its
+    /// table has the edges at the border, and is in the cache of the thread if this goes from chunk to chunk.
+    std::unique_ptr<Collector<Corners>> take_collector(std::uint64_t first) {
+        const std::lock_guard lock(mutex_);
+        const auto before = std::find_if(collectors_.begin(), collectors_.end(),
+                                         [&](const auto& collector) { return collector->end() == first; });
+        if (before != collectors_.end())
+            std::swap(*before, collectors_.back());
+        if (!collectors_.empty()) {
+            std::unique_ptr<Collector<Corners>> collector = std::move(collectors_.back());
+            collectors_.pop_back();
+            return collector;
+        }
+        ++made_;
+        assert(made_ <= workers_); // there are numbers for this many
         const std::uint64_t expected = triangles_ * 3 / 2;
         const int table_bits = std::clamp(static_cast<int>(std::bit_width(expected)), 4, 15);
-        worker_.resize(workers_);
-        const std::uint64_t chunk =
-            std::clamp<std::uint64_t>(triangles_ / (std::uint64_t{workers_} * 8), 4096, 1U << 16);
-        executor_.for_chunks(triangles_, chunk, [&](std::uint64_t begin, std::uint64_t end, unsigned w) {
-            std::unique_ptr<Collector<Corners>>& collector = worker_[w].collector;
-            if (!collector)
-                collector = std::make_unique<Collector<Corners>>(corners_, graph_, partitions_, pool, block,
-                                                                 std::size_t{1} << table_bits);
-            if (visit_)
-                add_visited(*collector, begin, end);
-            else
-                collector->add(begin, end);
-            progress_.add(end - begin);
-        });
-        for (const Worker& worker : worker_)
-            if (worker.collector)
-                worker.collector->finish();
-    }
-
-    /// Visits and adds small chunks of triangles, so that they are still in the cache when they are added.
-    void add_visited(Collector<Corners>& collector, std::uint64_t begin, std::uint64_t end) const {
-        constexpr std::uint64_t stretch = 1024;
-        for (; begin < end; begin += std::min(stretch, end - begin)) {
-            visit_(begin, begin + std::min(stretch, end - begin));
-            collector.add(begin, begin + std::min(stretch, end - begin));
-        }
+        return std::make_unique<Collector<Corners>>(graph_, partitions_, *pool_, block_,
+                                                    std::size_t{1} << table_bits);
     }
 
     void join() {
+        worker_.resize(workers_);
         partitions_.join(
             executor_, [](std::uint32_t hash) { return hash; },
             [&](std::uint32_t first, std::uint32_t other, unsigned w) {
@@ -472,30 +490,74 @@ class Builder {
         left.split = entered_half;
     }
 
-    const Corners& corners_;
     std::uint64_t triangles_;
     Executor& executor_;
     ProgressMeter& progress_;
-    const RangeVisitor& visit_;
     unsigned workers_;
-    std::vector<Worker> worker_;
     NodePartitions partitions_;
     CutGraph<Ends> graph_;
+    std::uint32_t block_ = 0;         // node numbers that a collector takes at once
+    std::optional<CutNodePool> pool_; // of the node numbers
+    std::mutex mutex_;
+    std::vector<std::unique_ptr<Collector<Corners>>> collectors_; // those that no thread uses
+    unsigned made_ = 0;                                           // collectors
+    std::vector<Worker> worker_;
     std::vector<std::uint32_t> non_manifold_; // nodes that share their ends, unordered, with repetitions
 };
+
+/// Builds the graph of a mesh in memory. `corners(begin, end)` returns a chunk of its triangles.
+template <class Corners, class Chunk>
+CutGraph<typename Corners::Ends> build(std::uint64_t triangles, const Point3* vertices, const Chunk& corners,
+                                       Executor& executor, ProgressMeter& progress,
+                                       const RangeVisitor& visit) {
+    Builder<Corners> builder(triangles, vertices, executor, progress);
+    const std::uint64_t size =
+        std::clamp<std::uint64_t>(triangles / (std::uint64_t{executor.workers()} * 8), 4096, 1U << 16);
+    executor.for_chunks(triangles, size, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
+        builder.add(corners(begin, end), begin, end - begin, visit);
+    });
+    return builder.finish();
+}
+
+template <class Corners>
+CutGraph<typename Corners::Ends> build(const TriangleSoup& soup, const Ranks& ranks, Executor& executor,
+                                       ProgressMeter& progress, const RangeVisitor& visit) {
+    const auto corners = [&](std::uint64_t begin, std::uint64_t end) {
+        return Corners(soup.part(begin, end), ranks);
+    };
+    return build<Corners>(soup.size(), nullptr, corners, executor, progress, visit);
+}
+
+template <class Corners>
+CutGraph<typename Corners::Ends> build(const TriangleStream& stream, const Ranks& ranks, Executor& executor,
+                                       ProgressMeter& progress) {
+    Builder<Corners> builder(stream.triangles, nullptr, executor, progress);
+    stream.pass(executor.workers(), [&](const TriangleSoup& chunk, std::uint64_t first) {
+        builder.add(Corners(chunk, ranks), first, chunk.size());
+    });
+    return builder.finish();
+}
 
 } // namespace
 
 CutGraph<FloatEnds> build_cut_graph(const TriangleSoup& unplaced, const Ranks& ranks, Executor& executor,
                                     ProgressMeter& progress, const RangeVisitor& visit) {
-    const FloatCorners corners(unplaced, ranks);
-    return Builder<FloatCorners>(corners, unplaced.size(), nullptr, executor, progress, visit).build();
+    return build<FloatCorners>(unplaced, ranks, executor, progress, visit);
+}
+
+CutGraph<FloatEnds> build_cut_graph(const TriangleStream& unplaced, const Ranks& ranks, Executor& executor,
+                                    ProgressMeter& progress) {
+    return build<FloatCorners>(unplaced, ranks, executor, progress);
 }
 
 CutGraph<DoubleEnds> build_placed_cut_graph(const TriangleSoup& soup, const Ranks& ranks, Executor& executor,
                                             ProgressMeter& progress, const RangeVisitor& visit) {
-    const PlacedCorners corners(soup, ranks);
-    return Builder<PlacedCorners>(corners, soup.size(), nullptr, executor, progress, visit).build();
+    return build<PlacedCorners>(soup, ranks, executor, progress, visit);
+}
+
+CutGraph<DoubleEnds> build_placed_cut_graph(const TriangleStream& stream, const Ranks& ranks,
+                                            Executor& executor, ProgressMeter& progress) {
+    return build<PlacedCorners>(stream, ranks, executor, progress);
 }
 
 CutGraph<IndexEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks, Executor& executor,
@@ -506,10 +568,11 @@ CutGraph<IndexEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks,
                             for (std::uint64_t v = begin; v < end; ++v)
                                 vertex_ranks[v] = ranks(mesh.vertices[v].z);
                         });
-    const IndexedCorners corners(mesh, vertex_ranks);
-    return Builder<IndexedCorners>(corners, mesh.triangles.size(), mesh.vertices.data(), executor, progress,
-                                   visit)
-        .build();
+    const auto corners = [&](std::uint64_t begin, std::uint64_t end) {
+        return IndexedCorners(std::span(mesh.triangles).subspan(begin, end - begin), vertex_ranks);
+    };
+    return build<IndexedCorners>(mesh.triangles.size(), mesh.vertices.data(), corners, executor, progress,
+                                 visit);
 }
 
 } // namespace lamella

@@ -16,6 +16,7 @@
 #include "core/executor.hpp"
 #include "core/pages.hpp"
 #include "slicing/ranks.hpp"
+#include "slicing/triangle_stream.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -112,10 +113,15 @@ using RangeVisitor = std::function<void(std::uint64_t begin, std::uint64_t end)>
 [[nodiscard]] CutGraph<FloatEnds> build_cut_graph(const TriangleSoup& unplaced, const Ranks& ranks,
                                                   Executor& executor, ProgressMeter& progress,
                                                   const RangeVisitor& visit = {});
+/// Builds the same graph from triangles that are not in memory.
+[[nodiscard]] CutGraph<FloatEnds> build_cut_graph(const TriangleStream& unplaced, const Ranks& ranks,
+                                                  Executor& executor, ProgressMeter& progress);
 /// Builds the cut graph of a soup with a placement.
 [[nodiscard]] CutGraph<DoubleEnds> build_placed_cut_graph(const TriangleSoup& soup, const Ranks& ranks,
                                                           Executor& executor, ProgressMeter& progress,
                                                           const RangeVisitor& visit = {});
+[[nodiscard]] CutGraph<DoubleEnds> build_placed_cut_graph(const TriangleStream& stream, const Ranks& ranks,
+                                                          Executor& executor, ProgressMeter& progress);
 [[nodiscard]] CutGraph<IndexEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks,
                                                   Executor& executor, ProgressMeter& progress,
                                                   const RangeVisitor& visit = {});

@@ -6,12 +6,12 @@
 namespace lamella {
 
 std::uint64_t RangeMemory::bytes(const RangeNeeds& range) const noexcept {
-    // While nodes are joined, each has a record of 8 bytes; 12 more are allowed because an edge whose triangles
-    // different workers collect has two nodes until then. Later each node has an entry in the order of starts
-    // and at most one in the lists of tasks that it reaches into. Each worker has an array with one entry per
-    // node.
+    // While nodes are joined, each has a record of 8 bytes; 12 more are allowed because an edge whose
+    // triangles different workers collect has two nodes until then. Later each node has an entry in the order
+    // of starts and at most one in the lists of tasks that it reaches into. All workers share one mark per
+    // node. The marks of its own that a worker has take at most as much.
     constexpr std::uint64_t joining = 8 + 12;
-    const std::uint64_t walking = 8 + 4 * std::uint64_t{threads};
+    const std::uint64_t walking = 8 + 4 * (std::uint64_t{threads} + 1);
     const std::uint64_t node = (placed ? sizeof(CutNode<DoubleEnds>) : sizeof(CutNode<FloatEnds>)) +
                                sizeof(PlaneSpan) + std::max(joining, walking);
     // A point and the text that a sink makes of it.

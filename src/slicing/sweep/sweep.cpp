@@ -44,10 +44,11 @@ template <class Ends>
 class alignas(128) Sweep {
   public:
     /// Requires that either all tasks are shared, or none.
-    Sweep(const CutGraph<Ends>& graph, const StartIndex& starts, const PlaneLoads& loads, const Ranks& ranks,
-          const Plan& plan, bool shared, Executor& executor, const LayerSink& sink, OrderedStage& delivery)
+    Sweep(const CutGraph<Ends>& graph, const SharedMarks& marks, const StartIndex& starts,
+          const PlaneLoads& loads, const Ranks& ranks, const Plan& plan, bool shared, Executor& executor,
+          const LayerSink& sink, OrderedStage& delivery)
         : graph_(graph), starts_(starts), ranks_(ranks), plan_(plan), sink_(sink), delivery_(delivery),
-          crew_(executor, shared), walk_(graph), columns_(room_for_columns(loads, shared)),
+          crew_(executor, shared), walk_(graph, marks), columns_(room_for_columns(loads, shared)),
           arena_(loads.all_points) {
         if (shared)
             runs_.reserve_nodes(loads.begun.back());
@@ -58,7 +59,7 @@ class alignas(128) Sweep {
     void sweep(const SweepTask& task, std::span<const std::uint32_t> carried) {
         assert(task.shared == crew_.shared() && task.group > 0);
         const PlaneRange planes = task.planes;
-        walk_.begin_task(planes);
+        walk_.begin_task(planes, carried);
         runs_.begin_task(planes);
         entries_.begin_task(planes);
         std::uint32_t emitted = planes.begin;
@@ -67,7 +68,6 @@ class alignas(128) Sweep {
                 return;
             const std::size_t known = runs_.all().size();
             walk_.walk(plane, starts_.starts(plane),
-                       plane == planes.begin ? carried : std::span<const std::uint32_t>(),
                        [&](const NodeSequence& sequence) { add_run(plane, sequence); });
             if (crew_.shared())
                 measure_together(runs_.all().subspan(known), planes);
@@ -112,7 +112,7 @@ class alignas(128) Sweep {
     }
 
     /// Marks the nodes of the run: its later planes need no walk over them.
-    void skip_walks(const Run& run) const {
+    void skip_walks(const Run& run) {
         if (run.end > run.begin + 1)
             walk_.skip(runs_.nodes(run), run.end);
     }
@@ -168,10 +168,11 @@ void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& 
     const PlaneLoads loads = loads_of(shares, ranks.count());
     const std::vector<SweepTask> tasks = schedule(loads, executor.workers(), job.points_in_flight);
     const StartIndex starts(graph, shares, loads, tasks, executor);
+    const SharedMarks marks(graph.count, Fill::zero);
     std::vector<std::unique_ptr<Sweep<Ends>>> sweeps(executor.workers());
     const auto sweep_for = [&](std::size_t task, unsigned worker) -> Sweep<Ends>& {
         if (!sweeps[worker])
-            sweeps[worker] = std::make_unique<Sweep<Ends>>(graph, starts, loads, ranks, job.plan,
+            sweeps[worker] = std::make_unique<Sweep<Ends>>(graph, marks, starts, loads, ranks, job.plan,
                                                            tasks[task].shared, executor, job.sink, delivery);
         return *sweeps[worker];
     };
@@ -197,7 +198,8 @@ void slice_by_sweep(const SliceJob& job) {
     Executor executor(job.execution);
     const Stopwatch linking;
     const Ranks ranks(job.plan);
-    ProgressMeter progress(job.execution, Stage::link, job.mesh.size());
+    ProgressMeter progress(job.execution, Stage::link,
+                           job.stream != nullptr ? job.stream->triangles : job.mesh.size());
     const auto linked = [&](const auto& graph) -> const auto& {
         progress.finish();
         job.report.link_seconds = linking.seconds();
@@ -208,7 +210,12 @@ void slice_by_sweep(const SliceJob& job) {
         visit = [&job](std::uint64_t begin, std::uint64_t end) {
             (*job.visitor)(job.mesh, begin, end);
         };
-    if (job.mesh.indexed() != nullptr)
+    if (job.stream != nullptr && job.stream->placed)
+        sweep_graph(job, linked(build_placed_cut_graph(*job.stream, ranks, executor, progress)), ranks,
+                    executor);
+    else if (job.stream != nullptr)
+        sweep_graph(job, linked(build_cut_graph(*job.stream, ranks, executor, progress)), ranks, executor);
+    else if (job.mesh.indexed() != nullptr)
         sweep_graph(job, linked(build_cut_graph(*job.mesh.indexed(), ranks, executor, progress, visit)),
                     ranks, executor);
     else if (job.mesh.soup()->has_placement())

@@ -20,11 +20,12 @@ namespace {
 template <class Look>
 void for_outlines(const TriangleSoup& soup, const Ranks& ranks, const Look& look) {
     const CutGraph<FloatEnds> graph = test::graph_of(soup, ranks);
-    Walk<FloatEnds> walk(graph);
-    walk.begin_task({0, ranks.count()});
+    const SharedMarks marks(graph.count, Fill::zero);
+    Walk<FloatEnds> walk(graph, marks);
+    walk.begin_task({0, ranks.count()}, {});
     Scratch scratch;
     for (std::uint32_t plane = 0; plane < ranks.count(); ++plane)
-        walk.walk(plane, test::nodes_beginning_on(graph, plane), {}, [&](const NodeSequence& found) {
+        walk.walk(plane, test::nodes_beginning_on(graph, plane), [&](const NodeSequence& found) {
             const EdgeColumns edges = lay_out_edges(graph, ranks, found.nodes, scratch.kernels,
                                                     scratch.columns_for(found.nodes.size()));
             look(Outline{edges, found.closed}, PlaneRange{plane, found.valid_until}, scratch);

@@ -1,0 +1,67 @@
+#pragma once
+
+// A mesh that is prepared for single planes.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/contour/plane_rule.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/core/point.hpp"
+#include "lamella/mesh/mesh.hpp"
+#include "lamella/mesh/transform.hpp"
+
+#include <memory>
+
+LAMELLA_API_BEGIN
+namespace lamella {
+
+/// The section of a mesh with a plane of any direction.
+struct PlaneSection {
+    /// The contours, in coordinates within the plane whose origin is the given point. The heights are 0.
+    /// Material lies to the left of the contours for an observer whom the normal of the plane points at.
+    Layer layer;
+    /// Maps (x, y, 0) of the layer to the coordinates of the mesh.
+    Transform to_mesh;
+
+    /// Returns a point of the layer in the coordinates of the mesh.
+    [[nodiscard]] Point3 point(const Point2& p) const noexcept { return to_mesh({p.x, p.y, 0}); }
+};
+
+/// Cuts one mesh with many single planes, for example while somebody moves a plane through it. The mesh is
+/// prepared once; then a plane costs in proportion to the triangles that it cuts, not to all of them. Use
+/// `slice` for the layers of a whole part.
+///
+/// Immutable: any number of threads may use it at once. Cheap to move, and the mesh is shared.
+class Slicer {
+  public:
+    /// Prepares horizontal planes. O(n log n) for n triangles: it links all edges, where `slice` links only
+    /// those that its planes cut. Takes about 64 bytes for each edge. Throws Error{limit} for about 2^32 / 3
+    /// triangles or more, and Error{cancelled}. The number of threads applies to all of the preparation.
+    explicit Slicer(Mesh mesh, PlaneRule rule = PlaneRule::section_above, const Execution& execution = {});
+    ~Slicer();
+    Slicer(Slicer&&) noexcept;
+    Slicer& operator=(Slicer&&) noexcept;
+    Slicer(const Slicer&) = delete;
+    Slicer& operator=(const Slicer&) = delete;
+
+    [[nodiscard]] const Mesh& mesh() const noexcept;
+
+    /// Returns the layer at height z: bit for bit the contours that `slice` returns for this plane. Its index
+    /// is 0, and its bottom and top are z. A plane that misses the mesh gives a layer without contours.
+    /// Throws Error{usage} if z is not finite. O(log n + k log k) for k triangles that the plane cuts, if
+    /// there are not many more triangles of similar height near the plane; on the calling thread.
+    [[nodiscard]] Layer section(double z) const;
+
+    /// Returns the section with the plane through `origin` at right angles to `normal`, of any length. Only
+    /// the triangles near the plane are rotated. The contours are those that `slice` finds at z = 0 in the
+    /// mesh that is moved by -origin and rotated so that the normal points upwards. The first call prepares
+    /// the mesh for this. Throws Error{usage} unless all numbers are finite and the normal is not 0.
+    /// O(log n + k log k) on the calling thread for k triangles near the plane.
+    [[nodiscard]] PlaneSection section(const Point3& origin, const Point3& normal) const;
+
+  private:
+    struct Prepared;
+    std::unique_ptr<const Prepared> prepared_;
+};
+
+} // namespace lamella
+LAMELLA_API_END

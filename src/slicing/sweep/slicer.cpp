@@ -1,0 +1,297 @@
+#include "lamella/slicing/slicer.hpp"
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/error.hpp"
+#include "lamella/slicing/plan.hpp"
+#include "lamella/slicing/slice.hpp"
+
+#include "core/bit_cast.hpp"
+#include "core/executor.hpp"
+#include "mesh/box_tree.hpp"
+#include "slicing/ranks.hpp"
+#include "slicing/sweep/columns.hpp"
+#include "slicing/sweep/cut_graph.hpp"
+#include "slicing/sweep/emit.hpp"
+#include "slicing/sweep/measure.hpp"
+#include "slicing/sweep/plane_index.hpp"
+#include "slicing/sweep/visit_marks.hpp"
+#include "slicing/sweep/walk.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+// Between two neighbouring heights of vertices, all planes cut the same edges and link them in the same way.
+// So the cut graph of a plan that has a plane at each of these heights serves every plane: its links are
+// those of the nearest planned plane, and only its points have a height of their own.
+
+namespace lamella {
+
+/// Finds the contours on single horizontal planes.
+class LevelPlanes {
+  public:
+    LevelPlanes() = default;
+    virtual ~LevelPlanes() = default;
+    LevelPlanes(const LevelPlanes&) = delete;
+    LevelPlanes& operator=(const LevelPlanes&) = delete;
+
+    [[nodiscard]] virtual Layer section(double z) const = 0;
+};
+
+namespace {
+
+/// Returns the different heights of all vertices, ascending.
+std::vector<double> heights_of(const Mesh& mesh, Executor& executor) {
+    constexpr std::uint64_t chunk = std::uint64_t{1} << 14;
+    constexpr std::size_t recent = std::size_t{1} << 12;
+    // Most vertices occur several times in a row of triangles; those that were seen just before are skipped.
+    struct alignas(128) Seen {
+        std::vector<double> last = std::vector<double>(recent, std::nan(""));
+        std::vector<double> heights;
+
+        void add(double z) {
+            double& slot = last[(lamella::bit_cast<std::uint64_t>(z) * 0x9E3779B97F4A7C15U) >> 52];
+            if (slot != z)
+                heights.push_back(slot = z);
+        }
+    };
+    std::vector<Seen> seen(executor.workers());
+    const IndexedMesh* const indexed = mesh.indexed();
+    executor.for_chunks(indexed != nullptr ? indexed->vertices.size() : mesh.size(), chunk,
+                        [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+                            Seen& mine = seen[worker];
+                            for (std::uint64_t i = begin; i < end; ++i)
+                                if (indexed != nullptr)
+                                    mine.add(indexed->vertices[i].z + 0.0);
+                                else
+                                    for (const Point3& corner : mesh.soup()->placed(i))
+                                        mine.add(corner.z + 0.0);
+                        });
+    executor.check_cancelled();
+    std::vector<double> heights;
+    for (Seen& one : seen)
+        heights.insert(heights.end(), one.heights.begin(), one.heights.end());
+    std::sort(heights.begin(), heights.end());
+    heights.erase(std::unique(heights.begin(), heights.end()), heights.end());
+    return heights;
+}
+
+Plan plan_of(std::span<const double> heights, PlaneRule rule) {
+    Plan plan{.layers = {}, .rule = rule};
+    plan.layers.reserve(heights.size());
+    for (const double z : heights)
+        plan.layers.push_back({plan.layers.size(), z, z, z});
+    return plan;
+}
+
+template <class Ends>
+class PreparedPlanes final : public LevelPlanes {
+  public:
+    template <class Build>
+    PreparedPlanes(std::vector<double> heights, PlaneRule rule, const Build& build)
+        : heights_(std::move(heights)), rule_(rule), graph_(build(Ranks(plan_of(heights_, rule)))),
+          index_(graph_, static_cast<std::uint32_t>(heights_.size())) {}
+
+    [[nodiscard]] Layer section(double z) const override {
+        LayerBuilder contours;
+        if (const std::optional<std::uint32_t> plane = planned_plane(z)) {
+            std::unique_ptr<Workspace> work = borrow();
+            cut(*plane, z, *work, contours);
+            give_back(std::move(work));
+        }
+        return contours.finish(0, z, z, z);
+    }
+
+  private:
+    /// The memory of one section. It is kept for the next one, of any thread.
+    struct Workspace {
+        explicit Workspace(std::uint32_t count) : marks(count, Fill::zero) {}
+
+        SharedMarks marks; ///< all 0 between sections
+        std::vector<std::uint32_t> nodes;
+        Scratch scratch;
+        std::vector<Point2> points;
+    };
+
+    /// Returns the planned plane that cuts the same edges; none outside of the mesh.
+    [[nodiscard]] std::optional<std::uint32_t> planned_plane(double z) const {
+        const bool above = rule_ == PlaneRule::section_above;
+        const auto found = above ? std::upper_bound(heights_.begin(), heights_.end(), z)
+                                 : std::lower_bound(heights_.begin(), heights_.end(), z);
+        if (found == heights_.end() || found == heights_.begin())
+            return std::nullopt;
+        return static_cast<std::uint32_t>(found - heights_.begin()) - (above ? 1 : 0);
+    }
+
+    void cut(std::uint32_t plane, double z, Workspace& work, LayerBuilder& contours) const {
+        index_.find(plane, work.nodes);
+        const Ranks ranks(plan_of({&z, 1}, rule_));
+        const Executor executor({.threads = 1});
+        Walk<Ends> walk(graph_, work.marks);
+        walk.begin_task({plane, plane + 1}, work.nodes);
+        walk.walk(plane, {}, [&](const NodeSequence& sequence) {
+            Scratch& scratch = work.scratch;
+            const Outline outline{lay_out_edges(graph_, ranks, sequence.nodes, scratch.kernels,
+                                                scratch.columns_for(sequence.nodes.size())),
+                                  sequence.closed};
+            Ring ring;
+            measure_rings(outline, {0, 1}, ranks, executor, {&ring, 1}, scratch);
+            if (ring.count == 0)
+                return;
+            work.points.resize(ring.count);
+            write_ring(outline, z, ring, work.points.data(), false, scratch);
+            contours.add_contour(work.points, sequence.closed);
+        });
+        for (const std::uint32_t node : work.nodes)
+            work.marks[node].store(0, std::memory_order_relaxed);
+    }
+
+    [[nodiscard]] std::unique_ptr<Workspace> borrow() const {
+        const std::lock_guard lock(mutex_);
+        if (idle_.empty())
+            return std::make_unique<Workspace>(graph_.count);
+        std::unique_ptr<Workspace> work = std::move(idle_.back());
+        idle_.pop_back();
+        return work;
+    }
+    void give_back(std::unique_ptr<Workspace> work) const {
+        const std::lock_guard lock(mutex_);
+        idle_.push_back(std::move(work));
+    }
+
+    std::vector<double> heights_;
+    PlaneRule rule_;
+    CutGraph<Ends> graph_;
+    PlaneIndex index_;
+    mutable std::mutex mutex_;
+    mutable std::vector<std::unique_ptr<Workspace>> idle_;
+};
+
+std::unique_ptr<const LevelPlanes> prepare(const Mesh& mesh, PlaneRule rule, const Execution& execution) {
+    Executor executor(execution);
+    std::vector<double> heights = heights_of(mesh, executor);
+    ProgressMeter progress(execution, Stage::link, mesh.size());
+    const auto prepared = [&]<class Ends>(auto build) {
+        return std::make_unique<const PreparedPlanes<Ends>>(std::move(heights), rule, build);
+    };
+    std::unique_ptr<const LevelPlanes> planes;
+    if (mesh.indexed() != nullptr)
+        planes = prepared.template operator()<IndexEnds>(
+            [&](const Ranks& ranks) { return build_cut_graph(*mesh.indexed(), ranks, executor, progress); });
+    else if (mesh.soup()->has_placement())
+        planes = prepared.template operator()<DoubleEnds>([&](const Ranks& ranks) {
+            return build_placed_cut_graph(*mesh.soup(), ranks, executor, progress);
+        });
+    else
+        planes = prepared.template operator()<FloatEnds>(
+            [&](const Ranks& ranks) { return build_cut_graph(*mesh.soup(), ranks, executor, progress); });
+    progress.finish();
+    return planes;
+}
+
+/// Returns these triangles of a mesh.
+Mesh some_of(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
+    if (const TriangleSoup* const soup = mesh.soup()) {
+        std::vector<Triangle3f> some;
+        some.reserve(triangles.size());
+        for (const std::uint32_t i : triangles)
+            some.push_back(soup->stored(i));
+        return TriangleSoup(std::move(some)).transformed(soup->placement());
+    }
+    IndexedMesh some;
+    some.triangles.reserve(triangles.size());
+    std::unordered_map<std::uint32_t, std::uint32_t> numbers;
+    for (const std::uint32_t i : triangles) {
+        auto corners = mesh.indexed()->triangles[i];
+        for (std::uint32_t& corner : corners) {
+            const auto [number, is_new] =
+                numbers.try_emplace(corner, static_cast<std::uint32_t>(some.vertices.size()));
+            if (is_new)
+                some.vertices.push_back(mesh.indexed()->vertices[corner]);
+            corner = number->second;
+        }
+        some.triangles.push_back(corners);
+    }
+    return some;
+}
+
+} // namespace
+
+struct Slicer::Prepared {
+    Prepared(Mesh whole, PlaneRule wanted, const Execution& execution)
+        : mesh(whole.with_joined_vertices(execution)), rule(wanted),
+          threads(execution.run_tasks ? 1 : execution.threads), level(prepare(mesh, rule, execution)) {}
+
+    /// Returns the tree of all triangles; built when it is first needed.
+    [[nodiscard]] const BoxTree& tree() const {
+        const std::lock_guard lock(growing_);
+        if (!tree_) {
+            Executor executor({.threads = threads});
+            tree_.emplace(
+                executor, mesh.size(), bounding_box(mesh, {.threads = threads}),
+                [this](std::uint32_t i) { return mesh.triangle(i); }, [](std::uint32_t) { return true; });
+        }
+        return *tree_;
+    }
+
+    Mesh mesh;
+    PlaneRule rule;
+    unsigned threads;
+    std::unique_ptr<const LevelPlanes> level;
+
+  private:
+    mutable std::mutex growing_;
+    mutable std::optional<BoxTree> tree_;
+};
+
+Slicer::Slicer(Mesh mesh, PlaneRule rule, const Execution& execution)
+    : prepared_(std::make_unique<const Prepared>(std::move(mesh), rule, execution)) {}
+Slicer::~Slicer() = default;
+Slicer::Slicer(Slicer&&) noexcept = default;
+Slicer& Slicer::operator=(Slicer&&) noexcept = default;
+
+const Mesh& Slicer::mesh() const noexcept {
+    return prepared_->mesh;
+}
+
+Layer Slicer::section(double z) const {
+    if (!std::isfinite(z))
+        throw Error(ErrorKind::usage, "the height of a section must be a finite number");
+    return prepared_->level->section(z + 0.0);
+}
+
+PlaneSection Slicer::section(const Point3& origin, const Point3& normal) const {
+    for (const double number : {origin.x, origin.y, origin.z})
+        if (!std::isfinite(number))
+            throw Error(ErrorKind::usage, "the origin of a section must have finite coordinates");
+    const Transform rotated = upright(normal);
+    const Transform to_plane = compose(rotated, translation(-origin.x, -origin.y, -origin.z));
+    // The inverse of a rotation is its transpose.
+    Transform back;
+    for (std::size_t r = 0; r < 3; ++r)
+        for (std::size_t c = 0; c < 3; ++c)
+            back.linear[r][c] = rotated.linear[c][r];
+    PlaneSection section{.layer = {}, .to_mesh = compose(translation(origin.x, origin.y, origin.z), back)};
+    std::vector<std::uint32_t> near;
+    prepared_->tree().near_plane(origin, normal, [&](std::uint32_t triangle) { near.push_back(triangle); });
+    if (near.empty())
+        return section;
+    std::sort(near.begin(), near.end());
+    constexpr double at = 0;
+    section.layer = std::move(slice(some_of(prepared_->mesh, near).transformed(to_plane),
+                                    plan_of({&at, 1}, prepared_->rule), {.execution = {.threads = 1}})
+                                  .front());
+    return section;
+}
+
+} // namespace lamella

@@ -1,0 +1,193 @@
+#include "lamella/contour/measure.hpp"
+#include "lamella/contour/normal_form.hpp"
+#include "lamella/mesh/mesh.hpp"
+#include "lamella/mesh/transform.hpp"
+#include "lamella/slicing/slice.hpp"
+#include "lamella/slicing/slicer.hpp"
+
+#include "fixtures/expect_error.hpp"
+#include "fixtures/meshes.hpp"
+#include "fixtures/named_solids.hpp"
+#include "fixtures/random.hpp"
+#include "fixtures/random_solids.hpp"
+#include "fixtures/rounds.hpp"
+#include "fixtures/solids.hpp"
+#include "parts/shapes.hpp"
+#include "slicing/expect_layers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace lamella::slicer_cases {
+namespace {
+
+using test::expect_error;
+
+/// Returns the layer of a plan of this plane only.
+Layer sliced(const Mesh& mesh, double z, PlaneRule rule = PlaneRule::section_above) {
+    return slice(mesh, {.layers = {{0, z, z, z}}, .rule = rule}).front();
+}
+
+/// Returns the heights of some vertices and others between and around them.
+std::vector<double> heights_to_cut(const TriangleSoup& soup, test::Random& random) {
+    std::vector<double> heights = test::thinned(test::corner_heights(soup), 20);
+    const double low = heights.front();
+    const double high = heights.back();
+    for (int i = 0; i < 20; ++i)
+        heights.push_back(random.real(low - 0.1, high + 0.1));
+    for (const double z : {std::nextafter(low, -1e9), std::nextafter(high, 1e9), -0.0})
+        heights.push_back(z);
+    return heights;
+}
+
+void expect_sections(const Mesh& mesh, std::span<const double> heights) {
+    for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below}) {
+        const Slicer slicer(mesh, rule, {.threads = 2});
+        for (const double z : heights) {
+            const Layer layer = slicer.section(z);
+            ASSERT_TRUE(same_contours(layer, sliced(mesh, z, rule))) << z;
+            EXPECT_TRUE(layer.index == 0 && layer.z == z && layer.bottom == z && layer.top == z);
+        }
+    }
+}
+
+TEST(Slicer, GivesTheLayersThatSlicingGives) {
+    test::Random random(451);
+    for (const test::Solid& solid : test::small_solids()) {
+        SCOPED_TRACE(solid.name);
+        const TriangleSoup mesh = solid.make();
+        const std::vector<double> heights = heights_to_cut(mesh, random);
+        expect_sections(mesh, heights);
+        expect_sections(weld(mesh), heights);
+        const Transform turn = test::random_turn(random);
+        const TriangleSoup turned = mesh.transformed(turn);
+        expect_sections(turned, heights_to_cut(turned, random));
+    }
+}
+
+TEST(Slicer, CutsEachTriangleAtAThousandRandomHeights) {
+    const test::Triangles triangles = test::rugged_drum(300, 60);
+    test::Random random(455);
+    for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below}) {
+        const Slicer slicer(Mesh(test::soup(triangles)), rule);
+        for (int i = 0; i < test::rounds_within_reason(500); ++i) {
+            const double z = random.real(-10.5, 10.5);
+            test::expect_sections({slicer.section(z)}, triangles, {.layers = {{0, z, z, z}}, .rule = rule});
+        }
+    }
+}
+
+TEST(Slicer, GivesTheChainsOfDefectiveMeshes) {
+    test::Random random(452);
+    for (int round = 0; round < test::rounds_within_reason(30); ++round) {
+        const TriangleSoup soup = test::soup(
+            test::random_triangles(40, 4, static_cast<std::uint64_t>(random.integer(0, 1'000'000))));
+        expect_sections(soup, heights_to_cut(soup, random));
+    }
+    for (const test::Triangles& triangles :
+         {test::box_without_a_side(), test::box_with_a_flipped_triangle(), test::box_twice(),
+          test::three_sheets_on_an_edge(), test::boxes_sharing_an_upright_edge()})
+        expect_sections(test::soup(triangles), heights_to_cut(test::soup(triangles), random));
+}
+
+TEST(Slicer, GivesEmptyLayersOfNothing) {
+    const Slicer slicer{Mesh()};
+    EXPECT_EQ(slicer.section(0).contours(), 0U);
+    EXPECT_EQ(slicer.section({0, 0, 0}, {1, 2, 3}).layer.contours(), 0U);
+    const Slicer box(Mesh(make_box(1, 2, 3)));
+    for (const double z : {-1.0, 3.0, 1e300})
+        EXPECT_EQ(box.section(z).contours(), 0U);
+}
+
+TEST(Slicer, CutsWithPlanesOfAnyDirectionAsSlicingDoesAlongThem) {
+    test::Random random(453);
+    for (const test::Solid& solid : test::small_solids()) {
+        SCOPED_TRACE(solid.name);
+        const TriangleSoup mesh = solid.make();
+        const Box3 box = bounding_box(mesh);
+        const Slicer slicer(mesh, PlaneRule::section_above, {.threads = 2});
+        const Slicer indexed(Mesh(weld(mesh)));
+        for (int round = 0; round < test::rounds_within_reason(12); ++round) {
+            const Point3 origin{random.real(box.min.x, box.max.x), random.real(box.min.y, box.max.y),
+                                random.real(box.min.z, box.max.z)};
+            const auto number = [&] {
+                return round < 4 ? static_cast<double>(random.integer(-1, 1)) : random.real(-3, 3);
+            };
+            Point3 normal{number(), number(), number()};
+            if (normal == Point3{})
+                normal.z = 1e-200;
+            const Transform map = compose(upright(normal), translation(-origin.x, -origin.y, -origin.z));
+            const PlaneSection section = slicer.section(origin, normal);
+            EXPECT_TRUE(same_contours(section.layer, sliced(mesh.transformed(map), 0)));
+            EXPECT_TRUE(same_contours(indexed.section(origin, normal).layer, section.layer));
+            test::expect_sound(section.layer);
+            const std::array<double, 3> unit = upright(normal).linear[2];
+            for (const Point2& p : section.layer.points) {
+                const Point3 q = section.point(p);
+                const double above =
+                    (q.x - origin.x) * unit[0] + (q.y - origin.y) * unit[1] + (q.z - origin.z) * unit[2];
+                EXPECT_NEAR(above, 0, 1e-9);
+                EXPECT_GE(q.x, box.min.x - 1e-9);
+                EXPECT_LE(q.x, box.max.x + 1e-9);
+            }
+        }
+    }
+}
+
+TEST(Slicer, SeesMaterialOnTheLeftAgainstTheNormal) {
+    const Slicer slicer(Mesh(make_box(2, 3, 4)));
+    const PlaneSection up = slicer.section({1, 1, 1}, {0, 0, 5});
+    const PlaneSection down = slicer.section({1, 1, 1}, {0, 0, -1});
+    const PlaneSection aside = slicer.section({1, 1, 1}, {1, 0, 0});
+    EXPECT_EQ(measure(up.layer).area_mm2, 6);
+    EXPECT_EQ(measure(down.layer).area_mm2, 6);
+    EXPECT_EQ(measure(aside.layer).area_mm2, 12);
+}
+
+TEST(Slicer, ServesManyThreadsAtOnce) {
+    const TriangleSoup soup = test::soup(test::rugged_drum(500, 60));
+    const Slicer slicer(soup);
+    std::vector<double> heights;
+    test::Random random(454);
+    for (int i = 0; i < 40; ++i)
+        heights.push_back(random.real(-10, 10));
+    std::vector<Layer> expected;
+    for (const double z : heights)
+        expected.push_back(sliced(soup, z));
+    const PlaneSection tilted = Slicer(Mesh(soup)).section({0, 0, 0}, {1, 1, 1});
+    std::vector<int> wrong(4);
+    std::vector<std::thread> threads;
+    for (std::size_t t = 0; t < wrong.size(); ++t)
+        threads.emplace_back([&, t] {
+            for (std::size_t i = 0; i < heights.size(); ++i) {
+                const std::size_t k = (7 * i + 11 * t) % heights.size();
+                wrong[t] += same_contours(slicer.section(heights[k]), expected[k]) ? 0 : 1;
+                wrong[t] += same_contours(slicer.section({0, 0, 0}, {1, 1, 1}).layer, tilted.layer) ? 0 : 1;
+            }
+        });
+    for (std::thread& thread : threads)
+        thread.join();
+    EXPECT_EQ(wrong, std::vector<int>(wrong.size()));
+}
+
+TEST(Slicer, NamesWhatIsNoPlane) {
+    const Slicer slicer(Mesh(make_box(1, 1, 1)));
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    expect_error(ErrorKind::usage, {"height of a section"}, [&] { static_cast<void>(slicer.section(none)); });
+    expect_error(ErrorKind::usage, {"origin of a section"}, [&] {
+        static_cast<void>(slicer.section({0, none, 0}, {0, 0, 1}));
+    });
+    for (const double x : {0.0, none})
+        expect_error(ErrorKind::usage, {"direction"}, [&] {
+            static_cast<void>(slicer.section({0, 0, 0}, {x, 0, 0}));
+        });
+}
+
+} // namespace
+} // namespace lamella::slicer_cases
