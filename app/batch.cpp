@@ -1,6 +1,5 @@
 #include "batch.hpp"
 
-#include "lamella/contour/stack_hash.hpp"
 #include "lamella/core/error.hpp"
 
 #include "batch_files.hpp"
@@ -60,22 +59,14 @@ Json name_or_null(const std::string& name) {
 /// Returns the JSON object of one result.
 Json record_of(const BatchItem& item, const BatchResult& result) {
     const FileResult& file = result.file;
-    std::vector<std::uint64_t> hashes;
-    for (const LayerStatistics& layer : file.layers) {
-        hashes.push_back(layer.hash);
-        if (!layer.scan.empty())
-            hashes.push_back(layer.scan_hash);
-    }
     Json warnings = Json::array();
     for (const std::string& warning : result.warnings)
         if (warnings.size() < most_warnings)
             warnings.push_back(warning);
     const Figures run = run_figures(file);
     Json record = {{"path", item.input}, {"output", name_or_null(item.output)}, {"ok", true}};
-    record.update(
-        as_json(picked(run, {"triangles", "layers", "contours", "open_chains", "points", "volume_mm3"})));
-    record["hash"] = fmt::format("{:016x}", stack_hash(hashes));
-    record.update(as_json(picked(run, {"bytes", "threads"})));
+    record.update(as_json(picked(run, {"triangles", "layers", "contours", "open_chains", "points",
+                                       "volume_mm3", "hash", "bytes", "threads"})));
     record["seconds"] = as_json(run)["total"];
     record["warnings"] = std::move(warnings);
     return record;

@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
@@ -50,14 +51,17 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     options.strict = arguments.strict;
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
-    LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
+    const LayerSteps steps = arguments.making.steps();
+    LayerFile file = read_layers(
+        arguments.input, steps.any() ? arguments.limits.of_layers() : arguments.limits.of_passing_layers(),
+        execution);
     options.page.title = title_of(arguments.input);
     warn_about(file, file.warnings, arguments.strict, context.messages);
-    const LayerChanges changes =
-        take_steps(arguments.making.steps(), file, arguments.strict, context.messages, execution,
-                   arguments.limits.max_memory.value_or(0))
-            .all;
-    LayerFileInfo info = info_of(file);
+    const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
+    LayerChanges changes;
+    if (steps.any())
+        changes = take_steps(steps, file, arguments.strict, context.messages, execution, max_memory).all;
+    LayerFileInfo info = info_of(file, execution);
     if (!arguments.label.empty()) {
         if (file.parts.size() > 1)
             throw Error(ErrorKind::usage,
@@ -65,16 +69,15 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
         info.parts.front().label = arguments.label;
     }
     const std::unique_ptr<LayerWriter> writer = open_layer_writer(arguments.output, format, info, options);
-    write_planes(
-        *writer, info.layers, [&](std::size_t i) { return file.plane(i); }, execution);
+    write_planes(*writer, file, !steps.any(), arguments.strict, context.messages, execution, max_memory);
     writer->finish();
     context.messages.warn_of(output_name(arguments.output), writer->warnings());
 
     std::string text =
         fmt::format("{}: {} from {} ({}) as {}\n", one_line(output_name(arguments.output)),
                     counted(info.layers, "layer"), one_line(file.path), file.format, format.name);
-    if (arguments.making.steps().any())
-        text += fmt::format("  changed {}\n", changes_text(arguments.making.steps(), changes));
+    if (steps.any())
+        text += fmt::format("  changed {}\n", changes_text(steps, changes));
     context.messages.written(text, arguments.output);
     return 0;
 }
@@ -96,7 +99,8 @@ Command convert_command() {
                               arguments->input = text;
                           }},
                      {.placeholder = "OUT",
-                      .help = "the slice file to write; its extension gives the format; - is standard output",
+                      .help = "the slice file to write; its extension gives the format, and .gz after it "
+                              "compresses it; - is standard output",
                       .written = true,
                       .set =
                           [arguments](const std::string& text) {

@@ -6,6 +6,7 @@
 #include "config_file.hpp"
 #include "deadline.hpp"
 #include "help_text.hpp"
+#include "names.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
 #include "suggest.hpp"
@@ -15,7 +16,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 namespace lamella::app {
@@ -80,14 +83,26 @@ class Splitter {
                        : std::string();
     }
 
+    /// Returns a hint for a word that may be the name of a file; "" for other words.
+    [[nodiscard]] static std::string if_file(const std::string& word) {
+        std::error_code ignored;
+        const std::string extension = extension_of(word);
+        const bool looks_so = extension.size() > 1 && extension[1] >= 'a' && extension[1] <= 'z';
+        if (word.find('=') != std::string::npos || (!looks_so && !std::filesystem::exists(word, ignored)))
+            return {};
+        return fmt::format("; if \"{0}\" is a file, write ./{0}, or -- before it", excerpt(word));
+    }
+
     void split_long(const std::string& word) {
         const std::size_t equals = word.find('=');
         const std::string typed = word.substr(0, equals);
         Option* option = find_option(command_, typed.substr(2));
-        if (option == nullptr)
+        if (option == nullptr) {
+            const std::string file = if_file(word);
             refuse(fmt::format("lamella {} has no option {}{}{}", command_.name, typed,
                                instead_of_output(typed.substr(2)),
-                               option_suggestion(command_, typed.substr(2), "--")));
+                               file.empty() ? option_suggestion(command_, typed.substr(2), "--") : file));
+        }
         if (equals != std::string::npos)
             out_.words.push_back({option, typed, word.substr(equals + 1)});
         else
@@ -96,14 +111,18 @@ class Splitter {
 
     void split_short(const std::string& word) {
         Option* option = by_letter(word[1]);
-        if (option == nullptr)
-            refuse(fmt::format("lamella {} has no option {}{}; see lamella {} --help", command_.name,
-                               word.substr(0, 2), instead_of_output(word.substr(1, 1)), command_.name));
+        if (option == nullptr) {
+            const std::string file = if_file(word);
+            refuse(fmt::format("lamella {} has no option {}{}{}", command_.name, word.substr(0, 2),
+                               instead_of_output(word.substr(1, 1)),
+                               file.empty() ? fmt::format("; see lamella {} --help", command_.name) : file));
+        }
         const std::string typed = word.substr(0, 2);
         if (word.size() == 2)
             take_value(*option, typed);
         else if (option->kind == ValueKind::flag)
-            refuse(fmt::format("{} takes no value, but \"{}\" follows it", typed, excerpt(word.substr(2))));
+            refuse(fmt::format("{} takes no value, but \"{}\" follows it{}", typed, excerpt(word.substr(2)),
+                               if_file(word)));
         else
             out_.words.push_back({option, typed, word.substr(word[2] == '=' ? 3 : 2)});
     }
@@ -141,9 +160,8 @@ class Splitter {
 void check_choice(const std::vector<std::string>& choices, const std::string& text) {
     if (choices.empty() || std::find(choices.begin(), choices.end(), text) != choices.end())
         return;
-    const std::string meant = nearest(text, choices);
     refuse(fmt::format("\"{}\" is none of {}{}", excerpt(text), fmt::join(choices, ", "),
-                       meant.empty() ? "" : fmt::format("; did you mean {}?", meant)));
+                       did_you_mean(text, choices)));
 }
 
 void check_path(const std::string& path) {

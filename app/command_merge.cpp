@@ -60,10 +60,11 @@ Command merge_command() {
             "or come from different jobs are refused. An exposure may be missing in some; in ilt, ovf and "
             "3mf-toolpath a whole part. Files "
             "in the formats cli and cli-ascii become the file "
-            "of a single run, byte for byte, unless other units or the short form are asked for; layers of "
-            "other formats are read and written anew.",
+            "of a single run, byte for byte, unless other units, the short form or compression are asked for; "
+            "layers of other formats are read and written anew.",
         .operands = {{.placeholder = "OUT",
-                      .help = "the slice file to write; its extension gives the format; - is standard output",
+                      .help = "the slice file to write; its extension gives the format, and .gz after it "
+                              "compresses it; - is standard output",
                       .written = true,
                       .set =
                           [arguments](const std::string& text) {

@@ -44,8 +44,10 @@ struct ScanCommandArguments {
 };
 
 OptionGroup output_options(ScanCommandArguments& target) {
-    Option output = output_file(
-        "output", "the slice file; its extension gives the format; - is standard output", target.output);
+    Option output = output_file("output",
+                                "the slice file; its extension gives the format, and .gz after it compresses "
+                                "it; - is standard output",
+                                target.output);
     output.letter = 'o';
     OptionGroup group{"What is written", {std::move(output)}};
     for (Option& option : layer_output_options(target.writing))
@@ -101,20 +103,17 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
     arguments.limits.prepare_memory();
     if (!arguments.stats.empty())
         check_writable(arguments.stats);
-    const LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
+    const LayerFile file = read_layers(arguments.input, arguments.limits.of_passing_layers(), execution);
     check_layers(file);
-    std::vector<LayerStack> stacks;
     std::uint64_t hatch_lines = 0;
-    for (const LayerPart& part : file.parts) {
-        stacks.push_back(part.layers);
-        hatch_lines += part.hatch_lines();
-    }
+    for (std::size_t i = 0; i < file.parts.size(); ++i)
+        hatch_lines += file.hatch_lines(i);
     const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
     warn_about(file, file.warnings, arguments.strict, context.messages);
     warn_about(file, LayerDoubts().scan_losses(hatch_lines), arguments.strict, context.messages);
-    const LayerFileInfo info = info_of(file);
-    const FileResult result = scan_layers(arguments.output, format, stacks, file.rounding, info, strategy,
-                                          options, execution, max_memory, file.path);
+    const LayerFileInfo info = info_of(file, execution);
+    const FileResult result =
+        scan_layers(arguments.output, format, file, info, strategy, options, execution, max_memory);
     warn_about(file, result.doubts.front().scan_losses(), false, context.messages);
     if (result.unreached.layers > 0)
         context.messages.warn(fmt::format("{}: {}", file.path, result.unreached.text()));

@@ -37,6 +37,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -50,6 +51,7 @@ struct InputOptions {
     std::optional<double> spacing;
     std::string label;
     bool support = false;
+    bool negative = false;
 };
 
 struct SliceArguments {
@@ -91,8 +93,10 @@ std::vector<Option> with_output(std::vector<Option> options) {
 
 OptionGroup output_options(SliceArguments& target) {
     OptionGroup group{"What is written", {}};
-    Option output = output_file(
-        "output", "the slice file; its extension gives the format; - is standard output", target.output);
+    Option output = output_file("output",
+                                "the slice file; its extension gives the format, and .gz after it compresses "
+                                "it; - is standard output",
+                                target.output);
     output.letter = 'o';
     group.options.push_back(std::move(output));
     for (Option& option : with_output(layer_output_options(target.writing)))
@@ -116,6 +120,7 @@ void finish_input(SliceArguments& target) {
     input.spacing_mm = options.spacing.value_or(input.spacing_mm);
     input.label = options.label;
     input.support = options.support;
+    input.negative = options.negative;
 }
 
 void add_input(SliceArguments& target, const std::string& path) {
@@ -150,6 +155,9 @@ OptionGroup input_options(SliceArguments& target) {
              "it is a support, whatever the file says: scan vectors are made by a rule of "
              "their own",
              target.of_input.support));
+    group.options.push_back(flag("negative",
+                                 "it is no part: it is subtracted from the parts of all other files",
+                                 target.of_input.negative));
     for (Option& option : group.options)
         option.of_each_file = true;
     group.options.push_back(triple("build-volume", "X,Y,Z",
@@ -250,7 +258,21 @@ void check_folder(const SliceArguments& arguments) {
                                 name, path));
 }
 
+/// Throws for an output that was given like an input.
+void check_inputs(const SliceArguments& arguments) {
+    if (!arguments.output.empty() || arguments.inputs.size() < 2)
+        return;
+    const std::string& last = arguments.inputs.back().path;
+    const std::string extension = extension_of(last);
+    std::error_code ignored;
+    if (!extension.empty() && !std::filesystem::exists(last, ignored) &&
+        std::any_of(layer_formats().begin(), layer_formats().end(),
+                    [&](const LayerFormat& format) { return format.extension == extension; }))
+        throw Error(ErrorKind::usage, fmt::format("{0}: there is no such file; did you mean -o {0}?", last));
+}
+
 FileJob make_job(const SliceArguments& arguments) {
+    check_inputs(arguments);
     if (arguments.output.empty() && arguments.stats.empty() && arguments.report.empty())
         throw Error(ErrorKind::usage,
                     "where should the result go? Say -o part.cli (or --stats - for figures only)");
@@ -321,14 +343,13 @@ std::string summary(const FileJob& job, const FileResult& result) {
         text += fmt::format("scan     {}\n", scan_text(result.exposures));
     using Seconds = FileResult::Seconds;
     std::string stages;
-    for (const auto& [stage, seconds] : {std::pair(Stage::read, &Seconds::read),
-                                         {Stage::weld, &Seconds::weld},
-                                         {Stage::link, &Seconds::link},
-                                         {Stage::slice, &Seconds::slice},
-                                         {Stage::write, &Seconds::write}})
+    for (const auto& [stage, seconds] : {std::pair(stage_name(Stage::read), &Seconds::read),
+                                         {stage_name(Stage::weld), &Seconds::weld},
+                                         {stage_name(Stage::link), &Seconds::link},
+                                         {stage_name(Stage::slice), &Seconds::slice},
+                                         {"end", &Seconds::end}})
         if (result.seconds.*seconds > 0)
-            stages += fmt::format("{}{} {:.3f}", stages.empty() ? "" : ", ", stage_name(stage),
-                                  result.seconds.*seconds);
+            stages += fmt::format("{}{} {:.3f}", stages.empty() ? "" : ", ", stage, result.seconds.*seconds);
     text += fmt::format("took     {:.3f} s on {} ({})\n", result.seconds.total,
                         counted(result.threads, "thread"), stages);
     if (!result.format.empty())

@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/scan/strategy_fields.hpp"
 
 #include "command_line.hpp"
 #include "commands.hpp"

@@ -183,6 +183,8 @@ std::string cut_hint(const LayerFile& file, const Agree& agree) {
 /// Moves the parts with scan vectors (or, if `vectors` is false, the others) out of the file.
 LayerFile taken_parts(LayerFile& file, bool vectors) {
     LayerFile some{.path = file.path, .format = file.format, .rounding = file.rounding, .rule = file.rule};
+    if (!vectors) // files with vectors have no stream
+        some.stream = file.stream;
     for (LayerPart& part : file.parts)
         if (part.exposure.has_value() == vectors)
             some.parts.push_back(std::move(part));
@@ -204,7 +206,11 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
 
-    LayerFile file = read_layers(arguments.input, arguments.limits.of_layers(), execution);
+    LayerFile file = read_layers(arguments.input, arguments.limits.of_passing_layers(), execution);
+    const bool has_vectors = std::any_of(file.parts.begin(), file.parts.end(),
+                                         [](const LayerPart& part) { return part.exposure.has_value(); });
+    if (has_vectors)
+        file.keep_layers(arguments.limits.of_layers(), execution);
     for (std::string& warning : file.warnings)
         warning = with_options(std::move(warning));
     std::optional<ScanStrategy> strategy;
@@ -244,18 +250,16 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
                               .steps = steps,
                               .rounding = file.rounding,
                               .tolerance_mm = arguments.tolerance};
-        for (const LayerPart& part : plain.parts)
-            options.hatch_lines += part.hatch_lines();
-        const LayerStack several = plain.parts.size() > 1 ? plain.merged() : LayerStack();
-        const Verification found =
-            verify(plain.parts.size() > 1 ? several : plain.parts.front().layers, options, execution);
+        for (std::size_t i = 0; i < plain.parts.size(); ++i)
+            options.hatch_lines += plain.hatch_lines(i);
+        const Verification found = verify_file(plain, options, execution);
         ok = ok && found.ok();
         object.update(verification_json(found));
         std::string hint;
         if (cut_is_assumed && (!found.areas_agree || found.displaced > 0))
             hint = cut_hint(plain, [&](const LayerFile& moved, PlaneRule moved_rule) {
                 options.rule = moved_rule;
-                const Verification again = verify(moved.merged(), options, execution);
+                const Verification again = verify_file(moved, options, execution);
                 return again.areas_agree && again.displaced == 0;
             });
         else if (!found.areas_agree)

@@ -96,16 +96,17 @@ std::uint64_t view_layers(const ViewArguments& arguments, LayerFile file, const 
                                 file.path));
     warn_about(file, file.warnings, false, messages);
     PageNotes notes = file_notes(file);
-    const std::vector<LayerChanges> planes = take_steps(arguments.making.steps(), file, false, messages,
-                                                        execution, arguments.limits.max_memory.value_or(0))
-                                                 .planes;
+    const LayerSteps steps = arguments.making.steps();
+    const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
+    std::vector<LayerChanges> planes;
+    if (steps.any())
+        planes = take_steps(steps, file, false, messages, execution, max_memory).planes;
     for (std::size_t i = 0; i < planes.size(); ++i)
         if (planes[i].changed_layers > 0)
-            notes.changes.push_back({file.parts.front().layers[i].index, planes[i]});
-    const LayerFileInfo info = info_of(file);
+            notes.changes.push_back({file.planes()[i].index, planes[i]});
+    const LayerFileInfo info = info_of(file, execution);
     const auto page = open_layer_page(output, info, page_options(arguments.input));
-    write_planes(
-        *page, info.layers, [&](std::size_t i) { return file.plane(i); }, execution);
+    write_planes(*page, file, !steps.any(), false, messages, execution, max_memory);
     page->add_notes(std::move(notes));
     page->finish();
     messages.warn_of(output_name(output), page->warnings());
@@ -129,7 +130,9 @@ int run_view(const ViewArguments& arguments, const Context& context) {
                                                             : std::vector<NamedFile>{});
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
-    auto read = read_any(arguments.input, arguments.limits.of_meshes(), execution);
+    MeshReadOptions reading = arguments.limits.of_meshes();
+    reading.stream_layers = !arguments.making.steps().any();
+    auto read = read_any(arguments.input, reading, execution);
     auto* const file = std::get_if<LayerFile>(&read);
     const std::uint64_t layers =
         file != nullptr

@@ -2,6 +2,7 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/core/printable.hpp"
+#include "lamella/scan/strategy_fields.hpp"
 
 #include "command_line.hpp"
 #include "numbers.hpp"

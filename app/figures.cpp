@@ -1,5 +1,6 @@
 #include "figures.hpp"
 
+#include "lamella/contour/stack_hash.hpp"
 #include "lamella/core/version.hpp"
 
 #include "config_file.hpp"
@@ -31,8 +32,12 @@ Figure defect(const DefectWords& words, std::uint64_t value, Tone tone) {
             value == 0 ? Tone::good : tone};
 }
 
+Figure time(std::string_view key, double seconds, std::string_view name) {
+    return {key, seconds, name, seconds > 0 ? fmt::format("{:.3f} s", seconds) : ""};
+}
+
 Figure stage(Stage stage, double seconds) {
-    return {stage_name(stage), seconds, deed(stage), seconds > 0 ? fmt::format("{:.3f} s", seconds) : ""};
+    return time(stage_name(stage), seconds, deed(stage));
 }
 
 std::string shells_text(const Inspection& found) {
@@ -227,6 +232,17 @@ std::uint64_t triangles_read(const FileResult& result) {
         [](std::uint64_t sum, const PlateFile& file) { return sum + file.stored_triangles; });
 }
 
+/// Returns the hash of the hashes of all layers, and of their scan vectors.
+std::string hash_of_layers(const std::vector<LayerStatistics>& layers) {
+    std::vector<std::uint64_t> hashes;
+    for (const LayerStatistics& layer : layers) {
+        hashes.push_back(layer.hash);
+        if (!layer.scan.empty())
+            hashes.push_back(layer.scan_hash);
+    }
+    return fmt::format("{:016x}", stack_hash(hashes));
+}
+
 Figures run_figures(const FileResult& result) {
     const SliceReport& report = result.report;
     const FileResult::Seconds& seconds = result.seconds;
@@ -241,9 +257,13 @@ Figures run_figures(const FileResult& result) {
         stage(Stage::link, seconds.link),
         stage(Stage::slice, seconds.slice),
         stage(Stage::polygon, seconds.polygon),
-        {"scan", seconds.scan, "scanned", seconds.scan > 0 ? fmt::format("{:.3f} s", seconds.scan) : ""},
+        time("scan", seconds.scan, "scanned"),
+        time("format", seconds.format, "formatting"),
         stage(Stage::write, seconds.write),
+        time("order", seconds.order, "in order"),
+        time("end", seconds.end, "ending"),
         {"total", seconds.total},
+        {"hash", hash_of_layers(result.layers)},
         {"bytes", result.bytes, "written",
          result.format.empty() ? "" : fmt::format("{}, {}", result.format, byte_size(result.bytes))}};
     LayerMeasure all;
@@ -359,10 +379,10 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
                     {"volume_mm3", result.mesh_volume_mm3},
                     {"defects", inspected ? as_json(defect_figures(*result.inspection)) : Json()}}}};
     stats.update(as_json(picked(run, {"engine", "threads"})));
-    stats["seconds"] =
-        as_json(picked(run, {"read", "weld", "link", "slice", "polygon", "scan", "write", "total"}));
+    stats["seconds"] = as_json(picked(run, {"read", "weld", "link", "slice", "polygon", "scan", "format",
+                                            "write", "order", "end", "total"}));
     stats["peak_rss_bytes"] = peak_memory();
-    stats.update(as_json(picked(run, {"points", "contours", "open_chains", "volume_mm3"})));
+    stats.update(as_json(picked(run, {"points", "contours", "open_chains", "volume_mm3", "hash"})));
     if (result.ranges != 0)
         stats["ranges"] = result.ranges;
     if (result.changes) {

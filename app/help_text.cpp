@@ -83,6 +83,7 @@ std::string program_help(std::span<const Command> commands) {
             "  lamella verify rook.cli --mesh rook.stl\n"
             "  lamella convert rook.cli rook.svg\n\n"
             "lamella COMMAND --help describes a command, lamella help --man all commands.\n"
+            "lamella --version (or -V, version) prints the version.\n"
             "Lengths are millimetres, angles are degrees, - is standard input or output.\n\n"
             "exit codes:\n";
     for (const ExitCode& code : exit_codes())

@@ -31,34 +31,28 @@ Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
     return box;
 }
 
-/// Reports inverted rings. Steps drop them because they have no material, unless a fill rule defines the
-/// material.
-void warn_about_inverted(const LayerSteps& steps, const LayerFile& file, bool strict, Messages& messages,
-                         const Execution& execution, std::uint64_t max_memory) {
-    if (steps.fill != FillRule::none)
-        return;
-    std::vector<LayerStack> contours;
-    for (const LayerPart& part : file.parts)
-        if (!part.exposure)
-            contours.push_back(part.layers);
-    const InversionSearch search = steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick;
-    const InvertedLayers inverted =
-        layer_doubts(contours, file.rounding, search, execution, max_memory).inverted;
+/// Warns like warn_about of rings that bound no material.
+void warn_about_inverted(const LayerFile& file, const InvertedLayers& inverted, bool strict,
+                         Messages& messages) {
     if (inverted.rings > 0)
-        warn_about(file, {inverted.text_of_file(contours.front().size())}, strict, messages);
+        warn_about(file, {inverted.text_of_file(file.planes().size())}, strict, messages);
 }
 
 } // namespace
 
-LayerFileInfo info_of(const LayerFile& file) {
-    const LayerStack& layers = file.parts.front().layers;
+LayerFileInfo info_of(const LayerFile& file, const Execution& execution) {
+    const LayerStack& layers = file.planes();
     if (layers.empty())
         throw Error(ErrorKind::input, fmt::format("{}: holds no layers", file.path));
     LayerFileInfo info{
         .box = {}, .layers = layers.size(), .bottom = layers.front().bottom, .parts = {}, .rule = file.rule};
-    for (const LayerPart& part : file.parts)
-        info.parts.push_back({part.label.empty() ? PartInfo{}.label : part.label,
-                              part_box(part.layers, part.hatches), part.exposure, part.support});
+    for (std::size_t i = 0; i < file.parts.size(); ++i) {
+        const LayerPart& part = file.parts[i];
+        info.parts.push_back(
+            {part.label.empty() ? PartInfo{}.label : part.label,
+             file.stream ? file.stream->boxes[i] : part_box(part.layers, part.hatches, execution),
+             part.exposure, part.support});
+    }
     info.box = box_of(info, layers);
     return info;
 }
@@ -71,6 +65,25 @@ void warn_about(const LayerFile& file, const std::vector<std::string>& warnings,
         messages.warn(fmt::format("{}: {}", input_name(file.path), warning));
 }
 
+void write_planes(LayerWriter& writer, const LayerFile& file, bool search_rings, bool strict,
+                  Messages& messages, const Execution& execution, std::uint64_t max_memory) {
+    if (search_rings && strict) // before standard output receives anything
+        warn_about_inverted(file, layer_doubts(file, InversionSearch::quick, execution, max_memory).inverted,
+                            strict, messages);
+    LayerDoubtSearch search(file.planes().size(), file.rounding, InversionSearch::quick, execution,
+                            max_memory);
+    lamella::write_planes(
+        writer, file.planes().size(),
+        [&](std::size_t i) {
+            ScanVectors plane = file.plane(i);
+            if (search_rings && !strict)
+                search.look_at(i, file, plane);
+            return plane;
+        },
+        execution);
+    warn_about_inverted(file, search.doubts().inverted, strict, messages);
+}
+
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
                        const Execution& execution, std::uint64_t max_memory) {
     for (const LayerPart& part : file.parts)
@@ -80,7 +93,14 @@ StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Me
                                     "--min-area and --simplify are for contours: take these steps before "
                                     "lamella scan",
                                     file.path, one_line(part.label)));
-    warn_about_inverted(steps, file, strict, messages, execution, max_memory);
+    // Steps drop inverted rings because they have no material, unless a fill rule defines the material.
+    if (steps.fill == FillRule::none)
+        warn_about_inverted(
+            file,
+            layer_doubts(file, steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick,
+                         execution, max_memory)
+                .inverted,
+            strict, messages);
     std::vector<LayerStack> parts;
     std::vector<std::string> names;
     for (LayerPart& part : file.parts) {

@@ -8,6 +8,7 @@
 
 #include "messages.hpp"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ namespace lamella::app {
 
 /// Returns the header. Parts without a label get the default of PartInfo. The box extends from the bottom of
 /// the first layer to the top of the last. Throws Error{input} for a file without layers.
-[[nodiscard]] LayerFileInfo info_of(const LayerFile& file);
+[[nodiscard]] LayerFileInfo info_of(const LayerFile& file, const Execution& execution);
 
 /// Prints the warnings of the file and about its lost content. With `strict`, throws Error{defect} with the
 /// first warning instead.
@@ -33,5 +34,10 @@ struct StepChanges {
 /// offset. `max_memory` is that of lamella::take_steps.
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
                        const Execution& execution, std::uint64_t max_memory);
+
+/// Writes all layers of the file, which need not be in memory. If `search_rings`, warns like take_steps of
+/// rings that bound no material. `max_memory` is that of layer_doubts.
+void write_planes(LayerWriter& writer, const LayerFile& file, bool search_rings, bool strict,
+                  Messages& messages, const Execution& execution, std::uint64_t max_memory);
 
 } // namespace lamella::app

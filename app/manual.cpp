@@ -68,7 +68,8 @@ std::string manual_page(std::span<const Command> commands) {
             "Lamella cuts a triangle mesh into layers and writes their contours in formats that "
             "additive\\-manufacturing machines and tools read.\n"
             "Lengths are millimetres and angles are degrees; the file name \\- is standard input or output.\n"
-            "Values follow their option behind a blank or an equals sign.\n"
+            "Values follow their option behind a blank or an equals sign; \\-\\- ends the options.\n"
+            "lamella \\-\\-version (or \\-V, version) prints the version.\n"
             ".SH COMMANDS\n";
     for (const Command& command : commands)
         text += command_section(command);

@@ -87,10 +87,8 @@ std::string compact_json(const Json& value) {
     return result;
 }
 
-Messages::Messages() : on_terminal_(errors_are_on_terminal()) {}
-
 void Messages::progress(const Progress& progress) {
-    if (style_ == ProgressStyle::none || is_silent())
+    if (style_ != ProgressStyle::bar && style_ != ProgressStyle::json)
         return;
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
     if (style_ == ProgressStyle::json) {
@@ -103,7 +101,7 @@ void Messages::progress(const Progress& progress) {
                   {"done", progress.done},
                   {"total", progress.total},
                   {"seconds", seconds.count()}});
-    } else if (on_terminal_) {
+    } else {
         draw_bar(progress, seconds.count());
     }
 }
@@ -140,12 +138,14 @@ void Messages::error(const std::string& text, int exit_code) {
 
 void Messages::note(const std::string& text) {
     clear_bar();
-    if (style_ != ProgressStyle::json && !is_silent())
+    if (style_ != ProgressStyle::json && style_ != ProgressStyle::quiet && !is_silent())
         put(printable_lines(text));
 }
 
 void Messages::written(const std::string& text, std::string_view output) {
-    if (output == "-")
+    if (style_ == ProgressStyle::quiet)
+        clear_bar();
+    else if (output == "-")
         note(text);
     else if (!output_is_closed())
         result(text);
@@ -153,7 +153,8 @@ void Messages::written(const std::string& text, std::string_view output) {
 
 void Messages::sum_up(const std::string& text, const std::string& json) {
     clear_bar();
-    put(style_ == ProgressStyle::json ? json + "\n" : text);
+    if (style_ != ProgressStyle::quiet)
+        put(style_ == ProgressStyle::json ? json + "\n" : text);
 }
 
 std::string Messages::last_words(const std::string& text, int exit_code) const {
@@ -171,12 +172,25 @@ void Messages::draw_bar(const Progress& progress, double seconds) {
     constexpr double patience = 0.3;
     if (seconds < patience || progress.total == 0)
         return;
-    constexpr int width = 40;
     const double part =
         std::min(1.0, static_cast<double>(progress.done) / static_cast<double>(progress.total));
-    const int filled = static_cast<int>(part * width);
-    put(fmt::format("\r{:8} [{:#<{}}{:.<{}}] {:3.0f} %  {:.0f} s ", deed(progress.stage), "", filled, "",
-                    width - filled, std::min(part * 100, 100.0), seconds));
+    std::string line = fmt::format("{:8} ", deed(progress.stage));
+    const std::string figures = fmt::format("{:3.0f} %  {:.0f} s ", part * 100, seconds);
+    // A line that fills the last column would wrap, and the next one would not overwrite it. The width is
+    // looked up each time, because people resize windows.
+    constexpr std::size_t usual_columns = 80;
+    const std::size_t room = std::max<std::size_t>(terminal_columns().value_or(usual_columns), 1) - 1;
+    constexpr std::size_t longest = 40;
+    constexpr std::size_t least = 5;
+    constexpr std::string_view frame = "[] ";
+    const std::size_t others = line.size() + frame.size() + figures.size();
+    if (room >= others + least) {
+        const std::size_t width = std::min(room - others, longest);
+        const auto filled = static_cast<std::size_t>(part * static_cast<double>(width));
+        line += fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", width - filled);
+    }
+    line += figures;
+    put("\r" + line.substr(0, room));
     bar_drawn_ = true;
 }
 

@@ -26,15 +26,16 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] std::string_view deed(Stage stage);
 
 enum class ProgressStyle {
-    bar,  ///< a bar, but only if standard error is a terminal
+    bar,
     json, ///< every line on standard error is a JSON object
     none,
+    quiet,  ///< no progress and no summary
     silent, ///< no output, not even results and errors, because another process reports for this one
 };
 
 class Messages {
   public:
-    Messages();
+    Messages() = default;
     ~Messages() { clear_bar(); }
     Messages(const Messages&) = delete;
     Messages& operator=(const Messages&) = delete;
@@ -57,12 +58,12 @@ class Messages {
     /// Prints "lamella: error: ...", on one line.
     void error(const std::string& text, int exit_code);
     /// Prints a text for people that cannot be a result because standard output carries data. Does nothing in
-    /// the style for programs.
+    /// the style for programs and in the quiet style.
     void note(const std::string& text);
     /// Prints a summary after `output` was written: as a result, or as a note if `output` is standard output.
-    /// A closed standard output is not an error here.
+    /// A closed standard output is not an error here. Does nothing in the quiet style.
     void written(const std::string& text, std::string_view output);
-    /// Prints a summary of many files: `text` for people, or `json` for programs.
+    /// Prints a summary of many files: `text` for people, `json` for programs, or nothing in the quiet style.
     void sum_up(const std::string& text, const std::string& json);
     /// Returns the line of an error for a run that is ended at once, in any state, so that a caller can write
     /// it without a lock. Returns "" if nothing must be printed.
@@ -76,7 +77,6 @@ class Messages {
 
     std::atomic<ProgressStyle> style_ = ProgressStyle::none;
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    const bool on_terminal_;
     bool bar_drawn_ = false;
     std::optional<Progress> last_; ///< the last report in the style for programs
 };

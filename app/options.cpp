@@ -8,8 +8,9 @@
 #include "names.hpp"
 #include "numbers.hpp"
 #include "standard_streams.hpp"
+#include "suggest.hpp"
 #include "system/program_start.hpp"
-#include "viewer_page.hpp"
+#include "viewer/viewer_page.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -28,8 +29,10 @@ struct Unit {
     std::string_view name;
     double mm;
 };
-constexpr std::array<Unit, 6> units{Unit{"mm", 1},  {"cm", 10},    {"m", 1000},
-                                    {"inch", 25.4}, {"ft", 304.8}, {"um", 0.001}};
+// If a unit has several names, the first is printed.
+constexpr std::array<Unit, 9> units{Unit{"mm", 1},  {"cm", 10},      {"m", 1000},
+                                    {"inch", 25.4}, {"ft", 304.8},   {"um", 0.001},
+                                    {"in", 25.4},   {"foot", 304.8}, {"micron", 0.001}};
 
 Option scale_option(std::optional<std::vector<double>>& target) {
     return row("scale", ValueKind::numbers, "F|X,Y,Z",
@@ -221,8 +224,11 @@ OptionGroup run_options(RunOptions& target, const std::vector<Option>& more) {
         {count("threads", "N", "threads to use; 0 takes all processors; the result is always the same",
                target.threads),
          choice("progress", "STYLE",
-                "on standard error: a bar (on a terminal only), or JSON, one object a line",
-                {"bar", "json", "none"}, target.progress)}};
+                "on standard error: a bar (unless asked for, on a terminal only), or JSON, one object a line",
+                {"bar", "json", "none"}, target.progress),
+         flag("quiet", "print no progress and no summary, only results, warnings and errors", target.quiet)}};
+    group.options.front().letter = 'j';
+    group.options.back().letter = 'q';
     group.options.insert(group.options.end(), more.begin(), more.end());
     return group;
 }
@@ -232,9 +238,14 @@ Execution RunOptions::execution(const Context& context) const {
     if (threads.value_or(0) > most)
         throw Error(ErrorKind::usage,
                     fmt::format("--threads: {} are too many, {} is the most", *threads, most));
-    const ProgressStyle style = progress == "bar"    ? ProgressStyle::bar
-                                : progress == "json" ? ProgressStyle::json
-                                                     : ProgressStyle::none;
+    const bool asked = find_option(context.command, "progress")->given.has_value();
+    check_conflict(quiet, asked && progress != "none", "--quiet and --progress",
+                   "one wants progress, the other none");
+    const ProgressStyle style = quiet                                     ? ProgressStyle::quiet
+                                : progress == "json"                      ? ProgressStyle::json
+                                : progress == "none"                      ? ProgressStyle::none
+                                : asked || terminal_columns().has_value() ? ProgressStyle::bar
+                                                                          : ProgressStyle::none;
     context.messages.set_style(style);
     report_crashes(style);
     return {.threads = static_cast<unsigned>(threads.value_or(0)),
@@ -258,17 +269,27 @@ LayerReadOptions ReadLimits::of_layers(std::uint64_t held) const {
     return {.max_memory = max_memory.value_or(0), .held = held};
 }
 
+LayerReadOptions ReadLimits::of_passing_layers() const {
+    return {.max_memory = max_memory.value_or(0), .layers = LayersKept::if_faster};
+}
+
 Option include_option(ReadLimits& target) {
-    std::vector<std::string_view> words;
+    std::vector<std::string> words;
     for (const MeshRoleRow& known : mesh_roles())
         if (known.role != MeshRole::part)
-            words.push_back(known.word);
+            words.emplace_back(known.word);
     return row(
         "include", ValueKind::text, "WHAT",
         fmt::format("read what 3MF and AMF files mark as {} as solids, too: one or several with commas "
                     "between them; otherwise negative volumes are subtracted, and the rest is left out",
                     fmt::join(words, ", ")),
-        [&target](const std::string& text) { target.include = roles_named(text); });
+        [&target, words](const std::string& text) {
+            try {
+                target.include = roles_named(text);
+            } catch (const Error& error) {
+                throw Error(error.kind(), error.what() + did_you_mean(text, words));
+            }
+        });
 }
 
 Option max_triangles_option(ReadLimits& target) {

@@ -73,6 +73,7 @@ struct PlacementOptions {
 struct RunOptions {
     std::optional<std::uint64_t> threads;
     std::string progress = "bar";
+    bool quiet = false;
 
     /// Returns the execution, and sets the style of the messages.
     [[nodiscard]] Execution execution(const Context& context) const;
@@ -92,6 +93,8 @@ struct ReadLimits {
     /// `held`: bytes that files read before still take.
     [[nodiscard]] MeshReadOptions of_meshes(std::uint64_t held = 0) const;
     [[nodiscard]] LayerReadOptions of_layers(std::uint64_t held = 0) const;
+    /// For commands that need few layers at a time.
+    [[nodiscard]] LayerReadOptions of_passing_layers() const;
 };
 [[nodiscard]] Option include_option(ReadLimits& target);
 [[nodiscard]] Option max_triangles_option(ReadLimits& target);

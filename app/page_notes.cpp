@@ -5,7 +5,7 @@
 #include "options.hpp"
 #include "scan_figures.hpp"
 #include "standard_streams.hpp"
-#include "viewer_page.hpp"
+#include "viewer/viewer_page.hpp"
 
 #include <fmt/format.h>
 
@@ -64,8 +64,9 @@ PageNotes run_notes(const FileResult& result) {
         notes.sections.push_back(mesh_section(*result.inspection));
     notes.sections.push_back(input_section(result));
     notes.sections.push_back(
-        {"The run", as_facts(picked(run_figures(result), {"engine", "threads", "read", "weld", "link",
-                                                          "slice", "polygon", "scan", "write", "bytes"}))});
+        {"The run", as_facts(picked(run_figures(result),
+                                    {"engine", "threads", "read", "weld", "link", "slice", "polygon", "scan",
+                                     "format", "write", "order", "end", "bytes"}))});
     if (!result.exposures.empty())
         notes.sections.push_back({"Scan vectors", as_facts(scan_figures(result.exposures))});
     for (const LayerStatistics& layer : result.layers)

@@ -21,6 +21,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -102,16 +103,21 @@ void set_early_style(const std::vector<std::string>& words, Messages& messages) 
 int run(std::vector<Command>& commands, const std::vector<std::string>& words, Messages& messages,
         const CancelFlag& cancel) {
     set_early_style(words, messages);
-    if (words.empty() || words[0] == "--help" || words[0] == "-h") {
+    const bool asks_help = !words.empty() && (words[0] == "--help" || words[0] == "-h");
+    const bool asks_about_command = asks_help && words.size() > 1 && !words[1].starts_with('-');
+    if (words.empty() || (asks_help && !asks_about_command)) {
         messages.result(program_help(commands));
         return 0;
     }
-    if (words[0] == "--version") {
+    // Comparable programs have one or another of these words; a command has none of these letters.
+    constexpr std::array<std::string_view, 4> for_version{"--version", "-V", "-v", "version"};
+    if (std::find(for_version.begin(), for_version.end(), words[0]) != for_version.end()) {
         messages.result(fmt::format("lamella {}\nMIT licence\n", version()));
         return 0;
     }
-    const auto command = std::find_if(commands.begin(), commands.end(),
-                                      [&](const Command& one) { return one.name == words[0]; });
+    const std::string_view name = asks_about_command ? "help" : std::string_view(words[0]);
+    const auto command =
+        std::find_if(commands.begin(), commands.end(), [&](const Command& one) { return one.name == name; });
     if (command == commands.end())
         refuse_command(words[0], commands);
     switch (parse(*command, std::span(words).subspan(1), messages)) {

@@ -29,9 +29,9 @@ std::string hash_text(const std::string& path, const Execution& execution) {
 }
 
 /// Options that do not affect the bytes of the slice file, or that the origin contains in another form.
-constexpr std::array<std::string_view, 15> not_of_the_origin{
-    "shard",   "resume",   "output", "format",     "report",        "stats",      "engine", "inspect",
-    "threads", "progress", "config", "max-memory", "max-triangles", "max-output", "timeout"};
+constexpr std::array<std::string_view, 16> not_of_the_origin{
+    "shard",   "resume",   "output", "format", "report",     "stats",         "engine",     "inspect",
+    "threads", "progress", "quiet",  "config", "max-memory", "max-triangles", "max-output", "timeout"};
 
 Json input_json(const PlateInput& input) {
     Json placement = Json::array();
@@ -44,7 +44,8 @@ Json input_json(const PlateInput& input) {
             {"copies", input.copies},
             {"spacing", input.spacing_mm},
             {"label", input.label},
-            {"support", input.support}};
+            {"support", input.support},
+            {"negative", input.negative}};
 }
 
 Json read_stamp(const std::string& output) {

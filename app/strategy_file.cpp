@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cctype>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -34,19 +33,6 @@ namespace {
 constexpr std::string_view parameters_key = "parameters";
 constexpr std::string_view contours_key = "contours"; ///< of supports, too
 constexpr std::string_view hatch_key = "hatch";       ///< of skins and supports, too
-
-/// Returns each set once, in the order of the tables.
-std::vector<ParameterSet> sets_of(const ScanStrategy& strategy) {
-    std::vector<ParameterSet> sets;
-    for (const ParameterSet* one :
-         {&strategy.contours.parameters, &strategy.hatch.parameters, &strategy.upskin.hatch.parameters,
-          &strategy.downskin.hatch.parameters, &strategy.support.contours.parameters,
-          &strategy.support.hatch.parameters})
-        if (std::none_of(sets.begin(), sets.end(),
-                         [&](const ParameterSet& set) { return set.name == one->name; }))
-            sets.push_back(*one);
-    return sets;
-}
 
 // ------------------------------------------------------------------------------------------------ read
 
@@ -288,7 +274,7 @@ class StrategyReading {
     static std::map<std::string, Set> preset_sets() {
         const ScanStrategy preset;
         std::map<std::string, Set> sets;
-        for (const ParameterSet& one : sets_of(preset))
+        for (const ParameterSet& one : parameter_sets(preset))
             sets.try_emplace(one.name).first->second.parameters = one;
         return sets;
     }
@@ -368,23 +354,6 @@ Json value_json(std::uint64_t value) {
     return value;
 }
 
-std::string value_text(double value) {
-    return exact(value);
-}
-template <class Value>
-std::string value_text(Value value) {
-    return value_json(value).dump(); // TOML and JSON have the same form here
-}
-
-template <class Choice>
-std::string choices_text(Choice) {
-    return fmt::format(": {}", fmt::join(named_values(Choice{}).names(), ", "));
-}
-template <class Number>
-requires std::is_arithmetic_v<Number> std::string choices_text(Number) {
-    return {};
-}
-
 template <class Rule>
 Json rule_json(const Rule& rule, std::span<const StrategyField<Rule>> fields) {
     Json object = Json::object();
@@ -392,51 +361,6 @@ Json rule_json(const Rule& rule, std::span<const StrategyField<Rule>> fields) {
         object[std::string(field.name)] =
             std::visit([&](const auto member) { return value_json(rule.*member); }, field.member);
     return object;
-}
-
-std::string commented(const std::string& line, const std::string& comment) {
-    constexpr std::size_t column = 32;
-    return fmt::format("{:<{}}# {}\n", line, column, comment);
-}
-
-template <class Rule>
-std::string rule_text(const Rule& rule, std::span<const StrategyField<Rule>> fields) {
-    std::string text;
-    for (const StrategyField<Rule>& field : fields)
-        std::visit(
-            [&](const auto member) {
-                text += commented(fmt::format("{} = {}", field.name, value_text(rule.*member)),
-                                  fmt::format("{}{}{}{}", field.unit, field.unit.empty() ? "" : ", ",
-                                              field.help, choices_text(rule.*member)));
-            },
-            field.member);
-    return text;
-}
-
-/// Returns a key of a table, with quotes only if TOML requires them.
-std::string key_text(const std::string& name) {
-    const bool bare = std::all_of(name.begin(), name.end(), [](unsigned char c) {
-        return std::isalnum(c) != 0 || c == '_' || c == '-';
-    });
-    return bare ? name : toml_quoted(name);
-}
-
-std::string set_text(const ParameterSet& set) {
-    return commented(fmt::format("{} = {}", parameters_key, toml_quoted(set.name)),
-                     "what the beam does: the table of this name below");
-}
-
-std::string contours_text(const ContourRule& rule) {
-    return rule_text(rule, contour_fields()) + set_text(rule.parameters);
-}
-
-std::string hatch_text(const HatchRule& rule) {
-    return rule_text(rule, hatch_fields()) + set_text(rule.parameters);
-}
-
-std::string skin_text(const std::string& name, const SkinRule& rule, std::string_view where) {
-    return fmt::format("\n# Where there is no material {}, or little.\n[{}]\n{}\n[{}.{}]\n{}", where, name,
-                       rule_text(rule, skin_fields()), name, hatch_key, hatch_text(rule.hatch));
 }
 
 Json contours_json(const ContourRule& rule) {
@@ -465,27 +389,6 @@ ScanStrategy read_strategy(const std::string& path) {
     return reading.strategy;
 }
 
-std::string strategy_text(const ScanStrategy& strategy) {
-    std::string text =
-        "# A strategy for --strategy of lamella slice and lamella scan. A value that is left out is "
-        "as by default.\n\n";
-    text += rule_text(strategy, strategy_fields());
-    text += fmt::format("\n# Lines along the outline of the part.\n[contours]\n{}",
-                        contours_text(strategy.contours));
-    text += fmt::format("\n# Parallel lines that fill the core.\n[hatch]\n{}", hatch_text(strategy.hatch));
-    text += skin_text("upskin", strategy.upskin, "above");
-    text += skin_text("downskin", strategy.downskin, "below");
-    text += fmt::format(
-        "\n# All of what is a support, which has no skins.\n[support.contours]\n{}\n[support.hatch]\n{}",
-        contours_text(strategy.support.contours), hatch_text(strategy.support.hatch));
-    text += "\n# What the beam does along lines and between them.\n";
-    for (const ParameterSet& set : sets_of(strategy))
-        text += fmt::format("[{}.{}]\n{}\n", parameters_key, key_text(set.name),
-                            rule_text(set, parameter_fields()));
-    text.pop_back();
-    return text;
-}
-
 Json strategy_json(const ScanStrategy& strategy) {
     Json object = rule_json(strategy, strategy_fields());
     object["contours"] = contours_json(strategy.contours);
@@ -494,7 +397,7 @@ Json strategy_json(const ScanStrategy& strategy) {
     object["downskin"] = skin_json(strategy.downskin);
     object["support"] = {{std::string(contours_key), contours_json(strategy.support.contours)},
                          {std::string(hatch_key), hatch_json(strategy.support.hatch)}};
-    for (const ParameterSet& set : sets_of(strategy))
+    for (const ParameterSet& set : parameter_sets(strategy))
         object[std::string(parameters_key)][set.name] = rule_json(set, parameter_fields());
     return object;
 }

@@ -15,10 +15,7 @@ namespace lamella::app {
 /// unused parameter sets; and Error{input} if the file cannot be read.
 [[nodiscard]] ScanStrategy read_strategy(const std::string& path);
 
-/// Returns the whole strategy as such a file, with comments that explain units and meanings.
-[[nodiscard]] std::string strategy_text(const ScanStrategy& strategy);
-
-/// Returns the whole strategy as JSON with the same names.
+/// Returns the whole strategy as JSON with the names of such a file.
 [[nodiscard]] Json strategy_json(const ScanStrategy& strategy);
 
 } // namespace lamella::app

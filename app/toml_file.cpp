@@ -13,7 +13,6 @@
 #include "text_file.hpp"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 // If a key begins with a non-ASCII letter, the library reaches a branch that is marked as unreachable, but
 // returns the correct result.
@@ -83,21 +82,6 @@ TomlTable read_toml(const std::string& path) {
         refuse_toml(fmt::format("{}:{}", name, error.source().begin.line),
                     fmt::format("expected TOML: {}", error.description()));
     }
-}
-
-// Basic strings of TOML need the escapes of JSON strings, and one more.
-std::string toml_quoted(const std::string& text) {
-    std::string escaped;
-    try {
-        escaped = nlohmann::json(text).dump();
-    } catch (const nlohmann::json::type_error&) {
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("\"{}\" is not UTF-8, as text in a configuration file has to be", excerpt(text)));
-    }
-    for (std::size_t at = 0; (at = escaped.find('\x7f', at)) != std::string::npos;)
-        escaped.replace(at, 1, "\\u007f");
-    return escaped;
 }
 
 void refuse_toml(const std::string& location, std::string_view text) {

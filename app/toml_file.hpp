@@ -36,9 +36,6 @@ struct TomlEntry {
 /// if the file cannot be read.
 [[nodiscard]] TomlTable read_toml(const std::string& path);
 
-/// Returns a text as a TOML string. Throws Error{usage} if it is not UTF-8.
-[[nodiscard]] std::string toml_quoted(const std::string& text);
-
 /// Throws Error{usage}: "job.toml:3: ...".
 [[noreturn]] void refuse_toml(const std::string& location, std::string_view text);
 

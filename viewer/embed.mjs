@@ -19,7 +19,7 @@ const lines = [];
 for (let at = 0; at < bytes.length; at += perLine) lines.push(literal(bytes.subarray(at, at + perLine)));
 writeFileSync(
   output,
-  `#include "viewer_page.hpp"
+  `#include "viewer/viewer_page.hpp"
 
 namespace {
 
@@ -28,11 +28,11 @@ ${lines.join('\n')};
 
 } // namespace
 
-std::string_view lamella::app::viewer_page() noexcept {
+std::string_view lamella::viewer_page() noexcept {
     return {page, sizeof page - 1};
 }
 
-std::string_view lamella::app::no_viewer() noexcept {
+std::string_view lamella::no_viewer() noexcept {
     return {};
 }
 `,

@@ -60,12 +60,13 @@ std::vector<Point2> ends_of(const std::vector<const LayerPart*>& parts, std::siz
 }
 
 /// Returns the largest distance by which a format may have moved the ends of lines.
-double moved_ends(const LayerFile& file) {
-    double most = 0;
+double moved_ends(const LayerFile& file, Executor& executor) {
+    std::vector<double> most(executor.workers());
     for (const LayerPart& part : file.parts)
-        for (const PointArray& hatches : part.hatches)
-            most = std::max(most, moved_point(hatches.span(), file.rounding));
-    return most;
+        executor.for_chunks(part.hatches.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
+            most[worker] = std::max(most[worker], moved_point(part.hatches[i].span(), file.rounding));
+        });
+    return *std::max_element(most.begin(), most.end());
 }
 
 void compare_ends(const std::vector<Point2>& first, const std::vector<Point2>& second,
@@ -222,7 +223,7 @@ bool FileComparison::agree() const noexcept {
 
 FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                              std::optional<double> tolerance_mm, const Execution& execution) {
-    const LayerStack stacks[2] = {first.merged(), second.merged()};
+    const LayerStack stacks[2] = {first.merged(execution), second.merged(execution)};
     const std::vector<std::uint64_t> lines[2] = {hatch_lines_of(first), hatch_lines_of(second)};
     FileComparison result{.layers = compare(RoundedLayers{stacks[0], first.rounding, lines[0]},
                                             {stacks[1], second.rounding, lines[1]}, tolerance_mm, execution),
@@ -233,7 +234,9 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
                           .exposures_in_order = true};
     const std::vector<PartPair> pairs = compare_exposures(first, second, result);
     const double of_contours = result.layers.tolerance_mm;
-    const double of_ends = tolerance_mm ? *tolerance_mm : moved_ends(first) + moved_ends(second);
+    Executor executor(execution);
+    const double of_ends =
+        tolerance_mm ? *tolerance_mm : moved_ends(first, executor) + moved_ends(second, executor);
     result.layers.tolerance_mm = std::max(result.layers.tolerance_mm, of_ends);
     const std::vector<std::string> labels = hatched_labels(first);
     const bool by_label = labels == hatched_labels(second);
@@ -250,7 +253,6 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
     // Differences of all contours together are reported anyway.
     std::vector<char> alike(result.layers.planes.size(), 1);
     std::vector<char> followed(result.layers.planes.size(), 1);
-    Executor executor(execution);
     executor.for_chunks(alike.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
         for (std::uint64_t i = begin; i < end; ++i)
             if (const ComparedPlane& plane = result.layers.planes[i];
@@ -261,9 +263,10 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
             }
     });
     executor.check_cancelled();
-    for (std::size_t k = 0; k < result.layers.planes.size(); ++k) {
+    result.details.resize(result.layers.planes.size());
+    executor.for_chunks(result.details.size(), 1, [&](std::uint64_t k, std::uint64_t, unsigned) {
         ComparedPlane& plane = result.layers.planes[k];
-        PlaneDetails& details = result.details.emplace_back();
+        PlaneDetails& details = result.details[k];
         if (plane.first && plane.second) {
             for (std::size_t i = 0; i < ones.size(); ++i)
                 compare_ends(ends_of(ones[i], *plane.first), ends_of(others[i], *plane.second), details);
@@ -285,7 +288,8 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
             details.first_hatches = plane.first && !lines[0].empty() ? lines[0][*plane.first] : 0;
             details.second_hatches = plane.second && !lines[1].empty() ? lines[1][*plane.second] : 0;
         }
-    }
+    });
+    executor.check_cancelled();
     return result;
 }
 

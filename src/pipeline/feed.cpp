@@ -31,7 +31,6 @@
 namespace lamella {
 namespace {
 
-constexpr std::uint64_t passes = 3;
 constexpr std::uint64_t record_bytes = 50; // of a record of a binary STL file
 
 /// Returns the first option that needs the whole mesh in memory, as messages name it; "" if there is none.
@@ -53,6 +52,14 @@ std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& en
     return {};
 }
 
+/// Returns whether a job that can stream, and that fits into memory, is sliced while its file is read.
+/// Several parts, and scan vectors, are sliced in windows of planes, and each window would read the file
+/// again. Processes and shards count the triangles first. Files that are in memory gain nothing.
+bool can_slice_while_reading(const FileJob& job, const std::vector<MeshInput>& inputs) {
+    return inputs.size() == 1 && job.inputs.front().copies == 1 && !job.scan && !job.shard &&
+           inputs.front().records() && inputs.front().bytes_in_memory() == 0;
+}
+
 /// Returns the range of n records that a process reads. It consists of whole chunks of `fold_chunk` records.
 /// Volumes are summed chunk by chunk, so they have the same bits as in a single process.
 RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes) {
@@ -67,7 +74,7 @@ RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes)
 /// short distance are joined; the chunks between them are then read, too.
 std::vector<RecordRange> records_on(PlaneRange planes, std::span<const PlaneRange> cuts,
                                     std::uint64_t records) {
-    constexpr std::uint64_t close = 4 * fold_chunk;
+    constexpr std::uint64_t close = 16 * fold_chunk;
     std::vector<RecordRange> ranges;
     for (std::size_t batch = 0; batch < cuts.size(); ++batch) {
         if (cuts[batch].end <= planes.begin || planes.end <= cuts[batch].begin)
@@ -181,6 +188,17 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
         look_at(job, std::move(inputs), execution);
         return;
     }
+    if (processes.size() == 1 && can_stream && can_slice_while_reading(job, inputs)) {
+        hashes_.emplace();
+        look_at(job, inputs, execution);
+        if (execution.progress)
+            execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
+        if (files_.front().triangles == files_.front().records)
+            return;
+        // Sums over the usable triangles depend on their chunks, which are others if the mesh is in memory.
+        hashes_.reset();
+        files_.clear();
+    }
     if (too_large != 0 && memory_.asked)
         throw Error(
             ErrorKind::limit,
@@ -209,7 +227,7 @@ void Feed::read(const FileJob& job, std::vector<MeshInput> inputs, const Executi
         if (memory_.asked && !stl)
             check_size(input.path(), meshes, memory_, threads);
     }
-    plate_ = build_plate(job.inputs, std::move(meshes), execution, job.max_memory);
+    plate_ = load_plate(job.inputs, std::move(meshes), execution, job.max_memory);
 }
 
 /// The first pass. Finds the bounding boxes, and counts the unusable triangles (not all coordinates finite).
@@ -221,7 +239,7 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
             file.part = part_of(file.records.value(), among_->process(), among_->size());
             figures_.triangles_read += file.part->end - file.part->begin;
         }
-        bytes_to_read_ += passes * bytes_of(file, file.part);
+        bytes_to_read_ += (hashes_ ? 1 : 3) * bytes_of(file, file.part);
     }
     PlateBuilder builder(job.max_memory);
     for (std::size_t i = 0; i < files_.size(); ++i) {
@@ -234,7 +252,7 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
             Extent extent(placement);
             read = stream(
                 file, [&](const TriangleSoup& batch, std::uint64_t number) { extent.add(batch, number); },
-                execution, file.part);
+                execution, file.part, hashes_ ? &*hashes_ : nullptr);
             mine = {extent.box(), read.nonfinite_triangles, read.first_nonfinite, extent.first_corner()};
         });
         Box3 box;
@@ -277,15 +295,15 @@ std::uint64_t Feed::bytes_of(const File& file, const std::optional<RecordRange>&
     return part ? record_bytes * (part->end - part->begin) : file.input.bytes();
 }
 
-/// Streams a file. The three passes are reported as one stage of progress.
+/// Streams a file. The passes are reported as one stage of progress.
 MeshFile Feed::stream(const File& file, const TriangleSink& sink, const Execution& execution,
-                      const std::optional<RecordRange>& part) {
+                      const std::optional<RecordRange>& part, ChunkHashes* hashes) {
     const Stopwatch reading;
     const Execution counted = with_progress(execution, [&](const Progress& progress) {
         return std::optional(
             Progress{Stage::read, std::min(bytes_read_ + progress.done, bytes_to_read_), bytes_to_read_});
     });
-    MeshFile read = file.input.stream(sink, reading_, counted, part);
+    MeshFile read = file.input.stream(sink, reading_, counted, part, hashes);
     bytes_read_ += bytes_of(file, part);
     figures_.read_seconds += reading.seconds();
     return read;
@@ -425,7 +443,7 @@ std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange
                                     const Execution& execution) {
     assert(division.size() == processes_.size());
     const PlaneRange mine = division[processes_.process()];
-    if (files_.empty())
+    if (at_once())
         return mine.size() > 0 ? std::vector{mine} : std::vector<PlaneRange>{};
     in_agreement(*among_, [&] {
         ranges_ = ranges_of(plan, mine, thread_count(execution));
@@ -474,8 +492,8 @@ std::vector<PlaneRange> Feed::ranges_of(const Plan& plan, PlaneRange mine, unsig
         .threads = threads,
         .placed = std::any_of(plate_.shapes.begin(), plate_.shapes.end(),
                               [](const PlateShape& shape) { return shape.mesh.soup()->has_placement(); }),
-        .points_in_flight = memory_.points_in_flight(threads)};
-    if (plate_.parts.size() > 1 || neighbours_) // all layers of a range are held
+        .points_in_flight = memory_.points_in_flight()};
+    if (plate_.parts.size() + plate_.negatives.size() > 1 || neighbours_) // all layers of a range are held
         needed.points_in_flight = ~std::uint64_t{0};
     std::uint64_t overhead =
         JobMemory::overhead(threads, plan.layers.size(), plate_.shapes.size(), measure_volume_) +
@@ -628,6 +646,39 @@ void Feed::store(std::size_t shape, const TriangleSoup& triangles, const Executi
             throw changed_while_read(path_of(shape));
     });
     executor.check_cancelled();
+}
+
+std::optional<TriangleStream> Feed::stream(const Plan& plan, const Execution& execution) {
+    if (!hashes_)
+        return std::nullopt;
+    begin_near_faces(plan);
+    return TriangleStream{.triangles = triangles(0),
+                          .placed = plate_.shapes.front().mesh.soup()->has_placement(),
+                          .pass = [this, execution = without_progress(execution)](
+                                      unsigned threads, const TriangleStream::Sink& sink) mutable {
+                              execution.threads = threads;
+                              pass_again(sink, execution);
+                          }};
+}
+
+/// The second and last pass over a file that is sliced while it is read.
+void Feed::pass_again(const TriangleStream::Sink& sink, const Execution& execution) {
+    const File& file = files_.front();
+    VolumeSum volume(placement(0), file.first_corner);
+    file.input.stream_again(
+        [&](const TriangleSoup& batch, std::uint64_t number) {
+            const TriangleSoup placed = batch.transformed(placement(0));
+            if (near_.front().any())
+                near_.front().add(placed, 0, placed.size());
+            if (measure_volume_)
+                volume.add(placed, number);
+            sink(placed, number * fold_chunk);
+        },
+        *hashes_, execution);
+    double six_volumes = 0;
+    for (const double chunk : volume.chunks())
+        six_volumes += chunk;
+    volume_mm3_ = six_volumes / 6;
 }
 
 Plate Feed::take(std::size_t range, const Execution& execution) {

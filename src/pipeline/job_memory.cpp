@@ -27,8 +27,9 @@ std::uint64_t triangle_bytes(bool placed, unsigned threads) {
 
 JobMemory::JobMemory(const FileJob& job) : limit(memory_limit(job.max_memory)), asked(job.max_memory != 0) {}
 
-std::uint64_t JobMemory::points_in_flight(unsigned threads) const noexcept {
-    return std::clamp<std::uint64_t>(limit / 4 / bytes_per_point, 1, usual_points_in_flight(threads));
+std::uint64_t JobMemory::points_in_flight(std::uint64_t triangles) const noexcept {
+    return std::clamp<std::uint64_t>(limit / 4 / bytes_per_point, 1,
+                                     usual_points_in_flight(asked ? 0 : triangles));
 }
 
 std::uint64_t JobMemory::overhead(unsigned threads, std::uint64_t planes, std::size_t shapes,
@@ -63,7 +64,7 @@ std::uint64_t JobMemory::of_input(unsigned threads) const noexcept {
 }
 
 std::uint64_t JobMemory::besides_meshes(unsigned threads) const noexcept {
-    return overhead(threads, 0) + points_in_flight(threads) * bytes_per_point;
+    return overhead(threads, 0) + points_in_flight() * bytes_per_point;
 }
 
 std::uint64_t JobMemory::of_meshes(std::span<const Mesh* const> meshes, unsigned threads) const noexcept {

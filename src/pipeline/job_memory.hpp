@@ -26,8 +26,9 @@ struct JobMemory {
     }
 
     /// Upper bound on the points in flight through the sink. It is that of slice_to, or a smaller one with
-    /// which the points and the data made of them take at most a quarter of the limit.
-    [[nodiscard]] std::uint64_t points_in_flight(unsigned threads) const noexcept;
+    /// which the points and the data made of them take at most a quarter of the limit. If the job sets the
+    /// limit, it is not larger for large meshes.
+    [[nodiscard]] std::uint64_t points_in_flight(std::uint64_t triangles = 0) const noexcept;
 
     /// Memory of the program, its threads and its data about each plane, some of which is stored for each
     /// shape. `statistics` adds the memory of layer statistics.

@@ -91,7 +91,8 @@ JobOutput::JobOutput(const OutputFiles& files, LayerFileInfo info, PlaneRange mi
                     file_.emplace(path_);
             });
             working_path_ = processes.gather(file_ ? file_->share() : std::string()).front();
-            chunk_ = {mine.begin, mine.size(), [this](std::string_view bytes) {
+            chunk_ = {mine.begin, mine.size(),
+                      [this](std::string_view bytes, const std::shared_ptr<const void>&, Completions&) {
                           waiting_.add(bytes);
                       }};
             info.chunk = &chunk_;
@@ -121,10 +122,10 @@ Commit JobOutput::prepared(const Plane& plane, const Message& message) {
         };
     if (!page_)
         return to_file;
-    return [to_file = std::move(to_file), to_page = page_->prepare(plane)] {
+    return [to_file = std::move(to_file), to_page = page_->prepare(plane)](Completions& after) {
         if (to_file)
-            to_file();
-        to_page();
+            to_file.in_order(after);
+        to_page.in_order(after);
     };
 }
 

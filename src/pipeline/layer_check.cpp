@@ -1,43 +1,18 @@
 #include "pipeline/layer_check.hpp"
 
-#include "lamella/polygon/crossings.hpp"
-#include "lamella/polygon/nesting.hpp"
-
-#include "polygon/crossing_pairs.hpp"
-
 #include <fmt/format.h>
-
-#include <vector>
 
 namespace lamella {
 
 LayerCheck check_layer(const Layer& layer, const Rounding& rounding) {
     LayerCheck result;
-    ContourFindings& found = result.found;
     result.measure = measure(layer);
     result.open_gaps = open_gaps(layer);
-    for (std::size_t i = layer.rings; i < layer.contours(); ++i)
-        if (!layer.contour(i).empty())
-            found.open_chains.add(layer, layer.contour(i).front());
-    // Finding all crossings may take minutes, and so may the nesting of contours that cross so often.
-    const std::uint64_t enough = most_crossings(layer.points.size());
-    const Crossings crossings = find_crossings(layer, 1, enough);
-    if (crossings.count > 0)
-        found.crossings.add(layer, crossings.first.front().at, crossings.count);
-    if (crossings.count >= enough) {
-        found.crossings.or_more = true;
-        return result;
-    }
-    const std::vector<RingKind> kinds = nesting(layer).kind;
-    for (std::size_t i = 0; i < kinds.size(); ++i) {
-        if (kinds[i] != RingKind::misoriented && kinds[i] != RingKind::overlapping)
-            continue;
-        if (!orientation_is_lost(layer.contour(i), rounding))
-            (kinds[i] == RingKind::overlapping ? found.overlapping
-             : ring_area(layer.contour(i)) > 0 ? found.tangled
-                                               : found.misoriented)
-                .add(layer, layer.contour(i).front());
-    }
+    const ContourDefects defects = contour_defects(layer, rounding, 1);
+    for (const ContourDefect& defect : defects.found)
+        result.found.of(defect.kind)
+            .add(layer, defect.at, defect.kind == ContourDefectKind::crossing ? defects.crossings : 1);
+    result.found.crossings.or_more = defects.or_more;
     return result;
 }
 
@@ -56,6 +31,22 @@ void Finding::add(const Finding& other) {
         position = other.position;
     total += other.total;
     or_more = or_more || other.or_more;
+}
+
+Finding& ContourFindings::of(ContourDefectKind kind) {
+    switch (kind) {
+    case ContourDefectKind::open:
+        return open_chains;
+    case ContourDefectKind::crossing:
+        return crossings;
+    case ContourDefectKind::misoriented:
+        return misoriented;
+    case ContourDefectKind::tangled:
+        return tangled;
+    case ContourDefectKind::overlapping:
+        break;
+    }
+    return overlapping;
 }
 
 void ContourFindings::add(const ContourFindings& other) {

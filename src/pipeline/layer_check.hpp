@@ -6,6 +6,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/rounding.hpp"
+#include "lamella/polygon/contour_defects.hpp"
 
 #include <cstdint>
 #include <span>
@@ -24,13 +25,15 @@ struct Finding {
     void add(const Finding& other);
 };
 
+/// Findings of each ContourDefectKind.
 struct ContourFindings {
     Finding open_chains;
     Finding crossings;
-    Finding misoriented; ///< clockwise rings
-    Finding tangled;     ///< counter-clockwise rings that are misoriented nevertheless
+    Finding misoriented;
+    Finding tangled;
     Finding overlapping;
 
+    [[nodiscard]] Finding& of(ContourDefectKind kind);
     void add(const ContourFindings& other);
 };
 

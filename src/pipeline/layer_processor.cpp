@@ -17,17 +17,6 @@ namespace lamella {
 
 namespace {
 
-/// Returns the layers of all parts with their gaps closed, and appends the joins.
-std::vector<Layer> without_gaps(std::span<const Layer> parts, double within_mm, std::vector<GapJoin>& joins) {
-    std::vector<Layer> closed;
-    for (const Layer& layer : parts) {
-        ClosedGaps result = close_gaps(layer, within_mm);
-        joins.insert(joins.end(), result.joins.begin(), result.joins.end());
-        closed.push_back(std::move(result.layer));
-    }
-    return closed;
-}
-
 void count(const Stopwatch& watch, std::atomic<std::uint64_t>& nanoseconds) {
     nanoseconds.fetch_add(static_cast<std::uint64_t>(1e9 * watch.seconds()), std::memory_order_relaxed);
 }
@@ -43,56 +32,60 @@ LayerProcessor::LayerProcessor(LayerJob job, std::span<const PlannedLayer> plane
           [this](std::size_t part, const Layer& layer) {
               return naming(job_.names[part], [&] { return ScanLayer(layer, job_.rounding, job_.limits); });
           },
-          [this](const PlaneLayers& plane) { return output_.prepare(vectors_of(plane)); }) {}
+          [this](const PlaneLayers& plane) { return formatted(vectors_of(plane)); }) {}
 
 void LayerProcessor::set_times(FileResult::Seconds& seconds) const noexcept {
     seconds.polygon = 1e-9 * static_cast<double>(step_nanoseconds_);
     seconds.scan = 1e-9 * static_cast<double>(scan_nanoseconds_);
-    seconds.write = write_seconds_;
+    seconds.format = 1e-9 * static_cast<double>(format_nanoseconds_);
+    seconds.write = 1e-9 * static_cast<double>(write_nanoseconds_);
+    seconds.order = 1e-9 * static_cast<double>(order_nanoseconds_);
 }
 
 Commit LayerProcessor::prepare(std::uint32_t plane, std::span<const Layer> parts) {
-    std::vector<Layer> closed;
-    std::vector<GapJoin> joins;
+    ClosedPlane closed;
     if (job_.close_gaps_mm && std::any_of(parts.begin(), parts.end(), std::mem_fn(&Layer::open_chains))) {
-        closed = without_gaps(parts, *job_.close_gaps_mm, joins);
-        parts = closed;
+        closed = close_gaps_on_plane(parts, *job_.close_gaps_mm);
+        parts = closed.layers;
     }
     const std::vector<InvertedRings> inverted = inverted_of(parts);
-    std::vector<Layer> made;
-    LayerChanges changes;
-    std::vector<Layer> filled; // parts and negative volumes
-    std::vector<Layer> material;
-    LayerSteps steps = job_.steps;
-    if (!job_.negatives.empty()) {
+    PlateMaterial material;
+    if (job_.steps.any() || !job_.negatives.empty()) {
         const Stopwatch stepping;
-        LayerSteps first; // fills each body where it has material
-        first.fill = std::exchange(steps.fill, FillRule::none);
-        ChangedPlane stepped = take_steps_on_plane(first, parts, job_.limits, job_.names);
-        filled = std::move(stepped.parts);
-        changes = stepped.changes;
-        material = without_negatives(filled, job_.negatives, job_.limits);
-        parts = material;
+        material = material_of(parts, job_.negatives, job_.steps, job_.limits, job_.names);
         count(stepping, step_nanoseconds_);
-    }
-    if (steps.any()) {
-        const Stopwatch stepping;
-        ChangedPlane stepped = take_steps_on_plane(steps, parts, job_.limits, job_.names);
-        made = std::move(stepped.parts);
-        changes += stepped.changes;
-        changes.changed_layers = std::min<std::uint64_t>(1, changes.changed_layers);
-        count(stepping, step_nanoseconds_);
-        parts = made;
+        parts = material.parts;
     }
     if (mine_.begin <= plane && plane < mine_.end)
-        totals_.add(plane - mine_.begin, parts, std::move(joins), changes, inverted, filled);
-    Commit write = job_.scan ? window_.prepare(plane, parts) : output_.prepare(parts);
-    if (!write)
+        totals_.add(plane - mine_.begin, parts, std::move(closed.joins), material.changes, inverted,
+                    material.bodies);
+    return timed(job_.scan ? window_.prepare(plane, parts) : formatted(parts));
+}
+
+/// Prepares a plane for the output.
+template <class Plane>
+Commit LayerProcessor::formatted(const Plane& plane) {
+    const Stopwatch formatting;
+    Commit commit = output_.prepare(plane);
+    count(formatting, format_nanoseconds_);
+    return commit;
+}
+
+/// Returns the commit with measurement of itself and of its completions.
+Commit LayerProcessor::timed(Commit commit) {
+    if (!commit)
         return {};
-    return [this, write = std::move(write)] {
-        const Stopwatch writing;
-        write();
-        write_seconds_ += writing.seconds();
+    return [this, commit = std::move(commit)](Completions& after) {
+        const std::size_t before = after.size();
+        const Stopwatch ordering;
+        commit.in_order(after);
+        count(ordering, order_nanoseconds_);
+        for (std::size_t i = before; i < after.size(); ++i)
+            after[i] = [this, completion = std::move(after[i])] {
+                const Stopwatch writing;
+                completion();
+                count(writing, write_nanoseconds_);
+            };
     };
 }
 

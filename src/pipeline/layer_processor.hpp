@@ -35,13 +35,16 @@ class LayerProcessor {
     [[nodiscard]] Commit prepare(std::uint32_t plane, std::span<const Layer> parts);
 
     [[nodiscard]] LayerTotals& totals() noexcept { return totals_; }
-    /// Sets the seconds of layer steps and of scan vectors, each summed over all threads, and of the ordered
-    /// part of writing.
+    /// Sets the seconds of layer steps, of scan vectors, of formatting and of writing, each summed over all
+    /// threads, and of what is done in order.
     void set_times(FileResult::Seconds& seconds) const noexcept;
 
   private:
     [[nodiscard]] std::vector<InvertedRings> inverted_of(std::span<const Layer> bodies) const;
     [[nodiscard]] ScanVectors vectors_of(const PlaneLayers& plane);
+    template <class Plane>
+    [[nodiscard]] Commit formatted(const Plane& plane);
+    [[nodiscard]] Commit timed(Commit commit);
 
     LayerJob job_;
     PlaneRange mine_;
@@ -51,7 +54,9 @@ class LayerProcessor {
     LayerWindow window_;
     std::atomic<std::uint64_t> step_nanoseconds_{0};
     std::atomic<std::uint64_t> scan_nanoseconds_{0};
-    double write_seconds_ = 0;
+    std::atomic<std::uint64_t> format_nanoseconds_{0};
+    std::atomic<std::uint64_t> write_nanoseconds_{0};
+    std::atomic<std::uint64_t> order_nanoseconds_{0};
 };
 
 } // namespace lamella

@@ -172,23 +172,60 @@ std::vector<std::string> LayerDoubts::scan_losses(std::uint64_t hatches) const {
     return texts;
 }
 
+LayerDoubtSearch::LayerDoubtSearch(std::size_t planes, const Rounding& rounding, InversionSearch search,
+                                   const Execution& execution, std::uint64_t max_memory)
+    : planes_(planes), rounding_(rounding), search_(search),
+      limits_(layer_limits(execution, max_memory, thread_count(execution))) {}
+
+void LayerDoubtSearch::look_at(std::size_t position, const Layer& layer) {
+    Plane& plane = planes_[position];
+    plane.z = layer.z;
+    plane.thickness = layer.thickness();
+    plane.gaps += open_gaps(layer);
+    plane.inverted += inverted_rings(layer, rounding_, search_, limits_);
+}
+
+void LayerDoubtSearch::look_at(std::size_t position, const LayerFile& file, const ScanVectors& plane) {
+    for (std::size_t i = 0; i < file.parts.size(); ++i)
+        if (!file.parts[i].exposure)
+            look_at(position, plane.polylines[i]);
+}
+
+LayerDoubts LayerDoubtSearch::doubts() const {
+    LayerDoubts doubts{.layers = planes_.size()};
+    for (const Plane& plane : planes_)
+        doubts.add(plane.z, plane.thickness, plane.gaps, plane.inverted);
+    return doubts;
+}
+
+namespace {
+
+/// Searches all planes; `look_at(search, position)` passes the layers of a plane.
+template <class LookAt>
+LayerDoubts searched(std::size_t planes, const Rounding& rounding, InversionSearch search,
+                     const Execution& execution, std::uint64_t max_memory, const LookAt& look_at) {
+    LayerDoubtSearch all(planes, rounding, search, execution, max_memory);
+    Executor executor(execution);
+    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned) { look_at(all, i); });
+    executor.check_cancelled();
+    return all.doubts();
+}
+
+} // namespace
+
 LayerDoubts layer_doubts(std::span<const LayerStack> parts, const Rounding& rounding, InversionSearch search,
                          const Execution& execution, std::uint64_t max_memory) {
-    LayerDoubts doubts{.layers = parts.empty() ? 0 : parts.front().size()};
-    std::vector<OpenGaps> gaps(doubts.layers);
-    std::vector<InvertedRings> inverted(doubts.layers);
-    Executor executor(execution);
-    const LayerLimits limits = layer_limits(execution, max_memory, executor.workers());
-    executor.for_chunks(doubts.layers, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        for (const LayerStack& part : parts) {
-            gaps[i] += open_gaps(part[i]);
-            inverted[i] += inverted_rings(part[i], rounding, search, limits);
-        }
-    });
-    executor.check_cancelled();
-    for (std::size_t i = 0; i < doubts.layers; ++i)
-        doubts.add(parts.front()[i].z, parts.front()[i].thickness(), gaps[i], inverted[i]);
-    return doubts;
+    return searched(parts.empty() ? 0 : parts.front().size(), rounding, search, execution, max_memory,
+                    [&](LayerDoubtSearch& all, std::size_t i) {
+                        for (const LayerStack& part : parts)
+                            all.look_at(i, part[i]);
+                    });
+}
+
+LayerDoubts layer_doubts(const LayerFile& file, InversionSearch search, const Execution& execution,
+                         std::uint64_t max_memory) {
+    return searched(file.planes().size(), file.rounding, search, execution, max_memory,
+                    [&](LayerDoubtSearch& all, std::size_t i) { all.look_at(i, file, file.plane(i)); });
 }
 
 } // namespace lamella

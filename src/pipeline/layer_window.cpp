@@ -41,8 +41,8 @@ Commit LayerWindow::prepare(std::uint32_t plane, std::span<const Layer> parts) {
     for (const Complete& complete :
          store(plane, std::make_shared<const std::vector<ScanLayer>>(std::move(layers))))
         work_on(complete);
-    return [this, plane] {
-        finish(plane);
+    return [this, plane](Completions& after) {
+        finish(plane, after);
     };
 }
 
@@ -103,7 +103,7 @@ void LayerWindow::work_on(const Complete& complete) {
 
 // The commit of a plane is called after all planes below are prepared, so the work on complete planes has
 // ended.
-void LayerWindow::finish(std::uint32_t last) {
+void LayerWindow::finish(std::uint32_t last, Completions& after) {
     const PlaneRange its_users = users(last);
     for (std::uint32_t plane = its_users.begin; plane < its_users.end; ++plane) {
         if (neighbours(plane).end != last + 1)
@@ -117,7 +117,7 @@ void LayerWindow::finish(std::uint32_t last) {
             ready_.erase(found);
         }
         if (commit)
-            commit();
+            commit.in_order(after);
     }
 }
 

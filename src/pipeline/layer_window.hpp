@@ -64,7 +64,7 @@ class LayerWindow {
     [[nodiscard]] std::vector<Complete> store(std::uint32_t plane, Parts parts);
     [[nodiscard]] Complete take(std::uint32_t plane);
     void work_on(const Complete& complete);
-    void finish(std::uint32_t last);
+    void finish(std::uint32_t last, Completions& after);
 
     PlaneRange coming_;
     PlaneRange wanted_;

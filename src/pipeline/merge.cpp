@@ -62,7 +62,7 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                                                   "input and pipes cannot be; save it to a file first",
                                                   path == "-" ? "standard input" : path));
     const LayerFile file = read_layers(path, reading, execution);
-    const LayerStack& layers = file.parts.front().layers;
+    const LayerStack& layers = file.planes();
     if (layers.empty())
         throw Error(ErrorKind::input, fmt::format("{}: holds no layers", path));
     ShardFile shard{.path = path,
@@ -77,13 +77,13 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
                     .rounded_heights =
                         moved_cut(layers.front(), file.rounding) + moved_cut(layers.back(), file.rounding),
                     .warnings = file.warnings};
-    std::vector<LayerStack> contours;
-    for (const LayerPart& part : file.parts) {
-        shard.parts.push_back({part.label, part_box(part.layers, part.hatches), part.exposure, part.support});
-        if (!part.exposure)
-            contours.push_back(part.layers);
+    for (std::size_t i = 0; i < file.parts.size(); ++i) {
+        const LayerPart& part = file.parts[i];
+        shard.parts.push_back(
+            {part.label, file.stream ? file.stream->boxes[i] : part_box(part.layers, part.hatches, execution),
+             part.exposure, part.support});
     }
-    shard.inverted = layer_doubts(contours, file.rounding, InversionSearch::quick, execution).inverted;
+    shard.inverted = layer_doubts(file, InversionSearch::quick, execution).inverted;
     return shard;
 }
 
@@ -410,18 +410,19 @@ std::vector<PartInfo> parts_of(const std::vector<ShardFile>& shards) {
 /// Returns the layer of each part on a plane of a file, with its hatch lines. The layer is empty if the file
 /// does not list the part.
 ScanVectors plane_of(const LayerFile& file, std::size_t plane, const std::vector<PartInfo>& parts) {
-    const Layer& any = file.parts.front().layers[plane];
+    const Layer& any = file.planes()[plane];
+    ScanVectors of_file = file.plane(plane);
     ScanVectors vectors;
-    auto next = file.parts.begin();
+    std::size_t next = 0;
     for (const PartInfo& part : parts) {
-        if (next != file.parts.end() && next->label == part.label) {
-            vectors.add(next->layers[plane], next->hatches.empty() ? PointArray() : next->hatches[plane]);
+        if (next != file.parts.size() && file.parts[next].label == part.label) {
+            vectors.add(std::move(of_file.polylines[next]), std::move(of_file.hatches[next]));
             ++next;
         } else {
             vectors.add({.index = any.index, .z = any.z, .bottom = any.bottom, .top = any.top}, {});
         }
     }
-    assert(next == file.parts.end()); // parts_of keeps the order of each file
+    assert(next == file.parts.size()); // parts_of keeps the order of each file
     return vectors;
 }
 
@@ -451,7 +452,7 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
         // At the boundary of two files the rounding errors of two heights and of a thickness add up.
         const double rounded = file.rounding.single_precision ? 2 * file.rounding.step_at(top) : 0;
         // Formats without indices count each file from 0.
-        const LayerStack& known = file.parts.front().layers;
+        const LayerStack& known = file.planes();
         const std::uint64_t moved = next > known.front().index ? next - known.front().index : 0;
         const auto moved_plane = [&](std::size_t i) {
             ScanVectors plane = plane_of(file, i, parts);
@@ -481,7 +482,8 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
                               const MergeOptions& options, const Execution& execution) {
     const LayerFormat& to = layer_format(options.format, output);
     const LayerWriteOptions& writing = options.writing;
-    const LayerReadOptions& reading = options.reading;
+    LayerReadOptions reading = options.reading;
+    reading.layers = LayersKept::if_faster;
     const std::vector<ShardFile> shards = look_at_all(paths, reading, execution);
     check_output(output, shards, reading, execution);
     MergeResult result{.format = shards.front().format,
@@ -493,8 +495,9 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
                        .warnings = {}};
     for (const ShardFile& shard : shards)
         result.layers += shard.layers;
-    const bool as_they_are = !writing.short_form && (writing.units_mm == LayerWriteOptions::usual_units_mm ||
-                                                     writing.units_mm == shards.front().units_mm);
+    const bool as_they_are = !writing.short_form && !has_gzip_extension(output) &&
+                             (writing.units_mm == LayerWriteOptions::usual_units_mm ||
+                              writing.units_mm == shards.front().units_mm);
     if (to.joins && to.name == result.format && as_they_are)
         result.bytes = join_common_layers(shards, result.layers, output, writing, reading, execution);
     else

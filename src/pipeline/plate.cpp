@@ -20,14 +20,24 @@ Plate load_plate(std::span<const PlateInput> inputs, const MeshReadOptions& opti
     std::vector<MeshFile> files;
     for (const PlateInput& input : inputs)
         files.push_back(read_mesh(input.path, options, execution));
-    return build_plate(inputs, std::move(files), execution, options.max_memory);
+    return load_plate(inputs, std::move(files), execution, options.max_memory);
+}
+
+Plate load_plate(std::span<const PlateInput> inputs, std::vector<MeshFile> files, const Execution& execution,
+                 std::uint64_t max_memory) {
+    check_inputs(inputs);
+    PlateBuilder builder(max_memory);
+    for (std::size_t i = 0; i < files.size(); ++i)
+        builder.add(inputs[i], std::move(files[i]), [&](const Mesh& mesh, const Transform& placement) {
+            return bounding_box(mesh.transformed(placement), execution);
+        });
+    return builder.finish();
 }
 
 Plate load_plate(const PlateInput& input, MeshFile file, const Execution& execution) {
-    check_inputs(std::span(&input, 1));
     std::vector<MeshFile> files;
     files.push_back(std::move(file));
-    return build_plate(std::span(&input, 1), std::move(files), execution);
+    return load_plate(std::span(&input, 1), std::move(files), execution);
 }
 
 Mesh joined(const Plate& plate, const Execution& execution) {

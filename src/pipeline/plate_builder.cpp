@@ -15,6 +15,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <utility>
 
 namespace lamella {
@@ -93,7 +94,15 @@ void check_inputs(std::span<const PlateInput> inputs) {
             throw Error(ErrorKind::usage,
                         fmt::format("{}: copies cannot stand {} mm apart; it must be 0 or more", input.path,
                                     input.spacing_mm));
+        if (input.support && input.negative)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("{}: is given as a support and as negative; it can be one of these", input.path));
     }
+    if (std::all_of(inputs.begin(), inputs.end(), [](const PlateInput& input) { return input.negative; }))
+        throw Error(ErrorKind::usage,
+                    fmt::format("{}: is negative, and there is no other file to subtract it from",
+                                inputs.front().path));
 }
 
 void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_of) {
@@ -110,6 +119,10 @@ void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_
     Box3 box;
     for (const MeshInstance& instance : file.instances) {
         const MeshObject& object = file.objects[instance.object];
+        if (input.negative && instance.negative)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("{}: has negative volumes of its own, so it cannot be subtracted", input.path));
         std::string label = input.label;
         if (label.empty())
             label = !instance.name.empty()                              ? instance.name
@@ -120,13 +133,14 @@ void PlateBuilder::add(const PlateInput& input, MeshFile file, const BoxOf& box_
                              compose(outer, instance.placement),
                              std::move(label),
                              input.support || instance.support,
-                             instance.negative,
+                             input.negative || instance.negative,
+                             input.negative,
                              0,
                              instance.body,
                              {}});
         instances.back().box = box_of(object.mesh, instances.back().placement);
         check_range(instances.back().box, input.path);
-        if (!instance.negative)
+        if (!instance.negative) // in the file
             box.add(instances.back().box);
     }
     if (input.copies > most_parts || instances_.size() + input.copies * instances.size() > most_parts)
@@ -193,6 +207,8 @@ Plate PlateBuilder::finish() {
             shapes[member] = plate_.shapes.size();
         plate_.shapes.push_back({mesh.transformed(placement), instance.input});
     }
+    std::vector<std::size_t> all(plate_.parts.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
     std::size_t part = 0;
     for (std::size_t i = 0; i < instances_.size(); ++i) {
         const Instance& instance = instances_[i];
@@ -200,9 +216,10 @@ Plate PlateBuilder::finish() {
         const double dx = shared ? instance.placement.offset[0] : 0;
         const double dy = shared ? instance.placement.offset[1] : 0;
         if (instance.negative) {
-            const auto& of_body = bodies_[{instance.input, instance.copy, instance.body}];
-            if (!of_body.empty())
-                plate_.negatives.push_back({shapes[i], dx, dy, instance.box, of_body});
+            const auto& from =
+                instance.of_all ? all : bodies_[{instance.input, instance.copy, instance.body}];
+            if (!from.empty())
+                plate_.negatives.push_back({shapes[i], dx, dy, instance.box, from});
         } else {
             plate_.parts[part].shape = shapes[i];
             plate_.parts[part].dx = dx;
@@ -215,16 +232,6 @@ Plate PlateBuilder::finish() {
 
 PlateBuilder::Key PlateBuilder::key_of(const Instance& instance) {
     return {instance.input, instance.object, instance.placement.linear, instance.placement.offset[2]};
-}
-
-Plate build_plate(std::span<const PlateInput> inputs, std::vector<MeshFile> files, const Execution& execution,
-                  std::uint64_t max_memory) {
-    PlateBuilder builder(max_memory);
-    for (std::size_t i = 0; i < files.size(); ++i)
-        builder.add(inputs[i], std::move(files[i]), [&](const Mesh& mesh, const Transform& placement) {
-            return bounding_box(mesh.transformed(placement), execution);
-        });
-    return builder.finish();
 }
 
 } // namespace lamella

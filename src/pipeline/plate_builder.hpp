@@ -2,7 +2,6 @@
 
 // Builds a plate from mesh files: places the parts, and finds those that can share a shape.
 
-#include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/transform.hpp"
 #include "lamella/pipeline/plate.hpp"
@@ -45,6 +44,7 @@ class PlateBuilder {
         std::string label;
         bool support;
         bool negative;
+        bool of_all; ///< subtracted from all parts, not only from those of its body
         std::uint64_t copy;
         std::uint64_t body; ///< MeshInstance::body
         Box3 box;
@@ -66,10 +66,5 @@ class PlateBuilder {
     std::vector<Instance> instances_;
     std::map<std::tuple<std::size_t, std::uint64_t, std::uint64_t>, std::vector<std::size_t>> bodies_;
 };
-
-/// Works as load_plate, for files that have been read already: one for each input. `max_memory` is that of
-/// PlateBuilder.
-[[nodiscard]] Plate build_plate(std::span<const PlateInput> inputs, std::vector<MeshFile> files,
-                                const Execution& execution, std::uint64_t max_memory = 0);
 
 } // namespace lamella

@@ -6,6 +6,7 @@
 #include "core/ordered_stage.hpp"
 #include "core/progress.hpp"
 #include "core/stopwatch.hpp"
+#include "polygon/box2.hpp"
 #include "slicing/layer_counter.hpp"
 #include "slicing/plane_ranges.hpp"
 #include "slicing/shrunken_contours.hpp"
@@ -16,6 +17,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -66,6 +70,12 @@ Layer moved(const Layer& layer, double dx, double dy) {
         add_contour(builder, contour, layer.closed(i));
     }
     return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
+}
+
+LayerSink single(const PlateSink& sink) {
+    return {.prepare = [&sink](Layer&& layer) {
+        return sink.prepare(std::span<const Layer>(&layer, 1));
+    }};
 }
 
 template <class Visit>
@@ -256,41 +266,78 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
     return report;
 }
 
-} // namespace
-
+/// Returns the layers of the parts without the negative volumes. Layers that no negative volume touches are
+/// unchanged, bit for bit. O(points), and what combining takes for each pair whose boxes meet.
 std::vector<Layer> without_negatives(std::span<const Layer> layers, std::span<const PlateNegative> negatives,
                                      const LayerLimits& limits) {
     const std::span<const Layer> of_parts = layers.first(layers.size() - negatives.size());
     std::vector<Layer> parts(of_parts.begin(), of_parts.end());
+    std::vector<Box2> boxes(layers.size());
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        if (layers[i].rings > 0)
+            boxes[i] = box_of(layers[i].points);
     for (std::size_t i = 0; i < negatives.size(); ++i) {
         const Layer& negative = layers[parts.size() + i];
         if (negative.rings == 0)
             continue;
+        const Box2& box = boxes[parts.size() + i];
         for (const std::size_t part : negatives[i].parts)
-            if (parts[part].rings > 0)
+            if (parts[part].rings > 0 && boxes[part].meets(box))
                 parts[part] = combine(parts[part], negative, BooleanOperation::subtract, limits);
     }
     return parts;
 }
 
-SliceReport slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan,
+} // namespace
+
+PlateMaterial material_of(std::span<const Layer> bodies, std::span<const PlateNegative> negatives,
+                          const LayerSteps& steps, const LayerLimits& limits,
+                          std::span<const std::string> names) {
+    PlateMaterial made;
+    LayerSteps later = steps;
+    std::span<const Layer> parts = bodies;
+    if (!negatives.empty()) {
+        LayerSteps first; // fills each body where it has material
+        first.fill = std::exchange(later.fill, FillRule::none);
+        ChangedPlane filled = take_steps_on_plane(first, bodies, limits, names);
+        made.bodies = std::move(filled.parts);
+        made.changes = filled.changes;
+        made.parts = without_negatives(made.bodies, negatives, limits);
+        parts = made.parts;
+    }
+    if (later.any() || negatives.empty()) {
+        ChangedPlane stepped = take_steps_on_plane(later, parts, limits, names);
+        made.parts = std::move(stepped.parts);
+        made.changes += stepped.changes;
+        made.changes.changed_layers = std::min<std::uint64_t>(1, made.changes.changed_layers);
+    }
+    return made;
+}
+
+SliceReport slice_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
                      const SliceOptions& options) {
     constexpr std::uint64_t usual_points = std::uint64_t{1} << 22; // 64 MB
     SliceOptions bounded = options;
-    bounded.points_in_flight = options.points_in_flight.value_or(usual_points);
+    if (!options.points_in_flight && plate.parts.size() + plate.negatives.size() > 1)
+        bounded.points_in_flight = usual_points;
     ShapeVisitor visitor;
     if (options.visitor)
         visitor = [&options](std::size_t, const Mesh& mesh, std::uint64_t begin, std::uint64_t end) {
             options.visitor(mesh, begin, end);
         };
+    return slice_plate_to(sink, plate, plan, bounded, SinkCost::proportional, visitor);
+}
+
+SliceReport slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan,
+                     const SliceOptions& options) {
     if (plate.parts.empty())
-        return slice_to(sink, Mesh(), plan, bounded);
+        return slice_to(sink, Mesh(), plan, options);
     LayerCounter counter(sink);
-    const PlateSink of_plate{.prepare = [&](std::span<const Layer> layers) {
-        std::vector<Layer> parts = without_negatives(layers, plate.negatives);
+    const PlateSink of_plate{.prepare = [&](std::span<const Layer> bodies) {
+        std::vector<Layer> parts = material_of(bodies, plate.negatives).parts;
         return counter.prepare(parts.size() == 1 ? std::move(parts.front()) : merged(parts));
     }};
-    SliceReport report = slice_plate_to(of_plate, plate, plan, bounded, SinkCost::proportional, visitor);
+    SliceReport report = slice_to(of_plate, plate, plan, options);
     counter.set_counts(report);
     return report;
 }
@@ -307,12 +354,14 @@ SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan
     check(plan);
     if (plate.parts.size() + plate.negatives.size() > 1 || cost == SinkCost::expanding)
         return slice_parts(sink, plate, plan, options, cost, visitor);
-    const LayerSink single{.prepare = [&sink](Layer&& layer) {
-        return sink.prepare(std::span<const Layer>(&layer, 1));
-    }};
     SliceOptions visited = options;
     visited.visitor = visitor_of(0, visitor);
-    return slice_to(single, plate.shapes.front().mesh, plan, visited);
+    return slice_to(single(sink), plate.shapes.front().mesh, plan, visited);
+}
+
+SliceReport slice_plate_to(const PlateSink& sink, const TriangleStream& body, const Plan& plan,
+                           const SliceOptions& options) {
+    return slice_to(single(sink), body, plan, options);
 }
 
 } // namespace lamella

@@ -2,26 +2,17 @@
 
 // Slices each shape of a plate once, and passes on the layers of all parts plane by plane.
 
-#include "lamella/contour/layer.hpp"
-#include "lamella/core/commit.hpp"
-#include "lamella/core/layer_limits.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include "slicing/triangle_stream.hpp"
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <span>
-#include <vector>
 
 namespace lamella {
-
-/// Like LayerSink, but for all layers of one plane: one for each of Plate::parts, then one for each of
-/// Plate::negatives.
-struct PlateSink {
-    std::function<Commit(std::span<const Layer> parts)> prepare;
-};
 
 /// Works as TriangleVisitor, for the mesh of one shape of the plate. Visits each triangle of each shape once.
 using ShapeVisitor =
@@ -30,12 +21,6 @@ using ShapeVisitor =
 /// Size of the data that a sink makes of layers. `proportional` is about the size of the layers. `expanding`
 /// is so large that at most one plane for each thread may be in flight, whatever `points_in_flight` is.
 enum class SinkCost { proportional, expanding };
-
-/// Returns the layers of the parts on one plane, with the negative volumes subtracted. `layers` are the
-/// argument of PlateSink::prepare. Layers that no negative volume touches are unchanged, bit for bit.
-[[nodiscard]] std::vector<Layer> without_negatives(std::span<const Layer> layers,
-                                                   std::span<const PlateNegative> negatives,
-                                                   const LayerLimits& limits = {});
 
 /// Slices a plate into a sink. A plate of a single body is sliced while its layers go to the sink. Other
 /// plates, and plates for expanding sinks, are sliced range by range. All shapes together have at most twice
@@ -47,5 +32,9 @@ enum class SinkCost { proportional, expanding };
                                          const SliceOptions& options = {},
                                          SinkCost cost = SinkCost::proportional,
                                          const ShapeVisitor& visitor = {});
+
+/// Slices a plate of a single body, whose triangles are read meanwhile.
+[[nodiscard]] SliceReport slice_plate_to(const PlateSink& sink, const TriangleStream& body, const Plan& plan,
+                                         const SliceOptions& options);
 
 } // namespace lamella

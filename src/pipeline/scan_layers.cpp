@@ -41,15 +41,14 @@ std::vector<std::string> names_of(const LayerFileInfo& info, const std::string& 
     return names;
 }
 
-} // namespace
-
-FileResult scan_layers(const std::string& path, const LayerFormat& format, std::span<const LayerStack> parts,
-                       const Rounding& rounding, const LayerFileInfo& info, const ScanStrategy& strategy,
-                       const LayerWriteOptions& options, const Execution& execution, std::uint64_t max_memory,
-                       const std::string& name) {
+/// Scans planes. `heights` has a layer of each plane; `layers_on(plane)` returns the layers of all parts.
+template <class LayersOn>
+FileResult scan_planes(const std::string& path, const LayerFormat& format, std::span<const Layer> heights,
+                       const LayersOn& layers_on, const Rounding& rounding, const LayerFileInfo& info,
+                       const ScanStrategy& strategy, const LayerWriteOptions& options,
+                       const Execution& execution, std::uint64_t max_memory, const std::string& name) {
     const Stopwatch total;
     check_strategy(strategy);
-    check_same_planes(parts, info);
     Executor executor(execution);
     FileResult result;
     result.threads = executor.workers();
@@ -63,9 +62,8 @@ FileResult scan_layers(const std::string& path, const LayerFormat& format, std::
         result.parts.push_back({.label = part.label, .box = part.box});
     }
     std::vector<PlannedLayer> planes;
-    if (!parts.empty())
-        for (const Layer& layer : parts.front())
-            planes.push_back({layer.index, layer.z, layer.bottom, layer.top});
+    for (const Layer& layer : heights)
+        planes.push_back({layer.index, layer.z, layer.bottom, layer.top});
     const PlaneRange all{0, static_cast<std::uint32_t>(planes.size())};
     JobOutput output({.path = path, .format = &format, .write = options}, with_exposures(info, strategy),
                      all);
@@ -73,10 +71,7 @@ FileResult scan_layers(const std::string& path, const LayerFormat& format, std::
 
     ProgressMeter progress(execution, Stage::write, all.size());
     run_in_order(executor, progress, all.size(), [&](std::uint64_t plane) {
-        std::vector<Layer> layers;
-        for (const LayerStack& part : parts)
-            layers.push_back(part[plane]);
-        return processor.prepare(static_cast<std::uint32_t>(plane), layers);
+        return processor.prepare(static_cast<std::uint32_t>(plane), layers_on(plane));
     });
     progress.finish();
 
@@ -92,6 +87,32 @@ FileResult scan_layers(const std::string& path, const LayerFormat& format, std::
     output.finish_file(result);
     result.seconds.total = total.seconds();
     return result;
+}
+
+} // namespace
+
+FileResult scan_layers(const std::string& path, const LayerFormat& format, std::span<const LayerStack> parts,
+                       const Rounding& rounding, const LayerFileInfo& info, const ScanStrategy& strategy,
+                       const LayerWriteOptions& options, const Execution& execution, std::uint64_t max_memory,
+                       const std::string& name) {
+    check_same_planes(parts, info);
+    const auto layers_on = [&](std::size_t plane) {
+        std::vector<Layer> layers;
+        for (const LayerStack& part : parts)
+            layers.push_back(part[plane]);
+        return layers;
+    };
+    return scan_planes(path, format, parts.empty() ? std::span<const Layer>() : parts.front(), layers_on,
+                       rounding, info, strategy, options, execution, max_memory, name);
+}
+
+FileResult scan_layers(const std::string& path, const LayerFormat& format, const LayerFile& file,
+                       const LayerFileInfo& info, const ScanStrategy& strategy,
+                       const LayerWriteOptions& options, const Execution& execution,
+                       std::uint64_t max_memory) {
+    return scan_planes(
+        path, format, file.planes(), [&](std::size_t plane) { return file.plane(plane).polylines; },
+        file.rounding, info, strategy, options, execution, max_memory, file.path);
 }
 
 } // namespace lamella

@@ -197,7 +197,8 @@ void gather(Communicator& processes, FileResult::Seconds& seconds, SliceReport& 
         const auto other = from.get<FileResult::Seconds>();
         for (double FileResult::Seconds::*stage :
              {&FileResult::Seconds::read, &FileResult::Seconds::weld, &FileResult::Seconds::polygon,
-              &FileResult::Seconds::scan, &FileResult::Seconds::write})
+              &FileResult::Seconds::scan, &FileResult::Seconds::format, &FileResult::Seconds::write,
+              &FileResult::Seconds::order})
             seconds.*stage = std::max(seconds.*stage, other.*stage);
         for (double SliceReport::*time :
              {&SliceReport::weld_seconds, &SliceReport::link_seconds, &SliceReport::slice_seconds})
@@ -260,19 +261,23 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
         return processor.prepare(static_cast<std::uint32_t>(parts.front().index - first), parts);
     }};
     const ShapeVisitor visitor = near_face_visitor(feed, plan);
+    const std::optional<TriangleStream> stream = feed.stream(plan, execution);
     const std::vector<PlaneRange> ranges = feed.bring(plan, sliced, execution);
     done.ranges = ranges.size();
-    const std::uint64_t points_in_flight = feed.memory().points_in_flight(thread_count(execution));
+    const std::uint64_t points_in_flight = feed.memory().points_in_flight(
+        feed.at_once() && feed.plate().shapes.size() == 1 ? feed.triangles(0) : 0);
     in_agreement(processes, [&] {
         const Stopwatch slicing;
         for (std::size_t s = 0; s < ranges.size(); ++s) {
-            const bool whole = ranges.size() == 1 && feed.meshes() != nullptr;
-            done.report += slice_plate_to(
-                sink, feed.take(s, execution), part_of(plan, ranges[s]),
-                {.execution = whole ? execution : in_range(ranges[s], sliced[processes.process()], execution),
-                 .engine = engine,
-                 .points_in_flight = points_in_flight},
-                cost, visitor);
+            const bool whole = ranges.size() == 1 && feed.at_once();
+            const Plan planes = part_of(plan, ranges[s]);
+            const SliceOptions options{
+                .execution = whole ? execution : in_range(ranges[s], sliced[processes.process()], execution),
+                .engine = engine,
+                .points_in_flight = points_in_flight};
+            done.report +=
+                stream ? slice_plate_to(sink, *stream, planes, options)
+                       : slice_plate_to(sink, feed.take(s, execution), planes, options, cost, visitor);
         }
         if (visitor && ranges.empty()) // all processes count near faces
             for (std::size_t shape = 0; shape < feed.plate().shapes.size(); ++shape) {
@@ -393,7 +398,7 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     const Stopwatch writing;
     output.finish_file(result);
     figures.write_seconds = writing.seconds();
-    result.seconds.write += figures.write_seconds;
+    result.seconds.end = figures.write_seconds;
     result.seconds.weld += result.report.weld_seconds;
     result.seconds.link = result.report.link_seconds;
     result.seconds.slice = result.report.slice_seconds;

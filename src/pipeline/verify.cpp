@@ -1,6 +1,7 @@
 #include "lamella/pipeline/verify.hpp"
 
 #include "lamella/contour/measure.hpp"
+#include "lamella/core/error.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
 
 #include "contour/area_moments.hpp"
@@ -56,13 +57,47 @@ double area_tolerance(const Layer& layer, const LayerMeasure& measure, const Rou
     return moved_points + epsilon * extent * extent * (16 + 4 * std::sqrt(points));
 }
 
-void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> checks,
+/// Extent and origin for comparing areas of layers with those of a mesh.
+struct AreaFrame {
+    double extent = 0; ///< of the mesh
+    Point2 origin =
+        {}; ///< the middle of the part, relative to which a part far from the origin loses no digits
+};
+
+AreaFrame frame_of(const Mesh& mesh, const Execution& execution) {
+    const Box3 box = bounding_box(mesh, execution);
+    if (box.empty())
+        return {};
+    return {std::max(box.max.x - box.min.x, box.max.y - box.min.y),
+            {(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2}};
+}
+
+/// Area of a layer for this comparison.
+struct OwnArea {
+    AreaMoments moments = {};
+    double tolerance = 0; ///< of the area
+    double reach =
+        0; ///< of the moments: a moved edge moves a strip of area, whose moment grows with its distance
+};
+
+OwnArea own_area(const Layer& layer, const LayerMeasure& measure, const AreaFrame& frame,
+                 const VerifyOptions& options) {
+    OwnArea own{area_moments(layer, frame.origin),
+                area_tolerance(layer, measure, options.granted(), frame.extent) +
+                    2 * options.steps.simplify_mm * measure.perimeter_mm,
+                frame.extent / 2};
+    for (const Point2& p : layer.points)
+        own.reach = std::max({own.reach, std::abs(p.x - frame.origin.x), std::abs(p.y - frame.origin.y)});
+    return own;
+}
+
+/// The findings in a layer, of which only the heights are needed afterwards.
+struct CheckedLayer : LayerCheck {
+    OwnArea own = {};
+};
+
+void compare_areas(std::span<const Layer> layers, std::span<const CheckedLayer> checks, const Point2& origin,
                    const VerifyOptions& options, const Execution& execution, Verification& result) {
-    const Box3 box = bounding_box(*options.mesh, execution);
-    const double extent = box.empty() ? 0 : std::max(box.max.x - box.min.x, box.max.y - box.min.y);
-    // Computed relative to the middle of the part, so that a part far from the origin loses no digits.
-    const Point2 origin =
-        box.empty() ? Point2{} : Point2{(box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2};
     LayerSteps steps = steps_to_repeat(options.steps);
     std::vector<std::vector<AreaMoments>> sections(layers.size());
     const double limit = steps.offset_corners.mitre_limit;
@@ -83,24 +118,6 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
         for (std::size_t i = 0; i < layers.size(); ++i)
             sections[i].insert(sections[i].end(), found[i].begin(), found[i].end());
     }
-    struct Own {
-        AreaMoments moments;
-        double tolerance = 0; // of the area
-        double reach =
-            0; // of the moments: a moved edge moves a strip of area, whose moment grows with its distance
-    };
-    std::vector<Own> own(layers.size());
-    Executor executor(execution);
-    executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        const LayerMeasure& measure = checks[i].measure;
-        own[i] = {area_moments(layers[i], origin),
-                  area_tolerance(layers[i], measure, options.granted(), extent) +
-                      2 * options.steps.simplify_mm * measure.perimeter_mm,
-                  extent / 2};
-        for (const Point2& p : layers[i].points)
-            own[i].reach = std::max({own[i].reach, std::abs(p.x - origin.x), std::abs(p.y - origin.y)});
-    });
-    executor.check_cancelled();
     double largest_error = 0;
     std::uint64_t compared = 0;
     std::uint64_t differing = 0;
@@ -110,7 +127,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
         if (checks[i].found.open_chains.total > 0)
             continue; // the area is unknown
         ++compared;
-        const AreaMoments& moments = own[i].moments;
+        const AreaMoments& moments = checks[i].own.moments;
         const auto beyond = [&](double AreaMoments::*sum) {
             const auto [least, greatest] = std::minmax_element(
                 sections[i].begin(), sections[i].end(),
@@ -126,12 +143,12 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
             undecided_mm2 =
                 std::max(undecided_mm2, std::abs(sections[i][k].area_mm2 - sections[i][k % cuts].area_mm2));
         largest_error = std::max(largest_error, std::abs(moments.area_mm2 - sections[i].front().area_mm2));
-        const double tolerance = own[i].tolerance;
+        const double tolerance = checks[i].own.tolerance;
         if (beyond(&AreaMoments::area_mm2) > tolerance) {
             if (differing++ == 0)
                 first = i;
         } else if (std::max(beyond(&AreaMoments::x_mm3), beyond(&AreaMoments::y_mm3)) >
-                   (tolerance + undecided_mm2) * own[i].reach) {
+                   (tolerance + undecided_mm2) * checks[i].own.reach) {
             if (result.displaced++ == 0)
                 first_displaced = i;
         }
@@ -161,11 +178,11 @@ void compare_areas(std::span<const Layer> layers, std::span<const LayerCheck> ch
             return fmt::format("({:.7g}, {:.7g})", to_nanometres(origin.x + section.x_mm3 / section.area_mm2),
                                to_nanometres(origin.y + section.y_mm3 / section.area_mm2));
         };
-        result.findings.push_back(
-            fmt::format("{} elsewhere than the mesh's section, the first is {}: its centre is at {} mm "
-                        "instead of {}",
-                        counted(result.displaced, "layer lies", "layers lie"), where(layers[first_displaced]),
-                        centre(own[first_displaced].moments), centre(sections[first_displaced].front())));
+        result.findings.push_back(fmt::format(
+            "{} elsewhere than the mesh's section, the first is {}: its centre is at {} mm "
+            "instead of {}",
+            counted(result.displaced, "layer lies", "layers lie"), where(layers[first_displaced]),
+            centre(checks[first_displaced].own.moments), centre(sections[first_displaced].front())));
     }
 }
 
@@ -201,13 +218,23 @@ PlaneRule place_cuts(LayerStack& layers, SliceAt at) {
 PlaneRule place_cuts(LayerFile& file, SliceAt at) {
     PlaneRule rule = file.rule;
     const bool guessed = at == SliceAt::top && !file.guess.empty();
-    for (LayerPart& part : file.parts) {
-        for (std::size_t i = guessed ? part.layers.size() : 0; i-- > 0;) {
-            Layer& layer = part.layers[i];
-            const double below = i > 0 ? part.layers[i - 1].bottom : 2 * layer.bottom - layer.top;
+    const auto place = [&](LayerStack& layers) {
+        for (std::size_t i = guessed ? layers.size() : 0; i-- > 0;) {
+            Layer& layer = layers[i];
+            const double below = i > 0 ? layers[i - 1].bottom : 2 * layer.bottom - layer.top;
             layer.top = std::exchange(layer.bottom, below);
         }
-        rule = place_cuts(part.layers, at);
+        rule = place_cuts(layers, at);
+    };
+    for (LayerPart& part : file.parts)
+        place(part.layers);
+    if (file.stream) {
+        LayerStream moved = *file.stream;
+        place(moved.planes);
+        moved.parse = [stream = file.stream](std::size_t position) {
+            return stream->parse(position);
+        };
+        file.stream = std::make_shared<const LayerStream>(std::move(moved));
     }
     if (guessed) {
         std::erase(file.warnings, file.guess);
@@ -216,16 +243,33 @@ PlaneRule place_cuts(LayerFile& file, SliceAt at) {
     return rule;
 }
 
-Verification verify(std::span<const Layer> layers, const VerifyOptions& options, const Execution& execution) {
-    for (const Layer& layer : layers)
-        check(layer);
-    std::vector<LayerCheck> checks(layers.size());
+namespace {
+
+/// Verifies layers. `layer_at(i)` returns one of them, `layers` has at least their heights.
+template <class LayerAt>
+Verification verify_planes(std::span<const Layer> layers, const LayerAt& layer_at,
+                           const VerifyOptions& options, const Execution& execution) {
+    const AreaFrame frame = options.mesh ? frame_of(*options.mesh, execution) : AreaFrame();
+    std::vector<CheckedLayer> checks(layers.size());
     Executor executor(execution);
+    std::vector<char> unsound(layers.size());
     ProgressMeter progress(execution, Stage::polygon, layers.size());
     executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-        checks[i] = check_layer(layers[i], options.granted());
+        const Layer& layer = layer_at(i);
+        try {
+            check(layer);
+        } catch (const Error&) {
+            unsound[i] = 1;
+            return;
+        }
+        checks[i] = {check_layer(layer, options.granted())};
+        if (options.mesh)
+            checks[i].own = own_area(layer, checks[i].measure, frame, options);
         progress.add(1);
     });
+    for (std::size_t i = 0; i < layers.size(); ++i)
+        if (unsound[i] != 0)
+            check(layer_at(i)); // throws the error of the lowest one
     progress.finish();
 
     Verification result;
@@ -233,7 +277,7 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
     result.layers = layers.size();
     result.hatches = options.hatch_lines;
     for (std::size_t i = 0; i < layers.size(); ++i) {
-        const LayerCheck& check = checks[i];
+        const CheckedLayer& check = checks[i];
         found.add(check.found);
         result.contours += check.measure.contours;
         result.points += check.measure.points;
@@ -261,7 +305,7 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
             counted(result.hatches, "hatch line was not checked: no contour bounds the area that it fills",
                     "hatch lines were not checked: no contour bounds the area that they fill"));
     if (options.mesh) {
-        compare_areas(layers, checks, options, execution, result);
+        compare_areas(layers, checks, frame.origin, options, execution, result);
         if (const NearFaceLayers near = near_faces(*options.mesh, plan_of(layers, options), execution);
             near.layers > 0)
             result.findings.push_back(near.text(layers.size()));
@@ -269,6 +313,23 @@ Verification verify(std::span<const Layer> layers, const VerifyOptions& options,
             covered_heights(layers, *options.mesh, options.granted(), execution, result.findings);
     }
     return result;
+}
+
+} // namespace
+
+Verification verify(std::span<const Layer> layers, const VerifyOptions& options, const Execution& execution) {
+    const auto layer_at = [&](std::size_t i) -> const Layer& {
+        return layers[i];
+    };
+    return verify_planes(layers, layer_at, options, execution);
+}
+
+Verification verify_file(const LayerFile& file, const VerifyOptions& options, const Execution& execution) {
+    const auto layer_at = [&](std::size_t i) {
+        ScanVectors plane = file.plane(i);
+        return plane.exposures() == 1 ? std::move(plane.polylines.front()) : merged(plane.polylines);
+    };
+    return verify_planes(file.planes(), layer_at, options, execution);
 }
 
 } // namespace lamella

@@ -5,7 +5,7 @@ import resource
 import subprocess
 import unittest
 
-from program import COMMAND, OTHER_USER, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main, needs_posix
+from program import COMMAND, OTHER_USER, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, limited, main, needs_posix
 
 
 class BadInput(ProgramTest):
@@ -94,7 +94,6 @@ class BadInput(ProgramTest):
             with self.subTest(output):
                 self.fail_with(6, output.split("/")[0], "slice", "box.stl", "-o", output)
 
-    @needs_posix("permissions")
     def test_a_folder_without_permission(self):
         self.box()
         locked = self.path("locked")
@@ -110,7 +109,6 @@ class BadInput(ProgramTest):
         self.fail_with(6, "/dev/full", "slice", "box.stl", "--stats", "/dev/full")
         self.fail_with(6, "/dev/full", "make", "box", "-o", "/dev/full")
 
-    @needs_posix("pipes and devices with names")
     @unittest.skipUnless(os.path.exists("/dev/full"), "there is no /dev/full here")
     def test_standard_output_that_is_full(self):
         self.box()
@@ -122,13 +120,12 @@ class BadInput(ProgramTest):
                 self.assertEqual(done.returncode, 6, done.stderr)
                 self.assertIn(b"lamella: error: ", done.stderr)
 
-    @needs_posix("limits of processes")
     def test_a_disk_that_fills_up_on_the_way_leaves_nothing(self):
         self.box()
-        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
-        self.refuse(6, r"out\.cli", "box.stl", "--layer-height", "0.01", preexec_fn=limit)
-        self.fail_with(6, r"box2\.stl", "make", "torus", "-o", "box2.stl", preexec_fn=limit)
-        self.fail_with(6, r"s\.json", "slice", "box.stl", "--stats", "s.json", preexec_fn=limit)
+        limit = limited(FSIZE=2000)
+        self.refuse(6, r"out\.cli", "box.stl", "--layer-height", "0.01", **limit)
+        self.fail_with(6, r"box2\.stl", "make", "torus", "-o", "box2.stl", **limit)
+        self.fail_with(6, r"s\.json", "slice", "box.stl", "--stats", "s.json", **limit)
 
     def test_extensions_and_formats_that_nobody_knows(self):
         self.box()

@@ -2,7 +2,7 @@
 
 import re
 
-from program import ProgramTest, main, needs_posix
+from program import ON_WINDOWS, ProgramTest, main, needs_posix
 
 
 class CommandLine(ProgramTest):
@@ -41,7 +41,57 @@ class CommandLine(ProgramTest):
             self.succeed(*line.split())
 
     def test_the_version(self):
-        self.assertRegex(self.succeed("--version").text, r"^lamella \d+\.\d+\.\d+\nMIT licence\n$")
+        for word in ["--version", "-V", "-v", "version"]:
+            self.assertRegex(self.succeed(word).text, r"^lamella \d+\.\d+\.\d+\nMIT licence\n$")
+
+    def test_three_ways_to_the_help_of_a_command(self):
+        texts = {self.succeed(*words).text for words in [["slice", "--help"], ["help", "slice"], ["--help", "slice"], ["-h", "slice"]]}
+        self.assertEqual(len(texts), 1)
+        self.fail_with(2, "did you mean slice", "--help", "slcie")
+
+    def test_quiet_leaves_results_warnings_and_errors(self):
+        self.box()
+        self.assertIn("written", self.succeed("slice", "box.stl", "-o", "loud.cli").text)
+        quiet = self.succeed("slice", "box.stl", "-o", "quiet.cli", "-q")
+        self.assertEqual((quiet.out, quiet.err), (b"", ""))
+        self.assertEqual(self.path("quiet.cli").read_bytes(), self.path("loud.cli").read_bytes())
+        self.assertEqual(self.succeed("info", "box.stl", "--quiet").out, self.succeed("info", "box.stl").out)
+        self.fail_with(3, "no such file", "slice", "none.stl", "-o", "none.cli", "--quiet")
+        self.assertEqual(self.succeed("slice", "box.stl", "-q", "-o", "-", "--format", "cli").err, "")
+        self.fail_with(2, "contradict", "slice", "box.stl", "-q", "--progress", "bar", "-o", "none.cli")
+
+    def test_the_short_form_of_threads(self):
+        self.box()
+        for words in [["-j", "2"], ["-j2"]]:
+            self.assertEqual(self.succeed("slice", "box.stl", "--stats", "-", *words).json()["threads"], 2)
+
+    def test_units_have_all_their_usual_names(self):
+        self.box()
+        for names in [["inch", "in"], ["ft", "foot"], ["um", "micron"]]:
+            self.assertEqual(len({self.succeed("info", "box.stl", "--unit", name).text for name in names}), 1, names)
+
+    def test_an_output_without_its_option(self):
+        self.box()
+        for words in [[], ["--stats", "-"]]:
+            self.fail_with(2, r"did you mean -o out\.cli\?", "slice", "box.stl", "out.cli", *words)
+
+    def test_a_file_whose_name_begins_with_a_hyphen(self):
+        self.box("-dash.stl")
+        for name in ["-dash.stl", "--dash.stl", "-hash.stl"]:
+            self.fail_with(2, rf"write \./{name}, or -- before it", "slice", name, "-o", "out.cli")
+        for words in [["./-dash.stl"], ["--", "-dash.stl"]]:
+            self.succeed("slice", "-o", "out.cli", *words)
+
+    def test_a_drawing_of_its_own_is_known(self):
+        self.box()
+        self.succeed("slice", "box.stl", "-o", "box.dxf")
+        self.fail_with(3, "is a DXF drawing, which is only written here", "info", "box.dxf")
+
+    def test_a_bar_that_is_asked_for_needs_no_terminal(self):
+        self.succeed("make", "lattice")
+        words = ["slice", "lattice.stl", "-o", "lattice.cli", "--scan", "--threads", "1"]
+        self.assertNotIn("\r", self.succeed(*words).err)
+        self.assertRegex(self.succeed(*words, "--progress", "bar").err, r"\r\w+ +\[#*\.*\]")
 
     def test_slips_of_the_fingers_get_a_suggestion(self):
         self.box()
@@ -50,6 +100,7 @@ class CommandLine(ProgramTest):
         self.fail_with(2, "did you mean --layer-height", "slice", "box.stl", "--layerheight=0.1")
         self.fail_with(2, "did you mean middle", "slice", "box.stl", "-o", "a.cli", "--slice-at", "midle")
         self.fail_with(2, "did you mean sphere", "make", "shpere")
+        self.fail_with(2, "did you mean modifier", "slice", "box.stl", "-o", "a.cli", "--include", "modifer")
         self.fail_with(2, "slice --help", "slice", "box.stl", "--zzzzzz")
         self.fail_with(2, "lamella --help", "zzzzzz")
         self.fail_with(2, "say what to do with it", "box.stl")
@@ -92,11 +143,11 @@ class CommandLine(ProgramTest):
         self.succeed("slice", "box.stl", "--config", "job.toml")
         self.assertEqual(self.bytes_of("out.cli"), written)
 
-    @needs_posix("names of files of any bytes")
     def test_a_configuration_keeps_where_each_file_stands(self):
         self.box("a.stl", size="4,6,2")
-        self.box('b "2"\x7f.stl', size="2,2,3")
-        words = ["--unit", "cm", "--copies", "1", "--scale", "2", "a.stl", "--copies", "3", "--spacing", "1.5", 'b "2"\x7f.stl',
+        odd = "b '2'.stl" if ON_WINDOWS else 'b "2"\x7f.stl'
+        self.box(odd, size="2,2,3")
+        words = ["--unit", "cm", "--copies", "1", "--scale", "2", "a.stl", "--copies", "3", "--spacing", "1.5", odd,
                  "--translate", "90,0,0", "--rotate-z", "30", "--rotate-z", "45", "--label", "tower", "a.stl", "--unit", "mm",
                  "--translate=0,99,0", "-o", "out.cli", "--layer-height", "0.5"]
         self.succeed("slice", *words)

@@ -5,7 +5,7 @@ import shutil
 import subprocess
 import unittest
 
-from program import ProgramTest, main, needs_posix
+from program import ProgramTest, main
 
 COMMANDS = ["slice", "info", "verify", "convert", "make"]
 
@@ -22,7 +22,6 @@ class Completion(ProgramTest):
         done = subprocess.run([shell, "-n", str(script)], capture_output=True, timeout=60)
         self.assertEqual((done.returncode, done.stderr), (0, b""))
 
-    @needs_posix("a shell")
     def test_bash_takes_the_script(self):
         self.check_syntax("bash")
 
@@ -32,7 +31,6 @@ class Completion(ProgramTest):
     def test_fish_takes_the_script(self):
         self.check_syntax("fish")
 
-    @needs_posix("a shell")
     def test_every_option_is_in_every_script_and_in_the_man_page(self):
         manual = self.succeed("help", "--man").text.replace("\\-", "-")
         scripts = {shell: self.succeed("completion", shell).text for shell in ["bash", "zsh", "fish"]}
@@ -54,7 +52,6 @@ class Completion(ProgramTest):
         done = subprocess.run(["bash", "-c", code], capture_output=True, timeout=60)
         return done.stdout.decode().split()
 
-    @needs_posix("pipes and devices with names")
     @unittest.skipIf(shutil.which("bash") is None, "bash is not installed")
     def test_bash_offers_what_fits(self):
         self.assertEqual(self.complete("sl"), ["slice"])
@@ -67,7 +64,6 @@ class Completion(ProgramTest):
         self.assertEqual(self.complete("strategy", ""), ["show", "check"])
         self.assertEqual(self.complete("strategy", "check", ""), [])  # files, which bash finds by itself
 
-    @needs_posix("pipes and devices with names")
     @unittest.skipIf(shutil.which("fish") is None, "fish is not installed")
     def test_fish_offers_what_fits(self):
         script = self.write("script", self.succeed("completion", "fish").out)

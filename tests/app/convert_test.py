@@ -26,6 +26,31 @@ class Convert(ProgramTest):
                         self.assertEqual(found[key], whole[key])
                     self.assertAlmostEqual(found["volume_mm3"], whole["volume_mm3"], delta=1)
 
+    def test_layers_of_files_are_the_same_for_any_number_of_threads(self):
+        self.succeed("make", "sheet", "--holes", "100", "--segments", "64", "-o", "sheet.stl")
+        self.succeed("slice", "sheet.stl", "-o", "sheet.cli", "--layer-height", "0.1")
+        for part in (1, 2):
+            self.succeed("slice", "sheet.stl", "-o", f"{part}.cli", "--layer-height", "0.1", "--shard", f"{part}/2")
+        self.assertGreater(len(self.bytes_of("sheet.cli")), 2 << 20, "several pieces")
+        outcomes = set()
+        for threads in (1, 2, 3, 7, 16):
+            def run(*arguments):
+                return self.succeed(*arguments, "--threads", threads).out
+
+            for source, target in [("sheet.cli", "a.svg"), ("a.svg", "b.cli"), ("sheet.cli", "c.json"),
+                                   ("c.json", "d.npz"), ("d.npz", "e.3mf"), ("sheet.cli", "page.html")]:
+                run("convert", source, target)
+            run("scan", "sheet.cli", "-o", "job.cli")
+            run("merge", "merged.cli", "1.cli", "2.cli")
+            run("merge", "merged.svg", "1.cli", "2.cli")
+            texts = [run("verify", "sheet.cli", "--mesh", "sheet.stl"), run("compare", "sheet.cli", "c.json"),
+                     run("verify", "job.cli"), run("compare", "job.cli", "job.cli")]
+            files = ["a.svg", "b.cli", "c.json", "d.npz", "e.3mf", "page.html", "job.cli", "merged.cli", "merged.svg"]
+            outcomes.add(tuple(map(self.bytes_of, files)) + tuple(texts))
+            for file in ["merged.cli", "merged.svg"]:
+                (self.folder / file).unlink()
+        self.assertEqual(len(outcomes), 1)
+
     def test_the_label_is_kept_or_set(self):
         self.succeed("convert", "torus.cli", "kept.cli")
         self.assertEqual(self.succeed("info", "kept.cli", "--json").json()["label"], "ring")

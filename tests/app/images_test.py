@@ -174,7 +174,7 @@ class Images(ProgramTest):
         self.assertIn("open chain", result.err)
         self.assertEqual(Image(self.archive("part.zip").read("00000.png")).covered(), 0)
 
-    @needs_posix("permissions")
+    @needs_posix("permissions to list a folder but not to search it")
     def test_what_cannot_be_looked_at_is_not_removed(self):
         self.box()
         for name in ["png", "svg-layers"]:
@@ -189,7 +189,6 @@ class Images(ProgramTest):
                 self.assertIn("holds something else", result.err)
                 self.assertEqual((out / "thesis.txt").read_text(), "years")
 
-    @needs_posix("permissions")
     def test_a_folder_that_may_not_be_searched(self):
         self.box()
         locked = self.path("locked")
@@ -198,7 +197,7 @@ class Images(ProgramTest):
         self.addCleanup(locked.chmod, 0o700)
         result = self.run_program("slice", "box.stl", "-o", "locked/x", "--format", "png", **UNPRIVILEGED)
         self.assertEqual(result.code, 6)
-        self.assertIn("no permission in the folder 'locked'", result.err)
+        self.assertRegex(result.err, r"no permission in the folder '([^']*\\)?locked'")
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import time
 
-from program import COMMAND, ProgramTest, binary_stl, box_triangles, main, needs_posix
+from program import COMMAND, STOPPING_SIGNALS, ProgramTest, binary_stl, box_triangles, main, needs_posix
 
 
 class Interrupt(ProgramTest):
@@ -17,10 +17,9 @@ class Interrupt(ProgramTest):
         self.addCleanup(process.kill)
         return process
 
-    @needs_posix("signals")
     def test_a_run_that_is_stopped_leaves_nothing(self):
         self.succeed("make", "rook")
-        for number in [signal.SIGINT, signal.SIGTERM]:
+        for number in STOPPING_SIGNALS:
             with self.subTest(number):
                 # Half a million layers: minutes of work and gigabytes of output, had it been left alone.
                 process = self.start("slice", "rook.stl", "-o", "rook.svg", "--layer-height", "0.0001",
@@ -74,7 +73,6 @@ class Interrupt(ProgramTest):
             user, system = stat.read().rpartition(")")[2].split()[11:13]
         return int(user) + int(system)
 
-    @needs_posix("pipes and devices with names")
     def test_a_run_that_is_stuck_leaves_nothing_either(self):
         process = self.start_and_get_stuck()
         process.send_signal(signal.SIGINT)
@@ -95,12 +93,11 @@ class Interrupt(ProgramTest):
         self.assertIn("processor time", last["error"])
         self.assertEqual(self.listing(), ["rook.stl"])
 
-    @needs_posix("pipes and devices with names")
     def test_a_second_signal_leaves_nothing_either(self):
         process = self.start_and_get_stuck()
         process.send_signal(signal.SIGINT)
         time.sleep(0.3)  # those of one moment count as one
-        process.send_signal(signal.SIGTERM)
+        process.send_signal(STOPPING_SIGNALS[-1])
         self.assertEqual(process.wait(timeout=60), 130)
         self.assertEqual(self.listing(), ["rook.stl"])
 
@@ -143,7 +140,6 @@ class Interrupt(ProgramTest):
             time.sleep(0.01)
         self.fail("it hears no signal")
 
-    @needs_posix("signals")
     def test_waiting_for_standard_input_can_be_stopped(self):
         process = self.start("slice", "-", "-o", "out.cli")
         # More than a pipe holds: once it is written, the program is known to be reading.

@@ -3,7 +3,6 @@
 import json
 import math
 import os
-import resource
 import signal
 import struct
 import subprocess
@@ -11,10 +10,11 @@ import sys
 import threading
 import zipfile
 
-from program import PROGRAM, ProgramTest, binary_stl, main, open_box
+from program import COMMAND, ON_WINDOWS, ProgramTest, binary_stl, limited, main, needs_posix, open_box
 
 # The program and its threads take some of each limit; what is left makes many ranges of these small meshes.
 TIGHT = {1: "39M", 2: "52M", 7: "116M"}
+WINE = 20_000_000 if ON_WINDOWS else 0  # what it takes in each process
 MEASURED = """
 import resource, subprocess, sys
 code = subprocess.run(sys.argv[1:], stdout=subprocess.DEVNULL).returncode
@@ -53,7 +53,7 @@ class Memory(ProgramTest):
             for key in ["points", "contours", "open_chains", "volume_mm3"]:
                 self.assertEqual(stats[key], whole[key])
             self.assertAlmostEqual(stats["input"]["volume_mm3"], whole["input"]["volume_mm3"], places=6)
-            self.assertLess(stats["peak_rss_bytes"], 1.1 * 1e6 * int(TIGHT[n][:-1]))
+            self.assertLess(stats["peak_rss_bytes"] - WINE, 1.1 * 1e6 * int(TIGHT[n][:-1]))
         return whole
 
     def damaged(self, name):
@@ -77,11 +77,11 @@ class Memory(ProgramTest):
     def peak(self, *arguments, codes=(0,)):
         """The most memory, in bytes, that the program had. It is started by a small process, since what the one that starts
         it has had counts, too."""
-        finished = subprocess.run([sys.executable, "-c", MEASURED, PROGRAM, *map(str, arguments)], cwd=self.folder,
+        finished = subprocess.run([sys.executable, "-c", MEASURED, *COMMAND, *map(str, arguments)], cwd=self.folder,
                                   stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, check=True)
         code, kilobytes = map(int, finished.stdout.split())
         self.assertIn(code, codes, arguments)
-        return 1024 * kilobytes
+        return 1024 * kilobytes - WINE
 
     def plate(self, side=250):
         """Ten layers of a square as layers.json, and as box.stl."""
@@ -131,9 +131,8 @@ class Memory(ProgramTest):
         for words, found in ((["--layer-height", "0.000001"], r"a layer height of 1e-06 mm makes 1e\+07 layers"),
                              (["--heights", "0:5=0.0000005"], r"100000\d\d layers take 5\.0 GB")):
             with self.subTest(words=words):
-                allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (100_000_000, 100_000_000))  # noqa: E731
                 self.fail_with(5, fr"box\.stl: {found} .*--max-memory", "slice", "box.stl", "-o", "a.cli", *words, "--threads", 1,
-                               preexec_fn=allowed)
+                               **limited(DATA=100_000_000))
 
     def test_copies_are_counted_before_they_take_memory(self):
         self.fail_with(5, r"box\.stl: 200000 parts on the plate take .*--max-memory", "slice", self.box(), "-o", "a.cli", "--copies",
@@ -194,8 +193,10 @@ class Memory(ProgramTest):
         for name in names:
             for limit in (20, 34, 50):
                 with self.subTest(name=name, limit=limit):
+                    # The numbers of a JSON file are held beside its layers until its end, in memory that grows.
+                    beside = 35 if name == "large.json" else 25
                     self.assertLess(self.peak("info", name, "--max-memory", f"{limit}M", "--threads", 2, codes=(0, 5)),
-                                    1e6 * (limit + 25))
+                                    1e6 * (limit + beside))
 
     def test_placements_of_a_3mf_file_are_counted_as_they_are_held(self):
         mesh = ("<mesh><vertices>" + "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)])
@@ -221,8 +222,20 @@ class Memory(ProgramTest):
                        r"take 2560\d{4} ", "compare", "a.cli", "b.cli", "--max-memory", "64M")
         self.succeed("compare", "a.cli", "b.cli", "--max-memory", "150M")
         self.lattice("mesh.ply", "--cells", 12)
-        self.fail_with(5, r"mesh\.ply: takes more than the 45000000 bytes .* files read before", "verify", "a.cli", "--mesh", "mesh.ply",
+        self.succeed("convert", "a.cli", "a.ilt")
+        self.fail_with(5, r"mesh\.ply: takes more than the 45000000 bytes .* files read before", "verify", "a.ilt", "--mesh", "mesh.ply",
                        "--max-memory", "45M")
+
+    def test_layers_that_are_parsed_twice_share_no_limit_with_a_mesh(self):
+        self.succeed("convert", self.large_layers(), "a.cli")
+        self.lattice("mesh.ply", "--cells", 12)
+        verified = self.run_program("verify", "a.cli", "--mesh", "mesh.ply", "--max-memory", "30M")
+        self.assertEqual(verified.code, 4, verified.err)
+
+    def test_converting_takes_no_memory_for_layers(self):
+        self.succeed("convert", self.large_layers(), "a.cli")
+        for name in "b.cli", "b.slc", "b.ovf":
+            self.succeed("convert", "a.cli", name, "--max-memory", "24M", "--threads", 1)
 
     def test_ranges_give_the_same_bytes(self):
         self.check(self.lattice(), least_ranges=3)
@@ -348,17 +361,14 @@ class Memory(ProgramTest):
 
     def test_a_disk_that_is_full(self):
         self.lattice("shuffled.stl", "--shuffle", 5)
-
-        def small_files():
-            resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 16, 1 << 16))
-        result = self.fail_with(6, r"spill: cannot hold [0-9.]+ MB of temporary data: .*TMPDIR", "slice",
+        result = self.fail_with(6, r"spill: cannot hold [0-9.]+ MB of temporary data: .*TMP", "slice",
                                 "shuffled.stl", "--stats", "-", "--max-memory", "52M", "--threads", 2, env=self.environment,
-                                preexec_fn=small_files)
+                                **limited(FSIZE=1 << 16))
         self.assertIn("--max-memory", result.err)
 
     def test_no_folder_for_temporary_data(self):
         self.lattice("shuffled.stl", "--shuffle", 5)
-        self.fail_with(6, "/nowhere: cannot hold", "slice", "shuffled.stl", "-o", "a.cli", "--max-memory", "52M",
+        self.fail_with(6, r"nowhere: cannot hold", "slice", "shuffled.stl", "-o", "a.cli", "--max-memory", "52M",
                        "--threads", 2, env=dict(os.environ, TMPDIR="/nowhere"))
 
     def test_no_temporary_data_where_triangles_lie_together_that_the_same_planes_cut(self):
@@ -377,11 +387,12 @@ class Memory(ProgramTest):
             self.assertEqual(self.bytes_of("ranges.cli"), self.bytes_of("whole.cli"))
             self.assertEqual(ranges["volume_mm3"], whole["volume_mm3"])
 
+    @needs_posix("signals")
     def test_a_run_that_is_stopped_leaves_nothing(self):
         self.lattice("shuffled.stl", "--shuffle", 5)
         for number, code in [(signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)]:
             for stage in ["read", "slice"]:
-                process = subprocess.Popen([PROGRAM, "slice", "shuffled.stl", "-o", "a.svg", "--layer-height", "0.001",
+                process = subprocess.Popen([*COMMAND, "slice", "shuffled.stl", "-o", "a.svg", "--layer-height", "0.001",
                                             "--max-memory", "80M", "--threads", "2", "--progress", "json"],
                                            cwd=self.folder, env=self.environment, stdout=subprocess.DEVNULL,
                                            stderr=subprocess.PIPE)

@@ -7,7 +7,7 @@ import subprocess
 import unittest
 from pathlib import Path
 
-from program import ON_WINDOWS, ProgramTest, main
+from program import ON_WINDOWS, ProgramTest, main, windows_path, windows_start
 
 NATIVE = os.environ.get("LAMELLA_NATIVE_PROGRAM", "")
 
@@ -49,16 +49,51 @@ class OtherSystem(ProgramTest):
         self.expect_same("scan", "torus.cli", "-o", "scanned.cli", "--pattern", "chessboard")
         self.expect_same("slice", "lattice.stl", "-o", "open.json", "--fill", "--offset", "-0.1", "--layer-height", "1")
 
+    def test_words_of_the_command_line_arrive_unchanged(self):
+        for word in ["", "a b", 'a"b', '"', '""', "a\\", "a b\\", 'a\\"b', 'a b\\\\"', "a\\\\b", "\\\\a\\b c\\", "\ta", "'", "ä 歯", "a*?"]:
+            with self.subTest(word):
+                self.expect_same("make", "box", "--size", word)
+                self.expect_same("make", word, word)
+
     @unittest.skipUnless(ON_WINDOWS, "this is no program for Windows")
     def test_names_in_any_script_and_separators_of_windows(self):
         self.path("Gehäuse").mkdir()
         self.succeed("make", "box", "-o", "Gehäuse\\Zahnrad-ß.stl")
         self.succeed("slice", "Gehäuse/Zahnrad-ß.stl", "-o", "歯車.cli", "--layer-height", "1")
         self.assertEqual(self.listing(), ["Gehäuse", "Gehäuse/Zahnrad-ß.stl", "歯車.cli"])
-        windows = "Z:" + str(self.path("шестерня.svg")).replace("/", "\\")
-        self.succeed("convert", "歯車.cli", windows)
+        self.succeed("convert", "歯車.cli", windows_path(self.path("шестерня.svg")))
         self.assertTrue(self.path("шестерня.svg").is_file())
         self.fail_with(3, "歯車2.cli: there is no such file", "info", "歯車2.cli")
+
+    @unittest.skipUnless(ON_WINDOWS, "this is no program for Windows")
+    def test_long_paths_and_those_with_prefixes(self):
+        deep = "/".join(10 * [60 * "d"])
+        self.path(deep).mkdir(parents=True)
+        self.box()
+        below = windows_path(self.path(deep))
+        self.assertGreater(len(below), 600)
+        for output in [f"{deep}/a.cli", rf"{below}\b.cli", rf"\\?\{below}\c.cli", rf"\\?\unix{self.path('d.cli')}"]:
+            with self.subTest(output):
+                self.succeed("slice", "box.stl", "-o", output)
+                self.succeed("info", output)
+        self.succeed("slice", "box.stl", "-o", f"{deep}/images", "--format", "png", "--layer-height", "5")
+        self.assertEqual(sorted(path.name for path in self.path(deep).iterdir()), ["a.cli", "b.cli", "c.cli", "images"])
+        self.fail_with(3, r"\\\\nowhere\\share\\a\.stl: there is no such file", "info", r"\\nowhere\share\a.stl")
+
+    @unittest.skipUnless(ON_WINDOWS, "this is no program for Windows")
+    def test_files_that_are_read_only_or_in_use_are_named(self):
+        self.box()
+        self.succeed("slice", "box.stl", "-o", "box.cli")
+        before = self.bytes_of("box.cli")
+        used = windows_start(f"open={windows_path(self.path('box.cli'))}")
+        done = subprocess.run([*used, "slice", "box.stl", "-o", "box.cli"], cwd=self.folder, capture_output=True, timeout=240)
+        self.assertEqual(done.returncode, 6)
+        self.assertIn(b"cannot write 'box.cli': another program has the file open; close it there", done.stderr)
+        done = subprocess.run([*used, "info", "box.cli"], cwd=self.folder, capture_output=True, timeout=240)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.path("box.cli").chmod(0o444)
+        self.fail_with(6, "'box.cli'.*write-protected", "slice", "box.stl", "-o", "box.cli")
+        self.assertEqual(self.bytes_of("box.cli"), before)
 
     def test_lists_with_crlf(self):
         self.box("a.stl")

@@ -43,6 +43,24 @@ class Plate(ProgramTest):
         turned = self.stats("box.stl", "--rotate-z", "90")["input"]["bbox"]
         self.assertEqual(stats["parts"][1]["bbox"], turned)
 
+    def test_a_negative_file_is_subtracted_from_all_others(self):
+        self.succeed("make", "box", "--size", "4,4,20", "--translate", "0,0,-5", "-o", "drill.stl")
+        words = ["box.stl", "box.stl", "--translate", "30,0,0", "drill.stl", "--translate", "2,2,0", "--copies", "2",
+                 "--spacing", "26", "--negative"]
+        stats = self.stats(*words)
+        self.assertEqual(len(stats["parts"]), 2)
+        for layer in stats["layers"]:
+            self.assertAlmostEqual(layer["area_mm2"], 2 * (200 - 16))
+        self.succeed("slice", *words, "-o", "whole.cli", "--layer-height", "0.5")
+        for i in [1, 2]:
+            self.succeed("slice", *words, "-o", f"{i}.cli", "--layer-height", "0.5", "--shard", f"{i}/2")
+        self.succeed("merge", "merged.cli", "1.cli", "2.cli")
+        self.assertEqual(self.bytes_of("merged.cli"), self.bytes_of("whole.cli"))
+        self.fail_with(2, "drill.stl: is negative, and there is no other file to subtract it from",
+                       "slice", "drill.stl", "--negative", "-o", "x.cli")
+        self.fail_with(2, "drill.stl: is given as a support and as negative",
+                       "slice", "box.stl", "drill.stl", "--negative", "--support", "-o", "x.cli")
+
     def test_options_before_the_first_file_hold_for_all(self):
         stats = self.stats("--scale", "2", "box.stl", "ball.stl", "--translate", "100,0,0")
         for part, name in zip(stats["parts"], ["box.stl", "ball.stl"]):

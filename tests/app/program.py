@@ -4,6 +4,8 @@ import contextlib
 import json
 import os
 import re
+import resource
+import signal
 import struct
 import subprocess
 import tempfile
@@ -13,8 +15,13 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parent.parent.parent
 PROGRAM = os.environ.get("LAMELLA_PROGRAM", str(SOURCE / "build" / "lamella"))
 # A program for another system runs in an emulator.
-COMMAND = [*os.environ.get("LAMELLA_EMULATOR", "").split(), PROGRAM]
+EMULATOR = os.environ.get("LAMELLA_EMULATOR", "").split()
+COMMAND = [*EMULATOR, PROGRAM]
+# Wine is such an emulator. Its processes are those of this system: limits, permissions, pipes and devices that they inherit
+# are as here.
 ON_WINDOWS = PROGRAM.endswith(".exe")
+# The signals that stop a program. Wine passes the first on as Ctrl-C; Windows knows no other.
+STOPPING_SIGNALS = [signal.SIGINT] if ON_WINDOWS else [signal.SIGINT, signal.SIGTERM]
 # Permissions hold for the program also where root runs the tests: it stays root, which may enter the folder of a private
 # checkout, but lacks the capabilities that let root read and write everything.
 UNPRIVILEGED = {"launcher": ["setpriv", "--bounding-set=-dac_override,-dac_read_search"]} if os.geteuid() == 0 else {}
@@ -26,6 +33,24 @@ OTHER_USER = {"launcher": ["setpriv", "--reuid=65534", "--regid=65534", "--clear
 def needs_posix(what):
     """For tests that need something that only POSIX has."""
     return unittest.skipIf(ON_WINDOWS, f"needs POSIX: {what}")
+
+
+def limited(**limits):
+    """For programs that may have only so much of something, such as DATA=1000."""
+    # Python ignores the signal of files that are too large. The program has to do so itself, but Wine does not.
+    return {"restore_signals": not ON_WINDOWS,
+            "preexec_fn": lambda: [resource.setrlimit(getattr(resource, f"RLIMIT_{name}"), (limit, limit))
+                                   for name, limit in limits.items()]}
+
+
+def windows_path(path):
+    """As programs for Windows know a path of this system."""
+    return "Z:" + str(path).replace("/", "\\")
+
+
+def windows_start(*settings):
+    """The command that starts a program for Windows with settings of tests/app/windows_start.cpp."""
+    return [*EMULATOR, os.environ["LAMELLA_WINDOWS_START"], *settings, "--", PROGRAM]
 
 
 class Result:
@@ -52,7 +77,10 @@ class ProgramTest(unittest.TestCase):
         self.folder = Path(folder.name)
 
     def run_program(self, *arguments, stdin=b"", launcher=(), **keywords):
-        command = [*launcher, *COMMAND] + [str(a) for a in arguments]
+        start = COMMAND
+        if ON_WINDOWS and (folder := keywords.get("env", {}).get("TMPDIR")):
+            start = windows_start(f"TMP={windows_path(folder)}")
+        command = [*launcher, *start] + [str(a) for a in arguments]
         return Result(subprocess.run(command, input=stdin, capture_output=True, timeout=240,
                                      **{"cwd": self.folder, **keywords}))
 
@@ -98,6 +126,12 @@ class ProgramTest(unittest.TestCase):
         except FileNotFoundError:
             pass  # it has ended
         return names
+
+    def make_pipe(self, name):
+        """A pipe with a name that nobody writes to. For Wine such a pipe is empty unless somebody could."""
+        os.mkfifo(self.path(name))
+        if ON_WINDOWS:
+            self.addCleanup(open(self.path(name), "r+b", buffering=0).close)
 
     def path(self, name):
         return self.folder / name

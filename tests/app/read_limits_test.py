@@ -6,10 +6,9 @@ Each is read by a process that may not have the memory, so that it is refused be
 import gzip
 import io
 import json
-import resource
 import zipfile
 
-from program import ProgramTest, binary_stl, box_triangles, main
+from program import ProgramTest, binary_stl, box_triangles, limited, main
 
 MEGABYTE = 1_000_000
 ALLOWED = 150 * MEGABYTE
@@ -61,8 +60,7 @@ def slice_files():
 
 class ReadLimits(ProgramTest):
     def refuse(self, pattern, *arguments, **keywords):
-        allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (ALLOWED, ALLOWED))  # noqa: E731
-        self.fail_with(5, pattern, *arguments, *LIMIT, preexec_fn=allowed, **keywords)
+        self.fail_with(5, pattern, *arguments, *LIMIT, **limited(DATA=ALLOWED), **keywords)
 
     def test_every_command_refuses_every_slice_file_that_takes_too_much(self):
         self.write("one.json", json.dumps({"format": "lamella layers", "version": 1, "parts": [{}], "layers": [
@@ -95,11 +93,7 @@ class ReadLimits(ProgramTest):
     def test_an_archive_is_not_unpacked_to_see_what_it_is(self):
         with zipfile.ZipFile(self.path("zeros.stl"), "w", zipfile.ZIP_DEFLATED) as archive:
             archive.writestr("anything", bytes(UNPACKED))
-
-        def allowed():
-            resource.setrlimit(resource.RLIMIT_AS, (ALLOWED, ALLOWED))
-
-        result = self.run_program("info", "zeros.stl", preexec_fn=allowed)
+        result = self.run_program("info", "zeros.stl", **limited(DATA=ALLOWED))
         self.assertEqual(result.code, 3, result.err)
 
     def test_too_many_triangles(self):
@@ -117,11 +111,10 @@ class ReadLimits(ProgramTest):
         self.fail_with(2, "--max-triangles.*there must be one at least", "info", self.box(), "--max-triangles", 0)
 
     def test_standard_input_that_is_too_much_waits_in_a_file(self):
-        allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (ALLOWED, ALLOWED))  # noqa: E731
         blanks = b" " * UNPACKED
         for content, found in [(b"$$HEADERSTART\n" + blanks, "must end with \\$\\$HEADEREND"), (b"solid\n" + blanks, "facet")]:
             with self.subTest(found=found):
-                self.fail_with(3, f"standard input.*{found}", "info", "-", *LIMIT, stdin=content, preexec_fn=allowed)
+                self.fail_with(3, f"standard input.*{found}", "info", "-", *LIMIT, stdin=content, **limited(DATA=ALLOWED))
 
     def test_limits_that_are_kept(self):
         self.succeed("slice", self.box(), "-o", "box.cli")

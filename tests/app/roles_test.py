@@ -2,10 +2,9 @@
 
 import io
 import os
-import resource
 import zipfile
 
-from program import ProgramTest, main, needs_posix
+from program import ProgramTest, limited, main
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 RELATIONSHIPS = (
@@ -184,7 +183,6 @@ class Roles(ProgramTest):
         self.assertEqual(layers["above"], layers["none"])
         self.assertGreater(len(layers["inside"]), 2 * len(layers["none"]))
 
-    @needs_posix("limits of processes")
     def test_instances_that_double_stay_within_the_memory_that_is_allowed(self):
         if "LAMELLA_SANITIZED" in os.environ:
             self.skipTest("what a sanitizer takes is not the program's")
@@ -194,28 +192,25 @@ class Roles(ProgramTest):
         self.write("many.3mf", package(resources, '<item objectid="17"/>'))
         self.succeed("slice", self.box(), "-o", "box.cli")
         limit = 300_000_000
-        allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))  # noqa: E731
         for memory, found in ("60M", "65536 meshes"), ("90M", "786432 triangles"):
             for arguments in ["info", "many.3mf"], ["view", "many.3mf", "-o", "many.html"]:
                 with self.subTest(memory=memory, arguments=arguments):
                     self.fail_with(5, f"many.3mf: .*{found}", *arguments, "--max-memory", memory, "--threads", 1,
-                                   preexec_fn=allowed)
+                                   **limited(DATA=limit))
         self.fail_with(5, "65536 meshes", "verify", "box.cli", "--mesh", "many.3mf", "--max-memory", "60M", "--threads", 1,
-                       preexec_fn=allowed)
+                       **limited(DATA=limit))
 
 
-    @needs_posix("limits of processes")
     def test_items_of_the_build_are_counted_before_they_take_memory(self):
         if "LAMELLA_SANITIZED" in os.environ:
             self.skipTest("what a sanitizer takes is not the program's")
         self.write("items.3mf", package(f'<object id="1">{mesh(BODY)}</object>',
                                         '<item objectid="1" transform="1 0 0 0 1 0 0 0 1 1 2 0"/>' * 300_000))
         limit = 150_000_000
-        allowed = lambda: resource.setrlimit(resource.RLIMIT_DATA, (limit, limit))  # noqa: E731
         for arguments in ["info", "items.3mf"], ["slice", "items.3mf", "-o", "a.cli"], ["view", "items.3mf", "-o", "a.html"]:
             with self.subTest(arguments=arguments):
                 self.fail_with(5, "items.3mf: takes more than the 100000000 bytes of --max-memory", *arguments, "--max-memory", "100M",
-                               "--threads", 1, preexec_fn=allowed)
+                               "--threads", 1, **limited(DATA=limit))
 
 
 if __name__ == "__main__":

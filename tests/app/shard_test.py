@@ -3,10 +3,11 @@
 import gzip
 import json
 import os
+import shlex
 import shutil
 import subprocess
 
-from program import PROGRAM, SOURCE, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main, needs_posix, open_box
+from program import COMMAND, SOURCE, UNPRIVILEGED, ProgramTest, binary_stl, box_triangles, main, needs_posix, open_box
 
 CLUSTER = SOURCE / "examples" / "cluster"
 
@@ -162,7 +163,6 @@ class Shard(ProgramTest):
         self.fail_with(6, "cannot write 'c.cli.shard': it is a folder", *shard, "c.cli")
         self.fail_with(6, r"cannot write '.*\.cli\.shard': the name is too long", *shard, "d" * 247 + ".cli")
 
-    @needs_posix("permissions")
     def test_merge_reports_what_is_missing_or_cannot_be_read(self):
         self.lattice()
         a, b = self.slice_all(2, "cli")
@@ -365,14 +365,18 @@ class Shard(ProgramTest):
         self.fail_with(2, "--resume goes with --output", "slice", "part.stl", "--stats", "a.json", "--shard", "1/2", "--resume")
         self.fail_with(2, "from a file", "slice", "-", "-o", "a.cli", "--shard", "1/2")
 
-    @needs_posix("symbolic links")
+    def folder_of_the_program(self):
+        """A folder in which scripts find the program."""
+        folder = self.path("bin")
+        folder.mkdir()
+        self.write("bin/lamella", f"#!/bin/sh\nexec {shlex.join(COMMAND)} \"$@\"\n").chmod(0o755)
+        return folder
+
     def test_the_array_script_slices_and_merges(self):
         """The script of the Slurm example, with the variables that Slurm sets."""
         self.lattice()
         self.succeed("slice", "part.stl", "-o", "whole.cli")
-        bin_ = self.path("bin")
-        bin_.mkdir()
-        (bin_ / "lamella").symlink_to(PROGRAM)
+        bin_ = self.folder_of_the_program()
         environment = dict(os.environ, PATH=f"{bin_}:{os.environ['PATH']}", PART="part.stl", SHARDS="3",
                            SLURM_CPUS_PER_TASK="2", SLURM_MEM_PER_NODE="2048")
         for index in [3, 1, 2, 2]:
@@ -382,7 +386,6 @@ class Shard(ProgramTest):
                        env=environment)
         self.assertEqual(self.bytes_of("part.cli"), self.bytes_of("whole.cli"))
 
-    @needs_posix("symbolic links")
     def test_the_indexed_job_slices_and_merges(self):
         """The commands of the Kubernetes example, with the variable that it sets."""
         self.lattice()
@@ -395,9 +398,7 @@ class Shard(ProgramTest):
         jobs = [job for job in yaml.safe_load_all(manifest)]
         slice_job, merge_job = (job["spec"] for job in jobs)
         self.assertEqual(slice_job["completionMode"], "Indexed")
-        bin_ = self.path("bin")
-        bin_.mkdir()
-        (bin_ / "lamella").symlink_to(PROGRAM)
+        bin_ = self.folder_of_the_program()
         for spec, indices in [(slice_job, range(slice_job["completions"])), (merge_job, [0])]:
             container = spec["template"]["spec"]["containers"][0]
             for index in indices:

@@ -7,16 +7,26 @@
 #include "fixtures/rounds.hpp"
 #include "parts/shapes.hpp"
 #include "pipeline/feed.hpp"
+#include "read/stl_binary.hpp"
 #include "temporary_folder.hpp"
 #include "thread_processes.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <ios>
+#include <limits>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella::feed_cases {
@@ -106,6 +116,27 @@ TEST_F(FeedOfFiles, GivesEachRangeTheTrianglesOfItsLayers) {
         }
 }
 
+TEST_F(FeedOfFiles, HoldsNegativeFilesInRangesToo) {
+    const Plan planes = plan();
+    job_.inputs[1] = {.path = folder_.file("box.stl"), .placement = translation(46, 26, 3), .negative = true};
+    const std::vector<std::uint64_t> expected = test::hashes(slice(load_plate(job_.inputs), planes));
+    EXPECT_NE(expected, test::hashes(slice(load_plate(std::span(job_.inputs).first(1)), planes)));
+    job_.max_memory = little_memory(1);
+    Feed feed(job_, engines().front(), alone(), {});
+    EXPECT_TRUE(feed.in_ranges());
+    (void)feed.count(planes, {});
+    const std::vector<PlaneRange> division{{0, static_cast<std::uint32_t>(planes.layers.size())}};
+    const std::vector<PlaneRange> ranges = feed.bring(planes, division, {});
+    if constexpr (!test::slowed) { // else the mesh is small
+        EXPECT_GT(ranges.size(), 1U);
+    }
+    LayerStack layers;
+    for (std::size_t r = 0; r < ranges.size(); ++r)
+        for (const Layer& layer : slice(feed.take(r, {}), part_of(planes, ranges[r])))
+            layers.push_back(layer);
+    EXPECT_EQ(test::hashes(layers), expected);
+}
+
 TEST_F(FeedOfFiles, RefusesStandardInputForSeveralProcesses) {
     job_.inputs = {{.path = "-"}};
     const Error error = test::common_failure(
@@ -120,6 +151,102 @@ TEST_F(FeedOfFiles, NamesTheOptionThatNeedsTheWholeMesh) {
     test::expect_error(ErrorKind::limit,
                        {"torus.stl", "`max_memory`", "`inspect`, which needs the whole mesh"},
                        [&] { const Feed feed(job_, engines().front(), alone(), {.threads = 1}); });
+}
+
+class FeedOfOneFile : public testing::Test {
+  protected:
+    FeedOfOneFile() {
+        write_stl(path_, body_);
+        job_.inputs = {{.path = path_, .placement = rotation('x', 30)}};
+        job_.layering.cut = UniformLayers{.layer_height = 0.7};
+        job_.layer_statistics = true;
+    }
+
+    /// Changes the corner x of a triangle in the file.
+    void set_corner(std::size_t triangle, float x) const {
+        std::fstream file(path_, std::ios::binary | std::ios::in | std::ios::out);
+        file.seekp(static_cast<std::streamoff>(stl_header_bytes + triangle * stl_record_bytes + 12));
+        file.write(reinterpret_cast<const char*>(&x), sizeof x);
+    }
+
+    /// Returns the error of a job whose file is changed right after the first pass.
+    template <class Change>
+    [[nodiscard]] std::string error_after(const Change& change) const {
+        bool changed = false;
+        const Execution execution{.threads = 2, .progress = [&](const Progress& progress) {
+                                      if (progress.stage == Stage::read && progress.done == progress.total &&
+                                          !std::exchange(changed, true))
+                                          change();
+                                  }};
+        return test::error_of(ErrorKind::input, [&] { (void)slice_file(job_, execution); });
+    }
+
+    const TriangleSoup body_ = make_torus(20, 8, test::slowed ? 100 : 300, 200);
+    TemporaryFolder folder_;
+    const std::string path_ = folder_.file("torus.stl");
+    FileJob job_;
+};
+
+TEST_F(FeedOfOneFile, StreamsItsTrianglesWithTheFiguresOfTheMesh) {
+    const Plate whole = load_plate(job_.inputs);
+    const Plan plan = plan_uniform(whole.box.min.z, whole.box.max.z, {.layer_height = 0.7});
+    const LayerStack expected = slice(whole, plan);
+    for (const unsigned threads : {1U, 2U, 3U, 7U, 16U}) {
+        const Execution execution{.threads = threads};
+        Feed feed(job_, engines().front(), alone(), execution);
+        EXPECT_EQ(feed.meshes(), nullptr);
+        EXPECT_TRUE(feed.at_once());
+        EXPECT_FALSE(feed.in_ranges());
+        EXPECT_EQ(feed.plate().box, whole.box);
+        EXPECT_EQ(feed.triangles(0), body_.size());
+        const std::vector<PlaneRange> all{{0, static_cast<std::uint32_t>(plan.layers.size())}};
+        EXPECT_EQ(feed.bring(plan, all, execution), all);
+        const std::optional<TriangleStream> stream = feed.stream(plan, execution);
+        ASSERT_TRUE(stream);
+        LayerStack layers;
+        slice_to(appending_to(layers), *stream, plan, {.execution = execution});
+        EXPECT_EQ(test::hashes(layers), test::hashes(expected));
+        EXPECT_EQ(feed.volume_mm3(), volume(whole.shapes.front().mesh)) << "bit for bit";
+    }
+}
+
+TEST_F(FeedOfOneFile, ReadsMeshesThatAJobNeedsWholeOrOftenToMemory) {
+    const std::vector<std::function<void(FileJob&)>> needs{
+        [](FileJob& job) { job.inspect = true; },
+        [](FileJob& job) { job.strict = true; },
+        [](FileJob& job) { job.repair.orient = true; },
+        [](FileJob& job) { job.inputs.front().copies = 2; },
+        [](FileJob& job) { job.inputs.push_back(job.inputs.front()); },
+        [](FileJob& job) { job.scan.emplace(); },
+        [](FileJob& job) {
+            job.shard = {1, 2};
+        },
+    };
+    for (std::size_t i = 0; i < needs.size(); ++i) {
+        FileJob job = job_;
+        needs[i](job);
+        Feed feed(job, engines().front(), alone(), {});
+        EXPECT_NE(feed.meshes(), nullptr) << i;
+    }
+    set_corner(70, std::numeric_limits<float>::quiet_NaN());
+    Feed feed(job_, engines().front(), alone(), {});
+    ASSERT_NE(feed.meshes(), nullptr);
+    EXPECT_EQ(feed.triangles(0), body_.size() - 1);
+    EXPECT_EQ(feed.plate().files.front().warnings.size(), 1U);
+    EXPECT_EQ(feed.plate().box, load_plate(job_.inputs).box);
+}
+
+TEST_F(FeedOfOneFile, FailsIfTheFileChangesBetweenThePasses) {
+    const std::string changed = path_ + ": was changed while it was read";
+    const std::size_t last = body_.size() - 1;
+    EXPECT_EQ(error_after([&] { set_corner(0, 3); }), changed);
+    EXPECT_EQ(error_after([&] { set_corner(last, 3); }), changed);
+    EXPECT_EQ(error_after([&] { set_corner(last, std::numeric_limits<float>::infinity()); }), changed);
+    set_corner(last, 3);
+    const std::size_t size = stl_header_bytes + body_.size() * stl_record_bytes;
+    EXPECT_EQ(error_after([&] { std::filesystem::resize_file(path_, size - 70'000); }),
+              fmt::format("{}: was cut off while it was read: it had {} bytes, and ends after {} now", path_,
+                          size, size - 70'000));
 }
 
 } // namespace

@@ -39,18 +39,16 @@ TEST(JobMemory, IsWhatTheJobAsksForElseWhatIsUsual) {
 
 TEST(JobMemory, GrantsPointsInFlightAQuarterOfTheLimitAndNeverFewerForMore) {
     constexpr std::uint64_t bytes_of_a_point_and_its_text = 56;
-    for (const unsigned threads : {1U, 2U, 64U}) {
-        std::uint64_t before = 1;
-        for_limits([&](std::uint64_t limit) {
-            const std::uint64_t points = limited_to(limit).points_in_flight(threads);
-            EXPECT_GE(points, before) << limit;
-            EXPECT_TRUE(points == 1 || points * bytes_of_a_point_and_its_text <= limit / 4) << limit;
-            before = points;
-        });
-        // Where there is more than enough, as many as slicing takes by itself: 56 MiB of points a thread, and
-        // 112 at least.
-        EXPECT_EQ(before, std::max(threads, 2U) * (56 * mib / sizeof(Point2)));
-    }
+    std::uint64_t before = 1;
+    for_limits([&](std::uint64_t limit) {
+        const std::uint64_t points = limited_to(limit).points_in_flight();
+        EXPECT_GE(points, before) << limit;
+        EXPECT_TRUE(points == 1 || points * bytes_of_a_point_and_its_text <= limit / 4) << limit;
+        EXPECT_EQ(limited_to(limit).points_in_flight(1'000'000'000), points); // also for large meshes
+        before = points;
+    });
+    // Where there is more than enough, as many as slicing takes by itself.
+    EXPECT_EQ(before, 112 * mib / sizeof(Point2));
 }
 
 TEST(JobMemory, KeepsMessagesAndOutputOfSeveralProcessesWithinAQuarter) {

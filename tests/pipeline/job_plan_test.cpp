@@ -27,7 +27,7 @@ Plate plate_of(std::vector<TriangleSoup> meshes) {
         file.objects.push_back({"", std::move(mesh)});
         file.instances.emplace_back();
     }
-    return build_plate(inputs, std::move(files), {});
+    return load_plate(inputs, std::move(files), {});
 }
 
 /// 20 layers of a sphere, which has different numbers of triangles on each.

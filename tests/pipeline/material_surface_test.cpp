@@ -29,7 +29,7 @@ Plate plate_with(const TriangleSoup& negative, const Transform& where, double he
                       {.object = 2, .placement = translation(40, 0, 0), .body = 1}};
     std::vector<MeshFile> files;
     files.push_back(std::move(file));
-    return build_plate(std::vector<PlateInput>{{.path = "a.3mf"}}, std::move(files), {});
+    return load_plate(std::vector<PlateInput>{{.path = "a.3mf"}}, std::move(files), {});
 }
 
 std::vector<double> tops(const Plate& plate) {

@@ -27,7 +27,7 @@ MeshFile boxes(std::vector<MeshInstance> instances = {{}}) {
 }
 
 Plate plate_of(const std::vector<PlateInput>& inputs, std::vector<MeshFile> files) {
-    return build_plate(inputs, std::move(files), {});
+    return load_plate(inputs, std::move(files), {});
 }
 
 Plate plate_of(const PlateInput& input, MeshFile file = boxes()) {
@@ -150,6 +150,33 @@ TEST(PlateBuilder, NegativeVolumesAreSubtractedFromTheirOwnObjectAndAreNoParts) 
         EXPECT_EQ(copies.negatives[i].dx, copies.parts[2 * i].dx);
         EXPECT_EQ(copies.negatives[i].dy, copies.parts[2 * i].dy);
     }
+}
+
+TEST(PlateBuilder, NegativeFilesAreSubtractedFromAllPartsOfOtherFiles) {
+    std::vector<PlateInput> inputs{{.path = "a.stl"},
+                                   {.path = "hole.stl", .copies = 2, .spacing_mm = 1, .negative = true},
+                                   {.path = "b.stl"}};
+    std::vector<MeshFile> files(3);
+    for (MeshFile& file : files) {
+        file.objects.push_back({"", make_box(2, 2, 2)});
+        file.instances.emplace_back();
+    }
+    const Plate plate = load_plate(inputs, files, {});
+    ASSERT_EQ(plate.parts.size(), 2U);
+    EXPECT_EQ(plate.parts[1].label, "b");
+    ASSERT_EQ(plate.negatives.size(), 2U);
+    for (const PlateNegative& negative : plate.negatives)
+        EXPECT_EQ(negative.parts, (std::vector<std::size_t>{0, 1}));
+    EXPECT_EQ(plate.negatives[1].box.min.x - plate.negatives[0].box.min.x, 3) << "copies have their distance";
+    EXPECT_EQ(plate.negatives[0].shape, plate.negatives[1].shape);
+    files[1].instances.front().negative = true;
+    test::error_of(ErrorKind::usage, [&] { (void)load_plate(inputs, files, {}); });
+    files[1].instances.front().negative = false;
+    inputs[1].support = true;
+    test::error_of(ErrorKind::usage, [&] { (void)load_plate(inputs, files, {}); });
+    test::error_of(ErrorKind::usage, [&] {
+        (void)load_plate(std::vector<PlateInput>{{.path = "hole.stl", .negative = true}}, {files[0]}, {});
+    });
 }
 
 TEST(PlateBuilder, KeepsEqualMeshesOfTwoFilesApart) {

@@ -27,7 +27,7 @@ TEST(PlateNames, NameFilesAndOnlyWhereNeededTheirParts) {
     files.push_back(file_of(1));
     files.push_back(file_of(2));
     EXPECT_EQ(name_of(inputs), "one.stl and 1 more file");
-    const Plate plate = build_plate(inputs, std::move(files), {});
+    const Plate plate = load_plate(inputs, std::move(files), {});
     EXPECT_EQ(name_of(plate), "one.stl and 1 more file");
     ASSERT_EQ(plate.parts.size(), 3U);
     EXPECT_EQ(name_of_part(plate, 0), "one.stl");
@@ -43,7 +43,7 @@ TEST(PlateNames, OfCopiesOfOneShapeAreThatOfTheFile) {
     std::vector<PlateInput> inputs{{.path = "one.stl", .copies = 2}};
     std::vector<MeshFile> files;
     files.push_back(file_of(1));
-    const Plate plate = build_plate(inputs, std::move(files), {});
+    const Plate plate = load_plate(inputs, std::move(files), {});
     EXPECT_EQ(name_of(plate), "one.stl");
     EXPECT_EQ(name_of_shape(plate, 0), "one.stl");
     EXPECT_EQ(name_of_part(plate, 1), "one.stl, part \"" + plate.parts[1].label + "\"");

@@ -32,7 +32,7 @@ Plate plate_of(std::vector<std::pair<TriangleSoup, std::uint64_t>> shapes) {
         file.objects.push_back({"", mesh});
         file.instances.emplace_back();
     }
-    return build_plate(inputs, std::move(files), {});
+    return load_plate(inputs, std::move(files), {});
 }
 
 Plan plan_of(const Plate& plate, double layer_height) {
@@ -104,7 +104,7 @@ TEST(PlateSlicing, SlicesAShapeOnlyWhereItStands) {
         files[i].objects.push_back({"", i == 3 ? make_box(1, 1, 3) : make_box(1, 1, 1)});
         files[i].instances.emplace_back();
     }
-    const Plate plate = build_plate(inputs, std::move(files), {});
+    const Plate plate = load_plate(inputs, std::move(files), {});
     for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below}) {
         Plan plan = plan_uniform(-1, 4, {.layer_height = 0.25}, SliceAt::bottom);
         plan.rule = rule;
@@ -263,6 +263,52 @@ TEST(PlateSlicing, HandsAFewPlanesAtATimeToASinkThatMakesMuchOfThem) {
     }
     EXPECT_EQ(told.front().done, 0U);
     EXPECT_EQ(told.back().done, plan.layers.size());
+}
+
+TEST(PlateSlicing, PassesOnTheLayersOfEachBodyForAnyThreads) {
+    const Plate plate = plate_of({{make_torus(6, 2, 48, 24), 2}, {make_box(1, 2, 3), 1}});
+    const Plan plan = plan_of(plate, 0.3);
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        Delivered delivered;
+        const PlateSink sink{.prepare = [&](std::span<const Layer> bodies) -> Commit {
+            return [&delivered, kept = std::vector<Layer>(bodies.begin(), bodies.end())] {
+                delivered.written.push_back(kept);
+            };
+        }};
+        delivered.report = slice_to(sink, plate, plan, {.execution = {.threads = threads}});
+        expect_layers(delivered, plate, plan);
+    }
+}
+
+TEST(PlateSlicing, FillsEachBodyBeforeNegativeVolumesAreSubtracted) {
+    const auto square = [](double x, double side) {
+        return std::vector<Point2>{{x, 0}, {x + side, 0}, {x + side, side}, {x, side}};
+    };
+    const auto layer_of = [](const std::vector<std::vector<Point2>>& rings) {
+        LayerBuilder builder;
+        for (const std::vector<Point2>& ring : rings)
+            builder.add_contour(ring, true);
+        return builder.finish(0, 0.5, 0, 1);
+    };
+    const std::vector<Layer> bodies{layer_of({square(0, 4), square(2, 4)}), layer_of({square(20, 4)}),
+                                    layer_of({square(1, 2), square(2, 2)})};
+    const std::vector<PlateNegative> negatives{{.shape = 0, .dx = 0, .dy = 0, .box = {}, .parts = {0}}};
+    const PlateMaterial made =
+        material_of(bodies, negatives, {.fill = FillRule::nonzero, .min_area_mm2 = 20});
+    ASSERT_EQ(made.bodies.size(), 3U);
+    EXPECT_EQ(made.bodies[0].rings, 1U);
+    EXPECT_EQ(made.bodies[2].rings, 1U);
+    ASSERT_EQ(made.parts.size(), 2U);
+    EXPECT_TRUE(made.parts[0].points.empty()) << "6 x 4 mm less 3 x 2 mm are below 20 mm2";
+    EXPECT_TRUE(made.parts[1].points.empty());
+    EXPECT_EQ(made.changes.changed_layers, 1U);
+    EXPECT_EQ(made.changes.groups_united, 2U);
+    const PlateMaterial plain = material_of(bodies, {});
+    ASSERT_EQ(plain.parts.size(), bodies.size());
+    EXPECT_TRUE(plain.bodies.empty());
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        EXPECT_TRUE(same_contours(plain.parts[i], bodies[i]));
+    EXPECT_EQ(plain.changes.changed_layers, 0U);
 }
 
 TEST(PlateSlicing, RefusesAPlanThatDoesNotAscendEvenBesideAllParts) {

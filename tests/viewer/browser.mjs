@@ -190,13 +190,3 @@ export async function pixelsNear(canvas, colour, within = 40) {
     [colour, within],
   );
 }
-
-/** A colour of the style sheet as numbers. */
-export async function colourOf(page, name) {
-  return page.evaluate((name) => {
-    const ctx = document.createElement('canvas').getContext('2d');
-    ctx.fillStyle = getComputedStyle(document.documentElement).getPropertyValue(name);
-    ctx.fillRect(0, 0, 1, 1);
-    return [...ctx.getImageData(0, 0, 1, 1).data.slice(0, 3)];
-  }, name);
-}

@@ -4,7 +4,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { colourOf, file, lamella, open, openDrawing, redrawn, settled, shown, startBrowser, stopBrowser } from './browser.mjs';
+import { file, lamella, open, openDrawing, redrawn, settled, shown, startBrowser, stopBrowser } from './browser.mjs';
+import { colourOf, compare, scaleOf } from './drawing.mjs';
 
 const height = 0.5; // mm, of a layer
 const pitches = { rook: 0.02, calibration: 0.1 }; // mm, of the raster's pixels: finer than those of the screen
@@ -20,55 +21,6 @@ before(async () => {
   await startBrowser();
 });
 after(stopBrowser);
-
-/** How many pixels an mm is long, by the scale in the corner. */
-const scaleOf = (page) =>
-  page.locator('.scale').evaluate((node) => node.lastChild.getBoundingClientRect().width / parseFloat(node.textContent));
-
-/**
- * Compares which pixels of the drawing have a colour closer to the material's than to the paper's and its grid's with a picture of the raster, whose middle is
- * so many pixels below that of the drawing.
- * @returns {Promise<{filled: number, different: number, wrong: number}>} pixels with material; those where the two are
- *     not of one mind; and such of these as no edge passes nearby, which nothing excuses
- */
-async function compare(page, picture, pitch, scale, below) {
-  const colours = await Promise.all(['--fill-0', '--paper', '--grid', '--grid-strong'].map((name) => colourOf(page, name)));
-  const png = readFileSync(picture).toString('base64');
-  return page.locator('canvas[data-layer]').evaluate(
-    async (canvas, [colours, png, scale, pitch, below]) => {
-      const pixels = (source) => {
-        const ctx = new OffscreenCanvas(source.width, source.height).getContext('2d', { willReadFrequently: true });
-        ctx.drawImage(source, 0, 0);
-        return ctx.getImageData(0, 0, source.width, source.height).data;
-      };
-      const image = new Image();
-      image.src = `data:image/png;base64,${png}`;
-      await image.decode();
-      const raster = pixels(image);
-      const material = (x, y) => {
-        const column = Math.floor(x / scale / pitch + image.width / 2);
-        const row = Math.floor(y / scale / pitch + image.height / 2);
-        return column >= 0 && row >= 0 && column < image.width && row < image.height && raster[4 * (row * image.width + column)] > 127;
-      };
-      const drawing = pixels(canvas);
-      const found = { filled: 0, different: 0, wrong: 0 };
-      for (let row = 0; row < canvas.height; ++row)
-        for (let column = 0; column < canvas.width; ++column) {
-          const at = 4 * (row * canvas.width + column);
-          const [x, y] = [column + 0.5 - canvas.width / 2, row + 0.5 - below - canvas.height / 2];
-          const [fill, ...others] = colours.map((colour) => [0, 1, 2].reduce((sum, k) => sum + Math.abs(drawing[at + k] - colour[k]), 0));
-          const filled = fill < Math.min(...others);
-          found.filled += filled;
-          if (filled === material(x, y)) continue;
-          ++found.different;
-          const around = [-1, 0, 1].flatMap((dx) => [-1, 0, 1].map((dy) => material(x + dx, y + dy)));
-          found.wrong += around.every((each) => each === around[0]);
-        }
-      return found;
-    },
-    [colours, png, scale, pitch, below],
-  );
-}
 
 for (const colorScheme of ['light', 'dark'])
   test(`layers look as the raster sees them, ${colorScheme}`, async () => {

@@ -3,7 +3,8 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
-import { colourOf, file, lamella, open, openOnPhone, openWithoutWebGL, pixelsNear, redrawn, settled, shown, startBrowser, stopBrowser, tasks, until } from './browser.mjs';
+import { file, lamella, open, openOnPhone, openWithoutWebGL, pixelsNear, redrawn, settled, shown, startBrowser, stopBrowser, tasks, until } from './browser.mjs';
+import { colourOf } from './drawing.mjs';
 
 const scanOptions = ['--layer-height', '2.5', '--scan', '--hatch-distance', '0.5', '--skin-layers', '1', '--contours', '2'];
 

@@ -6,10 +6,13 @@
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
+#include "lamella/read/layer_file.hpp"
 #include "lamella/slicing/plan.hpp"
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -89,11 +92,42 @@ struct LayerDoubts {
     [[nodiscard]] std::vector<std::string> scan_losses(std::uint64_t hatches = 0) const;
 };
 
-/// Finds them in the layers of parts on the same planes; does not set the parts. Parallel over planes.
-/// `max_memory`: see layer_limits.
+/// Finds them in layers that pass plane by plane; does not set the parts.
+class LayerDoubtSearch {
+  public:
+    /// For this number of planes. `max_memory`: see layer_limits.
+    LayerDoubtSearch(std::size_t planes, const Rounding& rounding, InversionSearch search,
+                     const Execution& execution = {}, std::uint64_t max_memory = 0);
+
+    /// Searches a layer of the plane at this position. May be called from any threads, but for one plane from
+    /// one thread at a time. Throws the errors of inverted_rings.
+    void look_at(std::size_t position, const Layer& layer);
+    /// Searches the parts of a plane of a file that are not scan vectors.
+    void look_at(std::size_t position, const LayerFile& file, const ScanVectors& plane);
+    [[nodiscard]] LayerDoubts doubts() const;
+
+  private:
+    struct Plane {
+        double z = 0;
+        double thickness = 0;
+        OpenGaps gaps = {};
+        InvertedRings inverted = {};
+    };
+    std::vector<Plane> planes_;
+    Rounding rounding_;
+    InversionSearch search_;
+    LayerLimits limits_;
+};
+
+/// Finds them in the layers of parts on the same planes. Parallel over planes. `max_memory`: see
+/// layer_limits.
 [[nodiscard]] LayerDoubts layer_doubts(std::span<const LayerStack> parts, const Rounding& rounding,
                                        InversionSearch search, const Execution& execution = {},
                                        std::uint64_t max_memory = 0);
+
+/// Finds them in the parts of a file that are not scan vectors. The layers need not be in memory.
+[[nodiscard]] LayerDoubts layer_doubts(const LayerFile& file, InversionSearch search,
+                                       const Execution& execution = {}, std::uint64_t max_memory = 0);
 
 } // namespace lamella
 LAMELLA_API_END

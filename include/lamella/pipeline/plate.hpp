@@ -2,16 +2,21 @@
 
 // The build plate: mesh files and the positions of their parts.
 
+#include "lamella/contour/layer.hpp"
+#include "lamella/core/commit.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/transform.hpp"
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/mesh_file.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,6 +41,8 @@ struct PlateInput {
     std::string label = {};
     /// Treats all parts of the file as supports, whatever the file specifies.
     bool support = false;
+    /// Subtracts all bodies of the file from the parts of all other files, as negative volumes.
+    bool negative = false;
 };
 
 /// A mesh that is sliced once for all parts that share it. The mesh is already placed, except for the offsets
@@ -55,7 +62,8 @@ struct PlatePart {
     bool support = false; ///< scanned with the parameters for supports; otherwise treated as a part
 };
 
-/// A volume that is subtracted from parts, because a file marks it as negative in their object.
+/// A volume that is subtracted from parts, because a file marks it as negative in their object, or because
+/// all of its file is negative.
 struct PlateNegative {
     std::size_t shape = 0;
     double dx = 0; ///< mm; added to the layers of the shape
@@ -89,7 +97,13 @@ struct Plate {
 [[nodiscard]] Plate load_plate(std::span<const PlateInput> inputs, const MeshReadOptions& options = {},
                                const Execution& execution = {});
 
-/// Makes the plate of one input whose file has already been read.
+/// Makes the plate of files that have already been read, one for each input. If parts take more than
+/// `max_memory` bytes besides their meshes, throws Error{limit}; 0 means that only the number of parts is
+/// limited.
+[[nodiscard]] Plate load_plate(std::span<const PlateInput> inputs, std::vector<MeshFile> files,
+                               const Execution& execution = {}, std::uint64_t max_memory = 0);
+
+/// The same for one input.
 [[nodiscard]] Plate load_plate(const PlateInput& input, MeshFile file, const Execution& execution = {});
 
 /// Returns all parts as one mesh (see `joined` of meshes), without negative volumes.
@@ -106,6 +120,34 @@ void check_memory(const Plate& plate, std::uint64_t bytes_per_triangle, std::uin
 [[nodiscard]] LayerStack slice(const Plate& plate, const Plan& plan, const SliceOptions& options = {});
 SliceReport slice_to(const LayerSink& sink, const Plate& plate, const Plan& plan,
                      const SliceOptions& options = {});
+
+/// Like LayerSink, but for all layers of one plane: one for each of Plate::parts, then one for each of
+/// Plate::negatives.
+struct PlateSink {
+    std::function<Commit(std::span<const Layer> bodies)> prepare;
+};
+
+/// Slices all parts together, and passes on the layers of each body. Sets only the times and the
+/// MatchingCounts of the report.
+SliceReport slice_to(const PlateSink& sink, const Plate& plate, const Plan& plan,
+                     const SliceOptions& options = {});
+
+/// The layers of all parts on one plane, made of those of the bodies.
+struct PlateMaterial {
+    std::vector<Layer> parts;
+    /// With negative volumes: the layers of all bodies after `LayerSteps::fill`.
+    std::vector<Layer> bodies;
+    LayerChanges changes; ///< by the steps; all changes on the plane count as one changed layer
+};
+
+/// Fills each body where it has material, subtracts negative volumes, and applies the other steps to each
+/// part. `bodies` are the argument of PlateSink::prepare, `negatives` are those of the plate. Layers that
+/// neither steps nor negative volumes change are returned bit for bit. `names` are the names of the parts for
+/// error messages, or empty. Throws the errors of the steps.
+[[nodiscard]] PlateMaterial material_of(std::span<const Layer> bodies,
+                                        std::span<const PlateNegative> negatives,
+                                        const LayerSteps& steps = {}, const LayerLimits& limits = {},
+                                        std::span<const std::string> names = {});
 
 /// Throws Error{usage} that names the first part that is not inside the box from (0, 0, 0) to `size`.
 void check_build_volume(const Plate& plate, const Point3& size);

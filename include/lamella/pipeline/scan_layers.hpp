@@ -6,6 +6,7 @@
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/pipeline/slice_file.hpp"
+#include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/write/layer_writer.hpp"
 
@@ -35,6 +36,12 @@ namespace lamella {
                                      const LayerFileInfo& info, const ScanStrategy& strategy,
                                      const LayerWriteOptions& options = {}, const Execution& execution = {},
                                      std::uint64_t max_memory = 0, const std::string& name = {});
+
+/// Does so for all layers of a file, which need not be in memory.
+[[nodiscard]] FileResult scan_layers(const std::string& path, const LayerFormat& format,
+                                     const LayerFile& file, const LayerFileInfo& info,
+                                     const ScanStrategy& strategy, const LayerWriteOptions& options = {},
+                                     const Execution& execution = {}, std::uint64_t max_memory = 0);
 
 } // namespace lamella
 LAMELLA_API_END

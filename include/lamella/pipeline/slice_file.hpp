@@ -198,9 +198,12 @@ struct FileResult {
     double volume_mm3 = 0;
 
     /// Wall times. `read` includes finding the bounding box; `weld` includes inspection and repair of meshes,
-    /// and welding for engines that need it. `write` is the part of writing that must be done in order.
-    /// `slice` includes layer steps, scan vectors, and the part of writing that is done in parallel;
-    /// `polygon` and `scan` are the times of layer steps and of scan vectors, summed over threads.
+    /// and welding for engines that need it. `slice` includes all work on layers up to their bytes in the
+    /// file. Of it, `polygon`, `scan`, `format` and `write` are the times of layer steps, of scan vectors, of
+    /// formatting with compression, and of writing bytes, each summed over threads; `order` is the time of
+    /// the work that must be done in order, by one thread at a time. `end` is the time of one thread for the
+    /// end of the file. No number of threads makes a job faster than `order` and `end`, and of `write` the
+    /// part that the system does for one thread at a time.
     struct Seconds {
         double read = 0;
         double weld = 0;
@@ -208,7 +211,10 @@ struct FileResult {
         double slice = 0;
         double polygon = 0;
         double scan = 0;
+        double format = 0;
         double write = 0;
+        double order = 0;
+        double end = 0;
         double total = 0;
     } seconds;
 };

@@ -134,6 +134,10 @@ struct Verification {
 [[nodiscard]] Verification verify(std::span<const Layer> layers, const VerifyOptions& options = {},
                                   const Execution& execution = {});
 
+/// Verifies all parts of a file together. The layers need not be in memory.
+[[nodiscard]] Verification verify_file(const LayerFile& file, const VerifyOptions& options,
+                                       const Execution& execution = {});
+
 struct VectorVerification {
     std::uint64_t layers = 0;
     std::uint64_t contour_vectors = 0;
