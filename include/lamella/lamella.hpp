@@ -21,17 +21,19 @@
 #include "lamella/mesh/self_intersections.hpp"
 #include "lamella/mesh/transform.hpp"
 
-// Slicing: plan the layers, and compute them one by one or all.
+// Slicing: plan the layers, and compute them one by one or all; sections with single planes of any direction.
 #include "lamella/contour/layer.hpp"
 #include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
+#include "lamella/slicing/slicer.hpp"
 
 // Layers: measure and check them.
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/contour/stack_hash.hpp"
+#include "lamella/polygon/contour_defects.hpp"
 #include "lamella/polygon/crossings.hpp"
 #include "lamella/polygon/nesting.hpp"
 
