@@ -10,7 +10,8 @@ int main() {
     const lamella::Plan plan = lamella::plan_uniform(0, 10, {.layer_height = 0.5});
 
     // `prepare` does the work: several threads call it, in any order. The commits that it returns are called
-    // one at a time, in the order of the layers: they output the results.
+    // one at a time, in the order of the layers: they output the results. Longer work can follow a commit
+    // (lamella::Completions).
     const lamella::LayerSink sink{.prepare = [](lamella::Layer&& layer) -> lamella::Commit {
         const double area = lamella::measure(layer).area_mm2;
         return [z = layer.z, area] {

@@ -8,10 +8,10 @@
         print(ring.min(axis=0), ring.max(axis=0))
     lamella.write("part.cli", stack)
 
-Lengths are millimetres, heights are absolute z. A mesh is a path, a pair of arrays (vertices, faces), or an object
-such as a trimesh.Trimesh. Points of layers are NumPy arrays that refer to memory of the library, without a copy.
-Invalid arguments raise a TypeError or a ValueError, other failures a lamella.Error. Defects that do not prevent a
-result cause a lamella.DefectWarning.
+Lengths are millimetres, heights are absolute z. A mesh is a file (a path, bytes or a file object), a pair of arrays
+(vertices, faces), or an object such as a trimesh.Trimesh. Points of layers are NumPy arrays that refer to memory of
+the library, without a copy. Invalid arguments raise a TypeError or a ValueError, other failures a lamella.Error. Defects
+that do not prevent a result cause a lamella.DefectWarning.
 """
 
 from . import _methods
@@ -27,7 +27,7 @@ from ._errors import (
     OutputError,
     UsageError,
 )
-from ._files import convert, layer_formats, mesh_formats, read, write
+from ._files import convert, layer_formats, mesh_formats, read, read_layers, write
 from ._lamella import (
     ContourRule,
     Exposure,
@@ -43,13 +43,17 @@ from ._lamella import (
     SupportRule,
     __version__,
 )
-from ._meshes import Inspection, inspect
+from ._meshes import Inspection, Intersection, SelfIntersections, inspect, read_mesh
+from ._methods import ContourDefect
+from ._plates import Part
 from ._scanning import PyslmLayer, ScanLayer, scan, to_pyslm
+from ._sections import Section, Slicer
 from ._slicing import Engine, engines, iter_layers, slice
 
 __all__ = [
     "CancelledError",
     "Comparison",
+    "ContourDefect",
     "ContourRule",
     "DefectError",
     "DefectWarning",
@@ -60,6 +64,7 @@ __all__ = [
     "InputError",
     "Inspection",
     "InternalError",
+    "Intersection",
     "Layer",
     "LayerDifference",
     "LayerStream",
@@ -67,11 +72,15 @@ __all__ = [
     "Mesh",
     "OutputError",
     "ParameterSet",
+    "Part",
     "PyslmLayer",
     "ScanFigures",
     "ScanLayer",
     "ScanStrategy",
+    "Section",
+    "SelfIntersections",
     "SkinRule",
+    "Slicer",
     "Stack",
     "SupportRule",
     "UsageError",
@@ -86,6 +95,8 @@ __all__ = [
     "layer_formats",
     "mesh_formats",
     "read",
+    "read_layers",
+    "read_mesh",
     "scan",
     "slice",
     "to_pyslm",

@@ -7,19 +7,43 @@ argument, the value found, and a description of the value expected.
 from __future__ import annotations
 
 import decimal
+import difflib
+import functools
+import gzip
+import inspect
+import io
 import math
 import numbers
 import operator
 import os
 import reprlib
-from typing import Any, Callable, Literal, NoReturn, Optional, Sequence, Tuple, TypeVar, Union
+from typing import Any, Callable, Iterable, Literal, NoReturn, Optional, Protocol, Sequence, Tuple, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
 
-from ._errors import UsageError
+from ._errors import OutputError, UsageError, error_of
 
-PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+
+class BinaryReader(Protocol):
+    """A file object that is open for reading bytes, such as an io.BytesIO."""
+
+    def read(self) -> bytes:
+        """Returns the bytes from its position to its end."""
+
+
+class BinaryWriter(Protocol):
+    """A file object that is open for writing bytes, such as an io.BytesIO."""
+
+    def write(self, content: memoryview, /) -> object:
+        """Writes the bytes at its position. May return the number of written ones."""
+
+
+PathLike = Union[str, "os.PathLike[str]", "os.PathLike[bytes]"]
+Readable = Union[PathLike, bytes, bytearray, memoryview, BinaryReader]
+Writable = Union[PathLike, BinaryWriter]
+# For the extension: the bytes of a path, or the name of an object in errors and its content.
+Source = Union[bytes, Tuple[bytes, Union[bytes, bytearray, memoryview]]]
 Progress = Callable[[str, int, int], object]
 CutAt = Literal["bottom", "middle", "top"]
 FillRule = Literal["nonzero", "evenodd", "positive"]
@@ -27,8 +51,11 @@ Corners = Literal["mitre", "bevel", "round"]
 Orientation = Literal["landscape", "portrait"]
 Mirror = Literal["none", "x", "y", "xy"]
 T = TypeVar("T")
+Function = TypeVar("Function", bound=Callable[..., Any])
 
+FILL_RULES = ("nonzero", "evenodd", "positive")
 MOST_THREADS = 4096
+SIMILAR = 0.65  # least similarity of words, by difflib; that of "side" and "middle" is 0.6
 MOST_QUOTED = 200  # characters of a value; the library quotes as many bytes
 
 
@@ -123,8 +150,32 @@ def choice(name: str, value: Any, choices: Sequence[str]) -> str:
     if not isinstance(value, str):
         refuse_type(name, _listed(choices, "or"), value)
     if value not in choices:
-        raise UsageError(f'{name}: "{excerpt(value)}" is none of {_listed(choices, "and")}')
+        hint = nearest(value, choices)
+        raise UsageError(
+            f'{name}: "{excerpt(value)}" is none of {_listed(choices, "and")}' + (f'; did you mean "{hint}"?' if hint else "")
+        )
     return value
+
+
+def nearest(word: object, known: Iterable[str]) -> str:
+    """Returns the known word that is probably meant, or "" if none is similar."""
+    return next(iter(difflib.get_close_matches(excerpt(word).lower(), list(known), 1, SIMILAR)), "")
+
+
+def suggesting(function: Function) -> Function:
+    """Adds to the error for an unknown keyword the one that is probably meant."""
+    known = list(inspect.signature(function).parameters)
+
+    @functools.wraps(function)
+    def call(*arguments: Any, **keywords: Any) -> Any:
+        for word in keywords:
+            if word not in known and (hint := nearest(word, known)):
+                raise TypeError(
+                    f"{function.__qualname__}() got an unexpected keyword argument {word!r}; did you mean {hint!r}?"
+                )
+        return function(*arguments, **keywords)
+
+    return call  # type: ignore[return-value]
 
 
 def _listed(choices: Sequence[str], last: str) -> str:
@@ -137,10 +188,85 @@ def label(name: str, value: Any) -> bytes:
     return _encoded(name, text(name, value))
 
 
-def path(name: str, value: Any) -> bytes:
-    """Returns the bytes of a path."""
-    if not isinstance(value, (str, bytes, os.PathLike)):
-        refuse_type(name, "a path: str, bytes or os.PathLike", value)
+def is_file(value: Any) -> bool:
+    """Returns whether a value is what `source` takes: a path, bytes or a file object."""
+    return isinstance(value, (str, os.PathLike, bytes, bytearray, memoryview)) or callable(getattr(value, "read", None))
+
+
+def source(name: str, value: Any) -> Source:
+    """Returns a file to read. The content of a file object is read."""
+    if not is_file(value):
+        refuse_type(name, "a path (str or os.PathLike), bytes or a binary file", value)
+    if isinstance(value, (str, os.PathLike)):
+        return _path(name, value)
+    if isinstance(value, memoryview) and not value.c_contiguous:
+        return _name_of(name, value), value.tobytes()
+    if isinstance(value, (bytes, bytearray, memoryview)):
+        return _name_of(name, value), value
+    _refuse_text_file(name, value, "rb")
+    content = value.read()
+    if not isinstance(content, (bytes, bytearray, memoryview)):
+        refuse_type(name, "a binary file, which gives bytes", content)
+    if not content:
+        known = os.fsdecode(_name_of(name, value))
+        raise error_of("InputError", f"{known}: holds nothing at its position; seek(0) goes to its beginning")
+    return _name_of(name, value), content
+
+
+def content(name: str, value: Any) -> Tuple[str, bytes]:
+    """Returns the name of a file in errors, and all its bytes."""
+    found = source(name, value)
+    if isinstance(found, tuple):
+        return os.fsdecode(found[0]), bytes(found[1])
+    known = os.fsdecode(found)
+    try:
+        with open(found, "rb") as file:
+            return known, file.read()
+    except OSError as error:
+        missing = isinstance(error, (FileNotFoundError, NotADirectoryError))
+        text = "there is no such file" if missing else f"cannot be read: {error.strerror}"
+        raise error_of("InputError", f"{known}: {text}", error.errno or 0) from None
+
+
+def target(name: str, value: Any) -> Tuple[bytes, Optional[BinaryWriter]]:
+    """Returns the path of a file to write and None, or the name of a file object in errors and the object."""
+    if isinstance(value, (str, os.PathLike)):
+        return _path(name, value), None
+    if not callable(getattr(value, "write", None)):
+        refuse_type(name, "a path (str or os.PathLike) or a binary file", value)
+    _refuse_text_file(name, value, "wb")
+    known = _name_of(name, value)
+    if known.lower().endswith(b".gz") and not isinstance(value, gzip.GzipFile):
+        raise UsageError(f"{name}: {os.fsdecode(known)} would not be compressed; give its path, or open it with gzip.open")
+    return known, value
+
+
+def put(file: BinaryWriter, content: bytes) -> None:
+    """Writes all bytes to a file object, which may write some of them at a time."""
+    rest = memoryview(content)
+    while rest:
+        written = file.write(rest)
+        if written is None and not isinstance(file, io.RawIOBase):
+            return  # as objects that only collect do
+        if not isinstance(written, int) or not 0 < written <= len(rest):
+            raise OutputError(f"{os.fsdecode(_name_of('file', file))}: its write() returned {written}, for {len(rest)} bytes")
+        rest = rest[written:]
+
+
+def _refuse_text_file(name: str, value: Any, mode: str) -> None:
+    if isinstance(value, io.TextIOBase):
+        raise TypeError(f'{name}: expected a binary file, found one of text; open it with the mode "{mode}"')
+
+
+def _name_of(name: str, value: Any) -> bytes:
+    """Returns the name of an object in errors: that of a file if it has one, otherwise its type."""
+    known = getattr(value, "name", None)
+    if isinstance(known, bytes):
+        known = os.fsdecode(known)
+    return _encoded(name, known if isinstance(known, str) and known else f"<{type(value).__name__}>")
+
+
+def _path(name: str, value: Any) -> bytes:
     plain = os.fspath(value)
     found = plain if isinstance(plain, bytes) else _encoded(name, plain)
     if not found:
@@ -239,6 +365,7 @@ def words(name: str, value: Any) -> str:
 
 
 def reading(
+    name: str,
     file: Any,
     unit_mm: Any,
     strict: Any,
@@ -247,10 +374,9 @@ def reading(
     max_memory: Any,
     threads: Any,
     progress: Any,
-) -> Tuple[bytes, Optional[float], bool, str, int, int, int, Optional[Progress]]:
-    """Checks the arguments for reading a file that may contain a mesh."""
-    return (
-        path("path", file),
+) -> Tuple[Source, Optional[float], bool, str, int, int, int, Optional[Progress]]:
+    """Checks the arguments for reading a file that may contain a mesh. A file object is read if they are right."""
+    rest = (
         optional(positive, "unit_mm", unit_mm),
         flag("strict", strict),
         words("include", include),
@@ -259,3 +385,4 @@ def reading(
         thread_count(threads),
         listener(progress),
     )
+    return (source(name, file), *rest)

@@ -11,11 +11,12 @@ import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import CutAt, PathLike, Progress
+from ._arguments import FILL_RULES, CutAt, FillRule, Progress, Readable
 from ._errors import UsageError
 from ._files import as_stack
-from ._lamella import Layer, Mesh, Stack
-from ._meshes import UPWARDS, MeshLike, Placing, as_mesh, placed, placing
+from ._lamella import Layer, Stack
+from ._meshes import UPWARDS, Placing, placing
+from ._plates import Sliceable, plate_of
 from ._scanning import StrategyLike, as_strategy
 from ._slicing import PLACES
 from ._warning import warn
@@ -23,7 +24,7 @@ from ._warning import warn
 
 @dataclass(frozen=True)
 class Verification:
-    """Findings of `verify`. Lengths are in millimetres."""
+    """Findings of `verify`. Lengths are in millimetres. They are true if they are `ok`."""
 
     ok: bool  #: no open chains, crossings, misoriented rings, layer gaps or overlaps; areas and centroids agree
     layers: int
@@ -41,14 +42,19 @@ class Verification:
     gaps: int  #: between layers, where the mesh has material; 0 without a mesh
     findings: List[str]  #: one line for each kind of finding, with the first layer and location
 
+    def __bool__(self) -> bool:
+        return self.ok
 
+
+@check.suggesting
 def verify(
-    layers: Union[PathLike, Stack],
-    mesh: Optional[MeshLike] = None,
+    layers: Union[Readable, Stack],
+    mesh: Optional[Sliceable] = None,
     *,
     at: Optional[CutAt] = None,
     snap: float = 0,
     tolerance: float = 0,
+    fill: Optional[FillRule] = None,
     direction: Sequence[float] = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
     unit_mm: Optional[float] = None,
@@ -59,12 +65,13 @@ def verify(
     according to their nesting, and that no contour crosses another or itself. If a mesh is given, also checks that the
     areas and centroids of layers are those of its sections, and that there are no gaps between layers.
 
-    layers: a path or a Stack.
-    mesh: the mesh that was sliced, as for `slice`, with the same `direction`, `transform` and `unit_mm`.
+    layers: a Stack, or a path, bytes or a file object, as for `read`.
+    mesh: the mesh or the plate that was sliced, as for `slice`, with the same `direction`, `transform` and `unit_mm`.
     at: position of the cuts within the layers if it differs from that in the file: "bottom", "middle" or "top".
     snap: as for `slice`.
     tolerance: additional tolerance of points, ends of lines and cuts, in millimetres, besides the rounding of the
         format: for layers that were rounded before, such as those of a CLI file converted to JSON.
+    fill: the rule by which the layers were filled, as for `slice`; the sections of the mesh are filled by it, too.
     threads: number of threads; 0 means one for each processor.
     progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
@@ -73,14 +80,19 @@ def verify(
     threads, progress = check.thread_count(threads), check.listener(progress)
     place = check.optional(check.choice, "at", at, PLACES)
     snap, tolerance = check.distance("snap", snap), check.distance("tolerance", tolerance)
+    rule = check.optional(check.choice, "fill", fill, FILL_RULES)
+    if rule is not None and mesh is None:
+        raise UsageError("fill goes with a mesh, and none is given")
     stack = as_stack("layers", layers, threads=threads, progress=progress)
     sliced = _mesh_as_sliced(mesh, placing(direction, transform), transform is not None, unit_mm, threads, progress)
-    return Verification(**_lamella.verify(stack, sliced, place or "", snap, tolerance, threads, progress))
+    return Verification(**_lamella.verify(
+        stack, sliced, place or "", snap, tolerance, rule or "none", threads, progress
+    ))  # fmt: skip
 
 
 @dataclass(frozen=True)
 class VectorVerification:
-    """Findings of `verify_vectors`."""
+    """Findings of `verify_vectors`. They are true if they are `ok`."""
 
     ok: bool  #: no findings, except `unbounded`
     layers: int
@@ -104,10 +116,14 @@ class VectorVerification:
     unbounded: int  #: vectors whose material is unknown
     findings: List[str]  #: one line for each kind of finding, with the first layer and location
 
+    def __bool__(self) -> bool:
+        return self.ok
 
+
+@check.suggesting
 def verify_vectors(
-    path: PathLike,
-    mesh: Optional[MeshLike] = None,
+    file: Readable,
+    mesh: Optional[Sliceable] = None,
     *,
     strategy: StrategyLike = None,
     at: Optional[CutAt] = None,
@@ -124,8 +140,8 @@ def verify_vectors(
     by which they were made is given, also checks their distance from the edges, that each contour is present, the
     distance, angle and least length of hatch lines, and that these fill the material.
 
-    path: path of a file with scan vectors, by `lamella slice --scan`, `lamella scan` or another program.
-    mesh: the mesh that was sliced, as for `slice`, with the same `direction`, `transform` and `unit_mm`.
+    file: a path, bytes or a file object, as for `read`: scan vectors by `lamella slice --scan`, `lamella scan` or another program.
+    mesh: the mesh or the plate that was sliced, as for `slice`, with the same `direction`, `transform` and `unit_mm`.
     strategy: as for `scan`; lamella.ScanStrategy() is the default strategy. With None, no strategy is checked.
     at: position of the cuts within the layers if it differs from that in the file: "bottom", "middle" or "top".
     snap: as for `slice`.
@@ -136,27 +152,28 @@ def verify_vectors(
 
     Raises InputError, and UsageError for a file without scan vectors.
     """
-    file = check.path("path", path)
     threads, progress = check.thread_count(threads), check.listener(progress)
     place = check.optional(check.choice, "at", at, PLACES)
     snap, tolerance = check.distance("snap", snap), check.distance("tolerance", tolerance)
     known = None if strategy is None else as_strategy("strategy", strategy)
     sliced = _mesh_as_sliced(mesh, placing(direction, transform), transform is not None, unit_mm, threads, progress)
-    found, warnings = _lamella.verify_vectors(file, sliced, known, place or "", snap, tolerance, threads, progress)
-    warn(f"{os.fsdecode(file)}: {warning}" for warning in warnings)
+    source = check.source("file", file)
+    path = os.fsdecode(source[0] if isinstance(source, tuple) else source)
+    found, warnings = _lamella.verify_vectors(source, sliced, known, place or "", snap, tolerance, threads, progress)
+    warn(f"{path}: {warning}" for warning in warnings)
     return VectorVerification(**found)
 
 
 def _mesh_as_sliced(
-    mesh: Optional[MeshLike],
+    mesh: Optional[Sliceable],
     where: Placing,
     transformed: bool,
     unit_mm: Optional[float],
     threads: int,
     progress: Optional[Progress],
-) -> Optional[Mesh]:
+) -> Optional[_lamella.Plate]:
     if mesh is not None:
-        return placed(as_mesh("mesh", mesh, unit_mm=unit_mm, threads=threads, progress=progress), where, threads)
+        return plate_of("mesh", mesh, unit_mm, where, threads=threads, progress=progress)
     ways = {"direction": where[0] != UPWARDS, "transform": transformed, "unit_mm": unit_mm is not None}
     for name, given in ways.items():
         if given:
@@ -189,9 +206,10 @@ class Comparison:
         return self.agree
 
 
+@check.suggesting
 def compare(
-    first: Union[PathLike, Stack],
-    second: Union[PathLike, Stack],
+    first: Union[Readable, Stack],
+    second: Union[Readable, Stack],
     tolerance: Optional[float] = None,
     *,
     threads: int = 0,
@@ -200,7 +218,7 @@ def compare(
     """Compares the contours of layers plane by plane. To compare hatch lines, heights and parameters of files, use the
     program: `lamella compare`.
 
-    first, second: paths or stacks.
+    first, second: stacks, or paths, bytes or file objects, as for `read`.
     tolerance: largest distance at which contours still agree, in millimetres; by default the sum of the rounding errors
         of both formats, which is 0 for stacks that were sliced.
     threads: number of threads; 0 means one for each processor.

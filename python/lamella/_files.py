@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import decimal
-import itertools
 import numbers
-import operator
 import os
-from typing import Any, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, Union, overload
+from typing import Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import Mirror, Orientation, PathLike, Progress
+from ._arguments import FILL_RULES, BinaryWriter, FillRule, Mirror, Orientation, PathLike, Progress, Readable, Writable
 from ._errors import CancelledError, DefectError, InputError, UsageError
 from ._lamella import Exposure, Layer, LayerStream, Mesh, Stack
+from ._meshes import MeshLike, as_mesh, is_mesh
+from ._methods import parts_lost
 from ._scanning import ScanLayer, ScanStream
 from ._warning import warn, with_arguments
 
-MESH_EXTENSIONS = (".stl", ".ply", ".obj")
+MESH_FORMATS = ("stl", "ply", "obj")
 
 # Property that a format must have for an option to apply. Options that are not listed here require an image format.
 ASKED_OF_FORMATS = {
@@ -30,7 +30,6 @@ ASKED_OF_FORMATS = {
     "first_exposure_s": "exposure",
     "fade_layers": "exposure",
 }
-PAGES = "html"
 # Formats that store the heights of layers unchanged, or no heights. They accept layers without thickness.
 WITHOUT_THICKNESS = ("json", "npz", "dxf", "geojson", "svg-layers", "png", "png-zip")
 MOST_PIXELS = 65535
@@ -50,75 +49,49 @@ Planes = Tuple[List[Part], Iterator[List[Layer]], int, float, str]
 HEIGHTS = {"z": "cuts (z)", "bottom": "bottoms", "top": "tops", "index": "indices"}
 
 
+@check.suggesting
 def read_layers(
-    path: PathLike,
+    file: Readable,
     *,
     strict: bool = False,
     max_memory: int = 0,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Stack:
-    stack, warnings = _lamella.read_layers(
-        check.path("path", path),
-        check.whole("max_memory", max_memory),
-        check.thread_count(threads),
-        check.listener(progress),
-    )
-    _told(path, warnings, strict)
+    """Reads a slice file; the content determines the format.
+
+    file: a path, bytes, or a file object that is open for reading bytes; see `read`. Formats: Common Layer Interface,
+        layered SVG, SLC, 3MF with slices, JSON, NumPy arrays, ILT, Open Vector Format, 3MF with toolpaths. Each may be
+        compressed with gzip.
+    strict: raises a DefectError instead of issuing a DefectWarning.
+    max_memory, threads, progress: as for `read`.
+
+    Raises InputError for a file without layers, and LimitError.
+    """
+    return stack_of_file("file", file, strict, check.whole("max_memory", max_memory), threads, progress)
+
+
+def stack_of_file(
+    name: str, file: Any, strict: Any, max_memory: int, threads: Any, progress: Any
+) -> Stack:
+    strict, threads, progress = check.flag("strict", strict), check.thread_count(threads), check.listener(progress)
+    stack, warnings = _lamella.read_layers(check.source(name, file), max_memory, threads, progress)
+    _told(stack.path, warnings, strict)
     return stack
 
 
-def _told(path: PathLike, warnings: Sequence[str], strict: bool) -> None:
+def _told(path: str, warnings: Sequence[str], strict: bool) -> None:
     """Issues the warnings of a slice file; with `strict` raises the first one as an error."""
-    texts = [f"{os.fsdecode(path)}: {warning}" for warning in warnings]
+    texts = [f"{path}: {warning}" for warning in warnings]
     if strict and texts:
         raise DefectError(texts[0])
     warn(texts)
 
 
-@overload
+@check.suggesting
 def read(
-    path: PathLike,
+    file: Readable,
     *,
-    kind: Literal["mesh"],
-    unit_mm: Optional[float] = None,
-    strict: bool = False,
-    include: Union[str, Iterable[str]] = (),
-    max_triangles: int = 0,
-    max_memory: int = 0,
-    threads: int = 0,
-    progress: Optional[Progress] = None,
-) -> Mesh: ...
-@overload
-def read(
-    path: PathLike,
-    *,
-    kind: Literal["layers"],
-    unit_mm: Optional[float] = None,
-    strict: bool = False,
-    include: Union[str, Iterable[str]] = (),
-    max_triangles: int = 0,
-    max_memory: int = 0,
-    threads: int = 0,
-    progress: Optional[Progress] = None,
-) -> Stack: ...
-@overload
-def read(
-    path: PathLike,
-    *,
-    kind: None = None,
-    unit_mm: Optional[float] = None,
-    strict: bool = False,
-    include: Union[str, Iterable[str]] = (),
-    max_triangles: int = 0,
-    max_memory: int = 0,
-    threads: int = 0,
-    progress: Optional[Progress] = None,
-) -> Union[Mesh, Stack]: ...
-def read(
-    path: PathLike,
-    *,
-    kind: Optional[Literal["mesh", "layers"]] = None,
     unit_mm: Optional[float] = None,
     strict: bool = False,
     include: Union[str, Iterable[str]] = (),
@@ -127,20 +100,16 @@ def read(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Union[Mesh, Stack]:
-    """Reads a mesh file or a slice file; the content determines the format.
+    """Reads a mesh file or a slice file; the content determines the format. If only one of them will do, `read_mesh` and
+    `read_layers` refuse the other.
 
-    path: str or os.PathLike. Meshes: see `mesh_formats`. Layers: Common Layer Interface, layered SVG, SLC,
-        3MF with slices, JSON, NumPy arrays, ILT, Open Vector Format, 3MF with toolpaths. Each may be compressed with
-        gzip.
-    kind: the required content of the file, "mesh" or "layers"; another file is an InputError.
+    file: a path (str or os.PathLike), bytes, or a file object that is open for reading bytes, such as an io.BytesIO,
+        which is read from its position to its end. Errors name an object by its `name` or its type. For the formats
+        see `read_mesh` and `read_layers`.
     unit_mm: millimetres per unit, for a mesh file that does not specify its unit; 1 by default. Not
         permitted for slice files.
     strict: raises a DefectError instead of issuing a DefectWarning.
-    include: one or several of the words "support", "negative", "modifier", "support-blocker", "support-enforcer",
-        "surface" and "other". Objects to which a 3MF or AMF file gives one of these roles are then read as solids, too.
-        By default negative volumes are subtracted when the mesh is sliced, and a DefectWarning counts the other objects
-        that were left out. In slice files supports are parts like others; see Stack.support.
-    max_triangles: largest number of triangles; otherwise a LimitError is raised. 0 permits any number.
+    include, max_triangles: as for `read_mesh`.
     max_memory: largest number of bytes in memory; otherwise a LimitError is raised. 0 means three quarters of the
         physical memory. An uncompressed binary STL file does not count, nor does data that is computed from a mesh
         afterwards.
@@ -154,34 +123,30 @@ def read(
     Raises InputError that reports the file, the location in it, the content found and the content expected, and
     UsageError if `unit_mm` is given for a slice file.
     """
-    wanted = check.optional(check.choice, "kind", kind, ("mesh", "layers"))
     read, warnings = _lamella.read_any(
-        *check.reading(path, unit_mm, strict, include, max_triangles, max_memory, threads, progress)
+        *check.reading("file", file, unit_mm, strict, include, max_triangles, max_memory, threads, progress)
     )
     if isinstance(read, Stack) and unit_mm is not None:
-        raise UsageError(f"unit_mm goes with meshes, and {os.fsdecode(path)} holds layers, which say their unit")
-    found = "layers" if isinstance(read, Stack) else "mesh"
-    if wanted not in (None, found):
-        held = "layers" if found == "layers" else "a mesh"
-        raise InputError(f'{os.fsdecode(path)}: holds {held}, and kind="{wanted}" was given')
+        raise UsageError(f"unit_mm goes with meshes, and {read.path} holds layers, which say their unit")
     # Reading a mesh has already checked `strict`.
-    _told(path, warnings, strict and isinstance(read, Stack))
+    _told(read.path, warnings, strict and isinstance(read, Stack))
     return read
 
 
 def as_stack(
-    name: str, layers: Union[PathLike, Stack], *, threads: int = 0, progress: Optional[Progress] = None
+    name: str, layers: Union[Readable, Stack], *, threads: int = 0, progress: Optional[Progress] = None
 ) -> Stack:
     if isinstance(layers, Stack):
         return layers
-    if isinstance(layers, (str, bytes, os.PathLike)):
-        return read_layers(check.path(name, layers), threads=threads, progress=progress)
-    check.refuse_type(name, "a path or a lamella.Stack", layers)
+    if check.is_file(layers):
+        return stack_of_file(name, layers, False, 0, threads, progress)
+    check.refuse_type(name, "a path, bytes, a binary file or a lamella.Stack", layers)
 
 
+@check.suggesting
 def write(
-    path: PathLike,
-    what: Union[Mesh, Layers],
+    file: Writable,
+    content: Union[MeshLike, Layers],
     *,
     format: str = "",
     units_mm: Optional[float] = None,
@@ -202,12 +167,13 @@ def write(
 ) -> None:
     """Writes layers or a mesh to a file, whose extension selects the format. No reader ever sees an incomplete file.
 
-    path: str or os.PathLike. Meshes: .stl, .ply, .obj. Layers: see `layer_formats`.
-    what: a Mesh; a Layer, a Stack, or any iterable of layers in ascending z; several stacks on the same planes, which
-        become the parts of the file; or scan vectors from `scan`. A stream from `iter_layers`, and the result of `scan`
-        for such a stream or for a Stack, is written while it is computed; layers of any other iterable are collected
-        first.
-    format: name of the format of layers, if the extension does not select it.
+    file: a path (str or os.PathLike), or a file object that is open for writing bytes, such as an io.BytesIO. A file
+        object gets all bytes at once, after the last layer, and not compressed. Meshes: .stl, .ply, .obj. Layers: see `layer_formats`.
+    content: a Mesh, a pair of arrays (vertices, faces), or another object that `slice` takes as a mesh; a Layer, a
+        Stack, or any iterable of layers in ascending z; several stacks on the same planes, which become the parts of
+        the file; or scan vectors from `scan`. A stream from `iter_layers`, and the result of `scan` for such a stream
+        or for a Stack, is written while it is computed; layers of any other iterable are collected first.
+    format: name of the format, if the extension does not select it: one of `layer_formats`, or "stl", "ply" or "obj".
     units_mm: millimetres per unit in Common Layer Interface, ILT and 3MF with toolpaths; 0.001 by default. Coordinates
         are rounded to whole units with short_form, in "cli-ascii" and in "3mf-toolpath".
     short_form: writes coordinates of 16 bits, in binary Common Layer Interface and ILT.
@@ -232,7 +198,8 @@ def write(
     Raises OutputError, UsageError for an unknown format and for options that do not apply to it, and TypeError. Issues
     a DefectWarning for content that the format cannot represent.
     """
-    target = check.path("path", path)
+    target, output = check.target("file", file)
+    known = os.fsdecode(target)
     threads, progress = check.thread_count(threads), check.listener(progress)
     format = check.text("format", format)
     options = {
@@ -251,14 +218,16 @@ def write(
     }
     given = {name: value for name, value in options.items() if value is not None}
     strict = check.flag("strict", strict)
-    if isinstance(what, Mesh):
-        _write_mesh(target, what, [*(["format"] if format else []), *given], strict)
+    if is_mesh(content):
+        _write_mesh(target, output, as_mesh("content", content), format, list(given), strict)
         return
-    parts, planes, total, bottom, rule = _planes(what)
+    parts, planes, total, bottom, rule = _planes(content, strict)
     name = _format_for(target, format, given)
-    if name not in WITHOUT_THICKNESS and not (isinstance(what, Stack) and what.path):
+    if name not in WITHOUT_THICKNESS and not (isinstance(content, Stack) and content.path):
         planes = _with_thickness(name, planes)
-    writer = _lamella.open_writer(target, name, parts, total, bottom, rule, {**given, "strict": strict})
+    writer = _lamella.open_writer(
+        target, name, parts, total, bottom, rule, {**given, "strict": strict}, output is not None
+    )
     done = 0
     try:
         for batch in _batches(planes):
@@ -267,18 +236,20 @@ def write(
             if progress is not None:
                 progress("write", done, total)
         if done < total:
-            raise CancelledError(f"{os.fsdecode(path)}: the stream was closed while it was written")
+            raise CancelledError(f"{known}: the stream was closed while it was written")
         warnings = writer.finish()
+        if output is not None:
+            check.put(output, writer.content())
     finally:
         writer.close()  # at once, even if an exception keeps the writer alive
-    warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
+    warn(f"{known}: {warning}" for warning in warnings)
 
 
 def _with_thickness(name: str, planes: Iterable[List[Layer]]) -> Iterator[List[Layer]]:
     for plane in planes:
         if not plane[0].bottom < plane[0].top:
             raise UsageError(
-                f"what: the layer at z = {plane[0].z:g} mm has no thickness, and {name} needs one; give lamella.Layer its "
+                f"content: the layer at z = {plane[0].z:g} mm has no thickness, and {name} needs one; give lamella.Layer its "
                 "bottom= and top="
             )
         yield plane
@@ -299,9 +270,9 @@ def _columns_and_rows(name: str, value: Any) -> Tuple[int, int]:
 
 def _format_for(path: bytes, format: str, given: Iterable[str]) -> str:
     """Returns the name of the format, to which all given options apply."""
+    if format:
+        check.choice("format", format, [row[0] for row in layer_formats()])
     name = _lamella.layer_format(format, path)
-    if name == PAGES:
-        raise UsageError(f"{os.fsdecode(path)}: pages are written by the program, with lamella view, not by Python")
     for option in given:
         formats = _lamella.formats_with(ASKED_OF_FORMATS.get(option, "picture"))
         if name not in formats:
@@ -324,47 +295,56 @@ def _batches(planes: Iterable[List[Layer]]) -> Iterator[List[List[Layer]]]:
         yield batch
 
 
-def _write_mesh(path: bytes, mesh: Mesh, given: List[str], strict: bool) -> None:
-    extension = os.path.splitext(os.fsdecode(path))[1].lower()
-    if extension not in MESH_EXTENSIONS:
+def _write_mesh(
+    target: bytes, output: Optional[BinaryWriter], mesh: Mesh, format: str, given: List[str], strict: bool
+) -> None:
+    known = os.fsdecode(target)
+    name = format or os.path.splitext(known)[1].lower()[1:]
+    if name not in MESH_FORMATS:
         raise UsageError(
-            f"{os.fsdecode(path)}: meshes are written as {', '.join(MESH_EXTENSIONS)}; slice the mesh to get layers"
+            f"{known}: meshes are written as {', '.join(MESH_FORMATS)}, by the extension or `format`; slice the mesh to "
+            "get layers"
         )
     if given:
-        raise UsageError(f"{given[0]} goes with layers, and what is written is a mesh")
-    warnings = _lamella.write_mesh(path, extension, mesh, check.label("name", mesh.name or "lamella"), strict)
-    warn(f"{os.fsdecode(path)}: {warning}" for warning in warnings)
+        raise UsageError(f"{given[0]} goes with layers, and the content is a mesh")
+    label = check.label("name", mesh.name or "lamella")
+    warnings, written = _lamella.write_mesh(target, name, mesh, label, strict, output is not None)
+    if output is not None:
+        check.put(output, written)
+    warn(f"{known}: {warning}" for warning in warnings)
 
 
-def _planes(what: Any) -> Planes:
-    if isinstance(what, LayerStream):
-        total = what.__length_hint__()
+def _planes(content: Any, strict: bool) -> Planes:
+    if isinstance(content, LayerStream):
+        total = len(content)
         if total == 0:
-            raise UsageError("what: there are no layers to write: the stream is closed or at its end")
-        parts: List[Part] = [(check.label("label", what.label), what.bounds, None, False)]
-        return parts, ([layer] for layer in what), total, what._bottom, what.rule
-    if isinstance(what, ScanStream):
-        total = operator.length_hint(what)
-        return _planes_of_vectors(what, what.first(), total, itertools.repeat(what.bounds), what.rule)
-    things = _collected(what)
+            raise UsageError("content: there are no layers to write: the stream is closed or at its end")
+        heads: List[Part] = [(label, box, None, support) for label, box, support in content._parts]
+        return heads, (layer.parts for layer in content), total, content._bottom, content.rule
+    if isinstance(content, ScanStream):
+        total = len(content)
+        return _planes_of_vectors(content, content.first(), total, content.boxes, content.rule)
+    things = _collected(content)
     if isinstance(things[0], ScanLayer):
         return _planes_of_scan_layers(things)
+    if strict and isinstance(things[0], Layer) and (lost := parts_lost(things)):
+        raise DefectError(f"content: {lost}")
     stacks = things if isinstance(things[0], Stack) else [Stack(things)]
     return _planes_of_parts([part for stack in stacks for part in stack.parts])
 
 
 def _planes_of_parts(stacks: List[Stack]) -> Planes:
     if len(stacks[0]) == 0:
-        raise UsageError("what: there are no layers to write")
+        raise UsageError("content: there are no layers to write")
     for name, words in HEIGHTS.items():
         first = [getattr(layer, name) for layer in stacks[0]] if len(stacks) > 1 else []
         if any([getattr(layer, name) for layer in stack] != first for stack in stacks[1:]):
             raise UsageError(
-                f"what: the parts of a file must have the same planes, and their {words} differ: "
+                f"content: the parts of a file must have the same planes, and their {words} differ: "
                 "slice them at the same z"
             )
     if any(stack.rule != stacks[0].rule for stack in stacks):
-        raise UsageError("what: the parts of a file must be cut by the same rule: slice them with the same `at`")
+        raise UsageError("content: the parts of a file must be cut by the same rule: slice them with the same `at`")
     parts: List[Part] = [
         (check.label("label", stack.label or "part"), box, stack.exposure, stack.support)
         for stack, box in zip(stacks, _boxes(stacks))
@@ -383,7 +363,7 @@ def _boxes(stacks: List[Stack]) -> List[npt.NDArray[np.float64]]:
 def _planes_of_scan_layers(layers: List[ScanLayer]) -> Planes:
     exposures = layers[0].exposures
     if any(layer.exposures != exposures for layer in layers):
-        raise UsageError("what: the scan layers of a file must have the same exposures: scan them by one strategy")
+        raise UsageError("content: the scan layers of a file must have the same exposures: scan them by one strategy")
     stacks = [Stack([layer.layers[k] for layer in layers]) for k in range(len(exposures))]
     return _planes_of_vectors(layers, layers[0], len(layers), _boxes(stacks), stacks[0].rule)
 
@@ -396,7 +376,7 @@ def _planes_of_vectors(
     rule: str,
 ) -> Planes:
     if first is None:
-        raise UsageError("what: there are no layers to write")
+        raise UsageError("content: there are no layers to write")
     parts: List[Part] = [
         (check.label("label", f"{exposure.part} {exposure.name}"), box, exposure, exposure.region == "support")
         for exposure, box in zip(first.exposures, boxes)
@@ -405,31 +385,33 @@ def _planes_of_vectors(
     return parts, planes, total, first.bottom, rule
 
 
-def _collected(what: Any) -> List[Any]:
+def _collected(content: Any) -> List[Any]:
     """Returns a list of at least one object, all of one kind: layers, stacks or scan layers."""
-    expected = "a lamella.Mesh, Layer or Stack, or an iterable of layers, stacks or scan layers"
-    if isinstance(what, (Layer, Stack, ScanLayer)):
-        return [what]
-    if isinstance(what, (str, bytes)):
-        check.refuse_type("what", expected, what)
+    expected = "a mesh, a lamella.Layer or Stack, or an iterable of layers, stacks or scan layers"
+    if isinstance(content, (Layer, Stack, ScanLayer)):
+        return [content]
+    if isinstance(content, (str, bytes)):
+        check.refuse_type("content", expected, content)
     try:
-        things = iter(what)
+        things = iter(content)
     except TypeError:
-        check.refuse_type("what", expected, what)
+        check.refuse_type("content", expected, content)
     found = list(things)
     if not found:
-        raise UsageError("what: there are no layers to write")
+        raise UsageError("content: there are no layers to write")
     kind = next((kind for kind in (Stack, ScanLayer) if isinstance(found[0], kind)), Layer)
     for thing in found:
         if not isinstance(thing, kind):
-            check.refuse_type("what", expected, thing)
+            check.refuse_type("content", expected, thing)
     return found
 
 
+@check.suggesting
 def convert(
-    source: PathLike,
-    target: PathLike,
+    source: Readable,
+    target: Writable,
     *,
+    fill: Optional[FillRule] = None,
     format: str = "",
     units_mm: Optional[float] = None,
     short_form: bool = False,
@@ -450,18 +432,25 @@ def convert(
     """Reads the layers of a slice file and writes them in another format. Contours are unchanged except for the
     rounding of the new format; parts and labels are kept.
 
-    source, target: str or os.PathLike.
+    source: a path, bytes or a file object, as for `read`.
+    target: a path or a file object, as for `write`.
+    fill: unites contours of a part that overlap. Material is where the winding number satisfies this rule: "nonzero",
+        "evenodd" or "positive".
     For the rest see `write`.
 
     Raises InputError, OutputError, UsageError and TypeError. Issues a DefectWarning if the file has defects or rings
     that bound no material; with `strict` it raises DefectError.
     """
-    if _same_file(check.path("source", source), check.path("target", target)):
-        raise UsageError(f"{os.fsdecode(target)}: the output would overwrite the input")
-    stack = read_layers(source, strict=check.flag("strict", strict), threads=threads, progress=progress)
+    path, output = check.target("target", target)
+    if output is None and isinstance(source, (str, os.PathLike)) and _same_file(source, path):
+        raise UsageError(f"{os.fsdecode(path)}: the output would overwrite the input")
+    stack = stack_of_file("source", source, strict, 0, threads, progress)
     if len(stack) == 0:
-        raise InputError(f"{os.fsdecode(source)}: holds no layers")
-    if all(part.exposure is None for part in stack.parts):
+        raise InputError(f"{stack.path}: holds no layers")
+    rule = check.optional(check.choice, "fill", fill, FILL_RULES)
+    if rule is not None:
+        stack = _filled(stack, rule, strict, threads, progress)
+    elif all(part.exposure is None for part in stack.parts):
         inverted = [f"{stack.path}: {text}" for text in _lamella.inverted_layers(stack, threads, progress)]
         if strict and inverted:
             raise DefectError(with_arguments(inverted[0]))
@@ -474,10 +463,22 @@ def convert(
     )  # fmt: skip
 
 
-def _same_file(first: bytes, second: bytes) -> bool:
+def _filled(stack: Stack, rule: str, strict: bool, threads: int, progress: Optional[Progress]) -> Stack:
+    for part in stack.parts:
+        if part.exposure is not None:
+            raise UsageError(f"{stack.path}: holds scan vectors ({part.label}), and fill is for contours: fill before scan")
+    filled, lost = _lamella.filled(stack, rule, threads, progress)
+    warnings = [f"{lost} hatch line{'s' if lost > 1 else ''} left out: the contours that they fill were changed"] * (lost > 0)
+    if stack.contours.any() and not any(part.contours.any() for part in filled.parts):
+        warnings.append(f"no contour is left in any of {len(stack)} layers: none bounds material by the rule {rule}")
+    _told(stack.path, warnings, strict)
+    return filled
+
+
+def _same_file(first: PathLike, second: bytes) -> bool:
     try:
         return os.path.samefile(first, second)
-    except OSError:  # at least one does not exist; opening it will report that
+    except (OSError, ValueError):  # at least one does not exist; opening it will report that
         return False
 
 
@@ -488,4 +489,4 @@ def mesh_formats() -> List[str]:
 
 def layer_formats() -> List[Tuple[str, str, str]]:
     """Returns the formats to which layers can be written, each as (name, extension, description in one line)."""
-    return [row for row in _lamella.layer_formats() if row[0] != PAGES]
+    return _lamella.layer_formats()

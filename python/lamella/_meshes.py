@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import dataclass
-from typing import Any, Iterable, Optional, Protocol, Sequence, Tuple, Union
+from typing import Any, Dict, Iterable, List, Literal, NamedTuple, Optional, Protocol, Sequence, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import PathLike, Progress
+from ._arguments import Progress, Readable
 from ._errors import InputError, UsageError
 from ._lamella import Mesh
 from ._warning import warn
@@ -31,7 +30,54 @@ class HasFaces(Protocol):
         """Indices of three rows of `vertices` for each triangle: (m, 3) whole numbers."""
 
 
-MeshLike = Union[PathLike, Mesh, HasFaces, Tuple[npt.ArrayLike, npt.ArrayLike], npt.NDArray[Any]]
+class HasTriangles(Protocol):
+    """Anything with vertices and triangles, such as an open3d.geometry.TriangleMesh."""
+
+    @property
+    def vertices(self) -> Any:
+        """Positions: (n, 3) numbers."""
+
+    @property
+    def triangles(self) -> Any:
+        """Indices of three rows of `vertices` for each triangle: (m, 3) whole numbers."""
+
+
+class HasPoints(Protocol):
+    """Anything with points and faces, such as a pyvista.PolyData."""
+
+    @property
+    def points(self) -> Any:
+        """Positions: (n, 3) numbers."""
+
+    @property
+    def faces(self) -> Any:
+        """Whole numbers, for each triangle 3 and the indices of three rows of `points`: (4 m,)."""
+
+
+MeshLike = Union[
+    Readable, Mesh, HasFaces, HasTriangles, HasPoints, Tuple[npt.ArrayLike, npt.ArrayLike], npt.NDArray[Any]
+]
+
+
+class Intersection(NamedTuple):
+    """Two triangles that intersect beyond the vertices and the edge that they share."""
+
+    kind: Literal["crossing", "overlapping", "touching"]
+    triangles: Tuple[int, int]  #: rows of Mesh.faces
+    at: Tuple[float, float, float]  #: approximately, in millimetres
+
+
+class SelfIntersections(NamedTuple):
+    """Pairs of triangles that intersect. The counts are complete. It is true if there are any."""
+
+    crossing: int  #: pairs of triangles that pass through each other
+    overlapping: int  #: pairs that lie upon one another in one plane
+    touching: int  #: pairs that meet beside their edges
+    flat_triangles: int  #: triangles without area, which are ignored
+    first: List[Intersection]  #: the first that cross or overlap, then the first that touch
+
+    def __bool__(self) -> bool:
+        return self.crossing + self.overlapping + self.touching > 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +101,12 @@ class Inspection:
     duplicate_triangles: int  #: further triangles with the same three vertices
     degenerate_triangles: int  #: with two equal corners
     inverted_shells: int  #: closed shells that are inside out
+    #: Where the first defects of each kind are: "boundary_loops", the rims of holes, the longest first, each (n, 3);
+    #: "nonmanifold_edges" and "orientation_conflicts", (n, 2, 3); "nonmanifold_vertices", (n, 3), where parts of the
+    #: surface touch; "inverted_shells", (n, 2, 3), their bounds; "duplicate_triangles" and "degenerate_triangles", lists of
+    #: rows of Mesh.faces.
+    places: Dict[str, Any]
+    self_intersections: Optional[SelfIntersections]  #: None if they were not searched for
 
     @property
     def defects(self) -> str:
@@ -63,8 +115,9 @@ class Inspection:
         return ", ".join(f"{count} {one if count == 1 else many}" for count, one, many in kinds if count)
 
 
+@check.suggesting
 def read_mesh(
-    path: PathLike,
+    file: Readable,
     *,
     unit_mm: Optional[float] = None,
     strict: bool = False,
@@ -74,9 +127,26 @@ def read_mesh(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Mesh:
-    mesh = _lamella.read_mesh(
-        *check.reading(path, unit_mm, strict, include, max_triangles, max_memory, threads, progress)
-    )
+    """Reads a mesh file; the content determines the format.
+
+    file: a path, bytes, or a file object that is open for reading bytes; see `read`. Formats: see `mesh_formats`. Each
+        may be compressed with gzip.
+    unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.
+    strict: raises a DefectError instead of issuing a DefectWarning.
+    include: one or several of the words "support", "negative", "modifier", "support-blocker", "support-enforcer",
+        "surface" and "other". Objects to which a 3MF or AMF file gives one of these roles are then read as solids, too.
+        By default negative volumes are subtracted when the mesh is sliced, and a DefectWarning counts the other objects
+        that were left out. In slice files supports are parts like others; see Stack.support.
+    max_triangles: largest number of triangles; otherwise a LimitError is raised. 0 permits any number.
+    max_memory, threads, progress: as for `read`.
+
+    Raises InputError for a file without a mesh, and LimitError.
+    """
+    return _mesh_of_file("file", file, unit_mm, strict, include, max_triangles, max_memory, threads, progress)
+
+
+def _mesh_of_file(name: str, *reading: Any) -> Mesh:
+    mesh = _lamella.read_mesh(*check.reading(name, *reading))
     warn(f"{mesh.path}: {warning}" for warning in mesh.warnings)
     return mesh
 
@@ -112,24 +182,72 @@ def _mesh_of_triangles(name: str, corners: npt.NDArray[Any]) -> Mesh:
     return Mesh(positions.reshape(-1, 3), np.arange(len(corners) * 3).reshape(-1, 3))
 
 
-def as_mesh(name: str, part: Any, unit_mm: Optional[float] = None, **reading: Any) -> Mesh:
-    """Returns a mesh made from any supported object. `reading` are further arguments of `read_mesh`, for paths."""
-    if isinstance(part, (str, bytes, os.PathLike)):
-        return read_mesh(check.path(name, part), unit_mm=unit_mm, **reading)
+def _attribute(thing: Any, name: str) -> Any:
+    """Returns an attribute, or None if there is none or it cannot be had, such as faces of one size."""
+    try:
+        return getattr(thing, name, None)
+    except Exception:
+        return None
+
+
+def _arrays_of(name: str, thing: Any) -> Optional[Tuple[Any, Any]]:
+    """Returns vertices and faces of an object that has them by any of the usual names."""
+    for positions, triangles in ("vertices", "faces"), ("vertices", "triangles"), ("points", "regular_faces"):
+        found = _attribute(thing, positions), _attribute(thing, triangles)
+        if found[0] is not None and found[1] is not None:
+            return found
+    points, faces = _attribute(thing, "points"), _attribute(thing, "faces")
+    return None if points is None or faces is None else (points, _without_counts(name, faces))
+
+
+def _without_counts(name: str, faces: Any) -> Any:
+    """Returns the rows of a flat array in which each face begins with the number of its corners."""
+    flat = check.array(f"{name}: faces", faces, "an array of whole numbers", kinds="iu")
+    if flat.ndim != 1:
+        return flat
+    if len(flat) % 4 or (flat[::4] != 3).any():
+        raise UsageError(
+            f"{name}: faces: expected 3 before the corners of each triangle; faces of more than three corners must be cut "
+            "into triangles first"
+        )
+    return flat.reshape(-1, 4)[:, 1:]
+
+
+def is_mesh(thing: Any) -> bool:
+    """Returns whether an object, which is not a file, is meant as a mesh."""
+    if isinstance(thing, (tuple, list)):
+        return len(thing) == 2 and all(isinstance(array, (tuple, list)) or hasattr(array, "__array__") for array in thing)
+    return isinstance(thing, (Mesh, np.ndarray)) or _arrays_of("part", thing) is not None
+
+
+def as_mesh(
+    name: str,
+    part: Any,
+    unit_mm: Any = None,
+    strict: Any = False,
+    max_memory: Any = 0,
+    threads: Any = 0,
+    progress: Any = None,
+) -> Mesh:
+    """Returns a mesh made from any supported object. The other arguments are for files."""
+    if check.is_file(part):
+        return _mesh_of_file(name, part, unit_mm, strict, (), 0, max_memory, threads, progress)
     if unit_mm is not None:
-        raise UsageError("unit_mm goes with files: arrays and meshes are in millimetres; scale them by transform")
+        raise UsageError("unit_mm goes with files: arrays and meshes are in millimetres; scale them")
     if isinstance(part, Mesh):
         return part
     if isinstance(part, np.ndarray):
         return _mesh_of_triangles(name, part)
     if isinstance(part, (tuple, list)):
+        if any(check.is_file(one) or isinstance(one, Mesh) or _arrays_of(name, one) is not None for one in part):
+            raise TypeError(f"{name}: several meshes make up a plate: put each of them into a lamella.Part")
         if len(part) == 2:
             return Mesh(*part)
-    elif hasattr(part, "vertices") and hasattr(part, "faces"):
-        return Mesh(part.vertices, part.faces)
+    elif (arrays := _arrays_of(name, part)) is not None:
+        return Mesh(*arrays)
     raise TypeError(
-        f"{name}: a mesh is a path, a lamella.Mesh, a pair of arrays (vertices, faces), or something with .vertices "
-        f"and .faces; this is {check.described(part)}"
+        f"{name}: a mesh is a path, bytes, a binary file, a lamella.Mesh, a pair of arrays (vertices, faces), or something "
+        f"with .vertices and .faces; this is {check.described(part)}"
     )
 
 
@@ -151,24 +269,36 @@ def placed(mesh: Mesh, where: Placing, threads: int) -> Mesh:
     return mesh if direction == UPWARDS else mesh._rotated(direction, threads)
 
 
+@check.suggesting
 def inspect(
     part: MeshLike,
     *,
+    self_intersections: bool = False,
+    keep: int = 16,
     unit_mm: Optional[float] = None,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Inspection:
-    """Counts the defects of a mesh. Nothing is repaired.
+    """Counts the defects of a mesh, and tells where they are. Nothing is repaired.
 
-    part: a path, a Mesh, a pair of arrays (vertices (n, 3) in millimetres, faces (m, 3)), an array of triangles
-        (m, 3, 3), or anything with .vertices and .faces, such as a trimesh.Trimesh.
+    part: a path, bytes, or a file object that is open for reading bytes; a Mesh, a pair of arrays (vertices (n, 3) in
+        millimetres, faces (m, 3)), an array of triangles (m, 3, 3), or anything with .vertices and .faces, .vertices and
+        .triangles, or .points and .faces, such as a trimesh.Trimesh, a mesh of Open3D, or a PolyData of PyVista.
+    self_intersections: looks for triangles that cross, overlap or touch one another, too, which takes longer.
+    keep: largest number of locations of each kind; the counts are complete.
     unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.
     threads: number of threads; 0 means one for each processor.
     progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
     Raises InputError for a file that cannot be read.
     """
+    self_intersections, keep = check.flag("self_intersections", self_intersections), check.whole("keep", keep)
     threads, progress = check.thread_count(threads), check.listener(progress)
     mesh = as_mesh("part", part, unit_mm=unit_mm, threads=threads, progress=progress)
-    fields = mesh._defects(threads, progress)
+    fields = mesh._diagnosed(self_intersections, keep, threads, progress)
+    met = fields["self_intersections"]
+    if met is not None:
+        crossing, overlapping, touching, flat, first = met
+        found = [Intersection(*one) for one in first]
+        fields["self_intersections"] = SelfIntersections(crossing, overlapping, touching, flat, found)
     return Inspection(path=mesh.path, format=mesh.format, bounds=mesh.bounds, **fields)

@@ -3,7 +3,7 @@ Python, and then passed to the extension's method whose name begins with an unde
 
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, Iterable, List, Optional, Tuple, TypeVar
+from typing import Any, Callable, Dict, Iterable, List, Literal, NamedTuple, Optional, Tuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -11,11 +11,25 @@ import numpy.typing as npt
 from . import _arguments as check
 from . import _lamella
 from ._errors import UsageError
+from ._looking import layer_svg, plot_layer, show, stack_html
 from ._meshes import arrays_of_mesh
-from ._shapely import multi_polygon
+from ._shapely import contours_of, multi_polygon
 from ._warning import warn
 
 T = TypeVar("T")
+
+
+class ContourDefect(NamedTuple):
+    """A defect of a contour of a layer, as `Layer.diagnose` lists it."""
+
+    #: "open": a chain that does not close. "crossing": it crosses a contour, which may be itself. "misoriented": a
+    #: clockwise ring outside of material, which bounds none. "tangled": another ring that bounds no material, because it
+    #: crosses itself or others, or lies within a misoriented one. "overlapping": a ring within material, of bodies that
+    #: overlap, which is no error, or a hole with the wrong orientation.
+    kind: Literal["open", "crossing", "misoriented", "tangled", "overlapping"]
+    contour: int  #: index of the contour in its layer
+    other: int  #: index of the contour that it crosses; for other kinds, that of the contour itself
+    at: Tuple[float, float]  #: the crossing, or the first point of the contour, in millimetres
 
 
 def _methods_of(cls: type) -> Callable[[T], T]:
@@ -24,8 +38,11 @@ def _methods_of(cls: type) -> Callable[[T], T]:
 
     def give(source: T) -> T:
         for name, method in vars(source).items():
-            if callable(method):
-                setattr(cls, name, method)
+            if isinstance(method, classmethod):
+                setattr(cls, name, classmethod(check.suggesting(method.__func__)))
+            elif callable(method):
+                takes_keywords = name == "__init__" or not name.startswith("_")
+                setattr(cls, name, check.suggesting(method) if takes_keywords else method)
         return source
 
     return give
@@ -35,6 +52,7 @@ _make_mesh: Callable[..., None] = _lamella.Mesh.__init__
 _make_layer: Callable[..., None] = _lamella.Layer.__init__
 _make_stack: Callable[..., None] = _lamella.Stack.__init__
 _make_parameters: Callable[..., None] = _lamella.ParameterSet.__init__
+_item: Callable[..., Any] = _lamella.Stack.__getitem__
 
 
 @_methods_of(_lamella.Mesh)
@@ -57,10 +75,21 @@ def _contours(name: str, contours: Any) -> Tuple[npt.NDArray[np.float64], ...]:
     return check.several(name, contours, None, "contours, each an array of the shape (n, 2)", contour)
 
 
+def parts_lost(layers: Iterable[_lamella.Layer]) -> Optional[str]:
+    """Returns what a warning says of layers of plates that are taken alone, None if there are none."""
+    count = sum(len(layer.parts) > 1 for layer in layers)
+    if count == 0:
+        return None
+    of_plates = f"{count} layers of plates lose" if count > 1 else "a layer of a plate loses"
+    return f"{of_plates} the labels and roles of the parts, which become one; take each of `parts` of the stack instead"
+
+
 def _made_of(made: _lamella.Layer, *layers: _lamella.Layer) -> _lamella.Layer:
     lost = sum(len(layer.hatches) for layer in layers) - len(made.hatches)
     if lost > 0:
         warn([f"{lost} hatch line{'s' if lost > 1 else ''} left out: the contours that they fill were changed"])
+    if merged := parts_lost(layers):
+        warn([merged])
     return made
 
 
@@ -85,10 +114,49 @@ class Layer(_lamella.Layer):
         number = check.whole("index", index)
         _make_layer(self, _contours("rings", rings), height, below, above, number, _contours("chains", chains))
 
+    @classmethod
+    def from_shapely(
+        cls, geometry: Any, z: float, bottom: Optional[float] = None, top: Optional[float] = None
+    ) -> _lamella.Layer:
+        """Returns a layer of a geometry of shapely, in millimetres: polygons become rings, outer ones counter-clockwise
+        and holes clockwise; lines become open chains. A DefectWarning counts points, which are left out. `z`, `bottom`
+        and `top` as for Layer."""
+        rings, chains, points = contours_of("geometry", geometry)
+        if points:
+            warn([f"{points} point{'s' if points > 1 else ''} left out: a layer has rings and chains only"])
+        return cls(rings, z, bottom, top, chains=chains)
+
+    def __or__(self, other: Any) -> Any:
+        return self.union(other) if isinstance(other, _lamella.Layer) else NotImplemented
+
+    def __and__(self, other: Any) -> Any:
+        return self.intersection(other) if isinstance(other, _lamella.Layer) else NotImplemented
+
+    def __sub__(self, other: Any) -> Any:
+        return self.difference(other) if isinstance(other, _lamella.Layer) else NotImplemented
+
+    def __xor__(self, other: Any) -> Any:
+        return self.symmetric_difference(other) if isinstance(other, _lamella.Layer) else NotImplemented
+
     def polygons(self) -> List[Tuple[int, List[int]]]:
         """Returns the polygons of the material as pairs (outer, holes): the index of the outer ring, and the list of
         the indices of its holes. Open chains, and rings that bound no material, are left out."""
         return self._polygons()
+
+    def diagnose(self, *, resolution: float = 0, crossings: int = 100) -> List[ContourDefect]:
+        """Returns the defects of the contours, as `verify` counts them: open chains, crossings, then rings.
+
+        resolution: the rounding of the file that the layer comes from, in millimetres, which is Stack.resolution. Rings so
+            thin that rounding can invert them may have either orientation.
+        crossings: lists at most this many crossings; a DefectWarning tells if there are more.
+        """
+        found, total, or_more = self._diagnosed(
+            check.distance("resolution", resolution), check.whole("crossings", crossings)
+        )
+        if total > crossings or or_more:
+            ended = " or more, so that rings were not checked" if or_more else ""
+            warn([f"the layer at z = {self.z:g} mm has {total} crossings{ended}; {min(total, crossings)} of them are listed"])
+        return [ContourDefect(*one) for one in found]
 
     def to_shapely(self) -> Any:
         """Returns the material as a valid shapely.geometry.MultiPolygon in millimetres, with its holes; overlapping
@@ -98,16 +166,13 @@ class Layer(_lamella.Layer):
     def filled(self, rule: check.FillRule = "nonzero") -> _lamella.Layer:
         """Returns the layer with overlapping bodies united. Material is where the winding number satisfies `rule`:
         "nonzero", "evenodd" or "positive". Rings that do not overlap others keep their points."""
-        if check.text("rule", rule) not in ("nonzero", "evenodd", "positive"):
-            raise UsageError(f'rule: "{check.excerpt(rule)}" is no fill rule; there are nonzero, evenodd and positive')
-        return _made_of(self._filled(rule), self)
+        return _made_of(self._filled(check.choice("rule", rule, check.FILL_RULES)), self)
 
     def offset(self, distance: float, corners: check.Corners = "mitre") -> _lamella.Layer:
         """Returns the layer with its material grown by `distance` millimetres, or shrunk if that is negative. `corners`
         is the join of moved edges that separate at a corner: "mitre", "bevel" or "round"."""
-        if check.text("corners", corners) not in ("mitre", "bevel", "round"):
-            raise UsageError(f'corners: "{check.excerpt(corners)}" are no corners; there are mitre, bevel and round')
-        return _made_of(self._offset(check.number("distance", distance), corners), self)
+        corner = check.choice("corners", corners, ("mitre", "bevel", "round"))
+        return _made_of(self._offset(check.number("distance", distance), corner), self)
 
     def union(self, other: _lamella.Layer) -> _lamella.Layer:
         """Returns the union of the material of this layer and `other`. Material is where the winding number is
@@ -130,11 +195,64 @@ class Layer(_lamella.Layer):
         """Returns the layer with fewer points. No contour moves by more than `tolerance` millimetres."""
         return _made_of(self._simplified(check.distance("tolerance", tolerance)), self)
 
+    def plot(self, axes: Any = None) -> Any:
+        """Draws the layer into axes of matplotlib, new ones if none are given, and returns the axes. Open chains are
+        red. Needs matplotlib."""
+        return plot_layer(self, axes)
+
+    def _repr_svg_(self) -> str:
+        return layer_svg(self)
+
+
+def _positions(index: Any, count: int) -> npt.NDArray[np.int64]:
+    """Returns the positions that a list of numbers or of truth values denotes, among `count` layers."""
+    expected = "whole numbers that ascend, or True or False for each layer"
+    found = check.array("index", index, expected, kinds="biu") if len(index) else np.zeros(0, dtype=np.int64)
+    if found.ndim != 1:
+        raise UsageError(f"index: expected {expected}, found {check.described(found)}")
+    if found.dtype.kind == "b":
+        if len(found) != count:
+            raise IndexError(f"index: expected {count} truth values, one for each layer, found {len(found)}")
+        return np.flatnonzero(found)
+    outside = (found < -count) | (found >= count)
+    if outside.any():
+        raise IndexError(f"layer {found[outside][0]} of {count}")
+    positions = np.where(found < 0, found + count, found).astype(np.int64)
+    if (np.diff(positions) <= 0).any():
+        raise UsageError(f"index: expected {expected}; layers of a stack ascend")
+    return positions
+
 
 @_methods_of(_lamella.Stack)
 class Stack(_lamella.Stack):
     def __init__(self, layers: Iterable[_lamella.Layer], label: str = "part") -> None:
-        _make_stack(self, check.several("layers", layers, None, "layers", _one_layer), check.label("label", label))
+        several = check.several("layers", layers, None, "layers", _one_layer)
+        _make_stack(self, several, check.label("label", label))
+        if lost := parts_lost(several):
+            warn([lost])
+
+    def show(self) -> str:
+        """Writes a page with all layers, as `write` does for a name that ends in .html, to a new folder for temporary
+        files, and opens it in the browser. Returns the path of the page, which stays there."""
+        return show(self)
+
+    def __getitem__(self, index: Any) -> Any:
+        if isinstance(index, list) or getattr(index, "ndim", 0) > 0:
+            return self._chosen(_positions(index, len(self)))
+        return _item(self, index)
+
+    def at(self, z: float) -> _lamella.Layer:
+        """Returns the layer whose material is at the height `z` in millimetres; where one layer ends and the next one
+        begins, the upper one. Raises UsageError if there is none."""
+        height = check.number("z", z)
+        i = int(np.searchsorted(self.bottom, height, side="right")) - 1
+        if i >= 0 and height <= self[i].top:
+            return self[i]  # type: ignore[no-any-return]
+        reach = f"they reach from {self.bottom[0]:g} to {self.top[-1]:g} mm" if len(self) else "the stack is empty"
+        raise UsageError(f"z: there is no layer at {height:g} mm; {reach}")
+
+    def _repr_html_(self) -> str:
+        return stack_html(self)
 
 
 @_methods_of(_lamella.LayerStream)
@@ -158,9 +276,17 @@ class ParameterSet(_lamella.ParameterSet):
         _make_parameters(self, other)
 
 
+@_methods_of(_lamella.ScanStrategy)
+class ScanStrategy(_lamella.ScanStrategy):
+    def to_toml(self) -> str:
+        """Returns the whole strategy as the text of a TOML file, with comments, which `scan` and the program read."""
+        _lamella.check_strategy(self)
+        return _lamella.strategy_text(self)
+
+
 def _attributes(base: type, rule: Any) -> Dict[str, Any]:
     """Returns the attributes that the class of the package has, without those of derived classes."""
-    return {name: getattr(rule, name) for name in dir(base) if not name.startswith("_")}
+    return {name: getattr(rule, name) for name, member in vars(base).items() if isinstance(member, property)}
 
 
 def _with_attributes(cls: Any, base: Any, attributes: Dict[str, Any]) -> Any:
@@ -186,6 +312,14 @@ def _is_its_attributes(cls: type) -> None:
         setattr(cls, name, value)
 
 
+def _shows_its_attributes(cls: type) -> None:
+    def __repr__(self: Any) -> str:
+        shown = ", ".join(f"{name}={value!r}" for name, value in _attributes(cls, self).items())
+        return f"{type(self).__name__}({shown})"
+
+    setattr(cls, "__repr__", __repr__)
+
+
 def _is_made_of_nothing(cls: type) -> None:
     make: Callable[..., None] = getattr(cls, "__init__")
 
@@ -203,3 +337,5 @@ for _rule in _rules:
     _is_made_of_nothing(_rule)
 for _rule in (*_rules, _lamella.ParameterSet):
     _is_its_attributes(_rule)
+for _rule in (*_rules, _lamella.ParameterSet, _lamella.ScanFigures):
+    _shows_its_attributes(_rule)

@@ -3,27 +3,28 @@
 from __future__ import annotations
 
 import copy
-import difflib
-import operator
 import os
 from collections import deque
 from dataclasses import dataclass
 from itertools import chain, islice
-from typing import Any, Deque, Dict, Generator, Iterable, Iterator, List, Mapping, Optional, Tuple, Union
+from typing import Any, Deque, Dict, Generator, Iterable, Iterator, List, Literal, Mapping, Optional, Tuple, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
+from ._arguments import Readable
 from ._errors import InputError, UsageError
 from ._lamella import (
-    ContourRule, Exposure, HatchRule, Layer, LayerStream, ParameterSet, ScanFigures, ScanStrategy, SkinRule, Stack,
+    ContourRule, Exposure, HatchRule, Layer, LayerStream, Mesh, ParameterSet, ScanFigures, ScanStrategy, SkinRule, Stack,
     SupportRule,
 )  # fmt: skip
+from ._looking import plot_groups, plot_values
+from ._methods import parts_lost
 from ._warning import warn
 
-StrategyLike = Union[ScanStrategy, Mapping[str, Any], "os.PathLike[str]", str, None]
+StrategyLike = Union[ScanStrategy, Mapping[str, Any], Readable, None]
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,39 @@ class ScanLayer:
         next."""
         return _lamella.measure_vectors(list(self.layers), list(self.exposures))
 
+    @property
+    def seconds(self) -> npt.NDArray[np.float64]:
+        """Returns the time at which each line ends, with the delay after it, from the start of the layer: (n,). The last
+        one is the sum of `build_seconds` of the figures."""
+        lines, exposure = self.vectors, self.exposure
+        if not len(lines):
+            return np.empty(0)
+        sets = [part.parameters for part in self.exposures]
+        values = np.array([(p.speed_mm_s, p.jump_speed_mm_s, p.mark_delay_us, p.jump_delay_us) for p in sets])[exposure]
+        speed, jump_speed, mark_delay, jump_delay = values.T
+        jump = np.zeros(len(lines))
+        jump[1:] = np.linalg.norm(lines[1:, 0] - lines[:-1, 1], axis=1)
+        last = np.ones(len(lines), dtype=bool)  # of its polyline
+        last[:-1] = (jump[1:] > 0) | (exposure[1:] != exposure[:-1])
+        spent = np.zeros(len(lines))  # a speed of 0 is one that the file does not tell; such moves take no time
+        for length, by in ((np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1), speed), (jump, jump_speed)):
+            spent += np.divide(length, by, out=np.zeros(len(lines)), where=by > 0)
+        return np.cumsum(spent + 1e-6 * (last * mark_delay + (jump > 0) * jump_delay))
+
+    def plot(self, axes: Any = None, *, by: Literal["exposure", "region", "order", "time"] = "exposure") -> Any:
+        """Draws the vectors into axes of matplotlib, new ones if none are given, and returns the axes. `by` chooses the
+        colours: one for each exposure, one for each region, or one that tells the order or the time of the lines. Needs
+        matplotlib."""
+        check.choice("by", by, ("exposure", "region", "order", "time"))
+        if by == "order":
+            return plot_values(self.vectors, np.arange(len(self.exposure)), "order of lines", self.z, axes)
+        if by == "time":
+            return plot_values(self.vectors, self.seconds, "seconds", self.z, axes)
+        names = [getattr(exposure, "region" if by == "region" else "name") for exposure in self.exposures]
+        kinds = list(dict.fromkeys(names))
+        groups = np.array([kinds.index(name) for name in names], dtype=np.int64)[self.exposure]
+        return plot_groups(self.vectors, groups, kinds, self.z, axes)
+
 
 def _lines(layer: Layer) -> npt.NDArray[np.float64]:
     closed = layer.closed
@@ -79,14 +113,36 @@ def _lines(layer: Layer) -> npt.NDArray[np.float64]:
     return np.concatenate([*lines, layer.hatches])
 
 
+@dataclass(frozen=True)
+class ScannedPart:
+    """A part whose vectors are made."""
+
+    label: bytes
+    support: bool  #: by the strategy's rule for supports, without skins
+    bounds: Optional[npt.NDArray[np.float64]]  #: None if they are not known before the layers
+
+    def exposures(self, strategy: ScanStrategy) -> List[Exposure]:
+        of_part = _lamella.support_exposures if self.support else _lamella.exposures
+        return of_part(strategy, self.label)
+
+
 class ScanStream(Iterator[ScanLayer]):
     """Scan layers of a source for which the header of a file is known before the layers."""
 
-    def __init__(self, scanned: Generator[ScanLayer, None, None], source: Union[Stack, LayerStream]) -> None:
+    def __init__(
+        self,
+        scanned: Generator[ScanLayer, None, None],
+        source: Union[Stack, LayerStream],
+        parts: List[ScannedPart],
+        strategy: ScanStrategy,
+    ) -> None:
         self._scanned = scanned
         self._first: Optional[ScanLayer] = None
-        self._left = operator.length_hint(source)
-        self.bounds = source.bounds
+        self._left = len(source)
+        #: The bounds of the part of each exposure.
+        self.boxes = [
+            part.bounds for part in parts if part.bounds is not None for _ in part.exposures(strategy)
+        ]
         self.rule = source.rule
 
     def first(self) -> Optional[ScanLayer]:
@@ -105,12 +161,13 @@ class ScanStream(Iterator[ScanLayer]):
         self._first = None
         self._scanned.close()
 
-    def __length_hint__(self) -> int:
+    def __len__(self) -> int:
         return self._left
 
 
+@check.suggesting
 def scan(
-    layers: Iterable[Layer], strategy: StrategyLike = None, part: str = "part", *, support: bool = False
+    layers: Iterable[Layer], strategy: StrategyLike = None, part: Optional[str] = None, *, support: bool = False
 ) -> Iterator[ScanLayer]:
     """Computes scan vectors of layers in ascending z, such as a Stack or a stream from `iter_layers`. Yields them one
     by one, and keeps no more layers than skins need. Skins depend on the layers above and below. For a stream they
@@ -118,10 +175,12 @@ def scan(
     below the first one. Points of a Stack from a file are left out if they are collinear except for the rounding of the
     file.
 
-    strategy: a ScanStrategy, which is copied; the path of a TOML file, as for the program (needs Python 3.11); or the
-        same tables as a dict, such as {"hatch": {"distance": 0.08}}. None means the default strategy.
-    part: name of the part in exposures; an empty text means "part".
-    support: scans the part as a support, by the strategy's rule for supports and without skins.
+    strategy: a ScanStrategy, which is copied; a TOML file, as for the program (needs Python 3.11): a path, bytes or a
+        file object; or the same tables as a dict, such as {"hatch": {"distance": 0.08}}. None means the default strategy.
+    part: name of the part in exposures; "part" by default. The parts of a plate, and those of a slice file that holds
+        several, are scanned one after the other, each with its own label.
+    support: scans all parts as supports, by the strategy's rule for supports and without skins. Parts that are supports
+        are always scanned like this.
 
     Pass the result to `write` to store it.
 
@@ -131,23 +190,40 @@ def scan(
     inside out. For a Stack it is issued at once, for other layers after the last one was taken. Issues another
     DefectWarning if skins need layers of the part that are not in a Stack.
     """
+    if check.is_file(layers) or isinstance(layers, Mesh):
+        found = "a mesh" if isinstance(layers, Mesh) else "a path" if isinstance(layers, (str, os.PathLike)) else "a file"
+        raise TypeError(f"layers: {found} is not taken; slice it first")
     try:
         each = _ascending(iter(layers))
     except TypeError:
         check.refuse_type("layers", "layers in ascending z", layers)
     known = as_strategy("strategy", strategy)
-    label = check.label("part", part) or b"part"
-    support = check.flag("support", support)
+    label = check.optional(check.label, "part", part)
+    parts = _parts_to_scan(layers, label, check.flag("support", support))
     if isinstance(layers, Stack):
         _check_stack(layers)
         each = iter(list(each))
         warn(f"{layers.path or 'layers'}: {loss}" for loss in _lamella.scan_losses(layers))
-        if not support:
+        if not all(one.support for one in parts):
             _warn_of_skins(layers, known)
     else:
-        each = _told(each)
-    scanned = (_scan_support if support else _scan)(each, known, label, layers)
-    return ScanStream(scanned, layers) if isinstance(layers, (Stack, LayerStream)) else scanned
+        each = _told(each, parts)
+    scanned = _scan(each, known, parts, layers)
+    return ScanStream(scanned, layers, parts, known) if isinstance(layers, (Stack, LayerStream)) else scanned
+
+
+def _parts_to_scan(layers: Iterable[Layer], label: Optional[bytes], support: bool) -> List[ScannedPart]:
+    if isinstance(layers, LayerStream):
+        heads = layers._parts
+    elif isinstance(layers, Stack):
+        heads = [(check.label("label", one.label), one.bounds, one.support) for one in layers.parts]
+    else:
+        return [ScannedPart(label or b"part", support, None)]
+    if len(heads) == 1:
+        return [ScannedPart(label or b"part", support or of_support, box) for _, box, of_support in heads]
+    if label is not None:
+        raise UsageError(f"part: names one part, and the layers hold {len(heads)}, which have labels of their own")
+    return [ScannedPart(name or b"part", support or of_support, box) for name, box, of_support in heads]
 
 
 def _ascending(layers: Iterator[Any]) -> Iterator[Layer]:
@@ -186,47 +262,50 @@ def _warn_of_skins(stack: Stack, strategy: ScanStrategy) -> None:
         ])  # fmt: skip
 
 
-def _told(layers: Iterable[Layer]) -> Iterator[Layer]:
+def _told(layers: Iterable[Layer], parts: List[ScannedPart]) -> Iterator[Layer]:
     """Yields the layers. At the end, warns of their content of which no vectors are made."""
     losses = _lamella.ScanLosses()
     for layer in layers:
-        losses.add(layer)
+        losses.add(_of_parts(layer, parts))
         yield layer
     warn(f"layers: {loss}" for loss in losses.texts())
 
 
-def _scan_support(
-    layers: Iterator[Layer], strategy: ScanStrategy, part: bytes, source: Iterable[Layer]
-) -> Generator[ScanLayer, None, None]:
-    stack = source if isinstance(source, Stack) else None
-    exposures = tuple(_lamella.support_exposures(strategy, part))
-    for layer in layers:
-        yield _scan_layer(layer, exposures, _lamella.scan_support(layer, strategy, stack))
-
-
 def _scan(
-    layers: Iterator[Layer], strategy: ScanStrategy, part: bytes, source: Iterable[Layer]
+    layers: Iterator[Layer], strategy: ScanStrategy, parts: List[ScannedPart], source: Iterable[Layer]
 ) -> Generator[ScanLayer, None, None]:
     stack = source if isinstance(source, Stack) else None
-    exposures = tuple(_lamella.exposures(strategy, part))
-    wanted = strategy.downskin.layers, strategy.upskin.layers
+    exposures = tuple(exposure for part in parts for exposure in part.exposures(strategy))
+    skinless = all(part.support for part in parts)
+    wanted = (0, 0) if skinless else (strategy.downskin.layers, strategy.upskin.layers)
     # Layers that iter_layers left out affect skins, too.
     beneath, on_top = source._beside(*wanted) if isinstance(source, LayerStream) and any(wanted) else ([], [])
     end = on_top[0] if on_top else None
     layers = chain(layers, on_top)
-    below: Deque[Layer] = deque(beneath, maxlen=strategy.downskin.layers)
-    coming: Deque[Layer] = deque(islice(layers, 1 + strategy.upskin.layers))
+    below: Deque[Layer] = deque(beneath, maxlen=wanted[0])
+    coming: Deque[Layer] = deque(islice(layers, 1 + wanted[1]))
+    merged = None
     while coming and coming[0] is not end:
         layer = coming.popleft()
-        scanned = _lamella.scan(layer, list(reversed(below)), list(coming), strategy, stack)
-        yield _scan_layer(layer, exposures, scanned)
+        if merged is None and len(parts) == 1 and (merged := parts_lost([layer])):
+            warn([merged])
+        vectors: List[Layer] = []
+        unreached_mm2 = 0.0
+        for part, this, *others in zip(parts, *(_of_parts(one, parts) for one in (layer, *reversed(below), *coming))):
+            if part.support:
+                of_part, unreached = _lamella.scan_support(this, strategy, stack)
+            else:
+                beside = others[: len(below)], others[len(below) :]
+                of_part, unreached = _lamella.scan(this, *beside, strategy, stack)
+            vectors += of_part
+            unreached_mm2 += unreached
+        yield ScanLayer(layer.index, layer.z, layer.bottom, layer.top, exposures, tuple(vectors), unreached_mm2)
         below.append(layer)
         coming.extend(islice(layers, 1))
 
 
-def _scan_layer(layer: Layer, exposures: Tuple[Exposure, ...], scanned: Tuple[List[Layer], float]) -> ScanLayer:
-    vectors, unreached_mm2 = scanned
-    return ScanLayer(layer.index, layer.z, layer.bottom, layer.top, exposures, tuple(vectors), unreached_mm2)
+def _of_parts(layer: Layer, parts: List[ScannedPart]) -> List[Layer]:
+    return layer.parts if len(parts) > 1 else [layer]
 
 
 def as_strategy(name: str, strategy: StrategyLike) -> ScanStrategy:
@@ -237,25 +316,22 @@ def as_strategy(name: str, strategy: StrategyLike) -> ScanStrategy:
         found = copy.copy(strategy)
     elif isinstance(strategy, Mapping):
         found = _from_tables(name, strategy)
-    elif isinstance(strategy, (str, os.PathLike)):
-        path = os.fsdecode(check.path(name, strategy))
-        found = _from_tables(path, _toml(path))
+    elif check.is_file(strategy):
+        path, text = check.content(name, strategy)
+        found = _from_tables(path, _toml(path, text))
     else:
-        check.refuse_type(name, "a ScanStrategy, a path, or a dict of tables", strategy)
+        check.refuse_type(name, "a ScanStrategy, a TOML file, or a dict of tables", strategy)
     _lamella.check_strategy(found)
     return found
 
 
-def _toml(path: str) -> Dict[str, Any]:
+def _toml(path: str, text: bytes) -> Dict[str, Any]:
     try:
         import tomllib
     except ImportError as error:
         raise ImportError("strategies as files need Python 3.11; a dict of the same tables will do") from error
     try:
-        with open(path, encoding="utf-8-sig", newline="") as file:  # skips a byte order mark
-            return tomllib.loads(file.read())
-    except OSError as error:
-        raise InputError(f"{path}: {error.strerror}") from error
+        return tomllib.loads(text.decode("utf-8-sig"))  # skips a byte order mark
     except ValueError as error:
         raise UsageError(f"{path}: {error}") from error
 
@@ -301,8 +377,8 @@ def _assign(name: str, rule: Any, table: Any, sets: Optional[Dict[str, Parameter
     before = f"{name}: " if isinstance(rule, ScanStrategy) else f"{name}."
     for key, value in _items(name, table):
         if key not in known:
-            near = difflib.get_close_matches(str(key), known, 1)
-            hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+            near = check.nearest(key, known)
+            hint = f"did you mean {near}?" if near else f"there are {', '.join(known)}"
             raise UsageError(f"{name}: there is no {check.excerpt(key)}; {hint}")
         place = f"{before}{key}"
         if key == "parameters" and sets is not None:
@@ -359,6 +435,7 @@ class PyslmLayer:
         return []
 
 
+@check.suggesting
 def to_pyslm(layer: ScanLayer, mid: int = 1) -> PyslmLayer:
     """Converts a layer for tools that accept PySLM's layers; PySLM itself is not needed. `mid` is the number of the
     model. Build styles (`bid`) are numbered like the exposures, from 1."""

@@ -9,14 +9,16 @@ import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import CutAt, Progress
+from ._arguments import FILL_RULES, CutAt, FillRule, Progress
 from ._errors import DefectError, UsageError
-from ._lamella import LayerStream, Mesh, Stack
-from ._meshes import MeshLike, as_mesh, inspect, placed, placing
+from ._lamella import LayerStream, Stack
+from ._meshes import placing
+from ._plates import Sliceable, plate_of
 from ._warning import warn, with_arguments
 
 DEFAULT_LAYER_HEIGHT = 0.1
 DEFAULT_CUSP = 0.05
+LAST = 2**64 - 1  # an end above all layers
 PLACES = ("bottom", "middle", "top")
 
 
@@ -37,8 +39,9 @@ def engines() -> List[Engine]:
     return [Engine(*row) for row in _lamella.engines()]
 
 
+@check.suggesting
 def slice(
-    part: MeshLike,
+    part: Sliceable,
     layer_height: Optional[float] = None,
     *,
     z: Optional[npt.ArrayLike] = None,
@@ -49,11 +52,16 @@ def slice(
     first_layer_height: Optional[float] = None,
     at: CutAt = "middle",
     z_range: Optional[Tuple[float, float]] = None,
-    layers: Optional[Tuple[int, int]] = None,
+    layers: Optional[Tuple[int, Optional[int]]] = None,
     snap: float = 0,
     direction: Sequence[float] = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
     unit_mm: Optional[float] = None,
+    weld_tolerance: Optional[float] = None,
+    drop_duplicates: bool = False,
+    orient: bool = False,
+    close_gaps: Optional[float] = None,
+    fill: Optional[FillRule] = None,
     engine: str = "sweep",
     strict: bool = False,
     max_memory: int = 0,
@@ -62,12 +70,15 @@ def slice(
 ) -> Stack:
     """Cuts a mesh into layers of closed contours.
 
-    part: a path, a Mesh, a pair of arrays (vertices (n, 3) in millimetres, faces (m, 3)), an array of triangles
-        (m, 3, 3), or anything with .vertices and .faces, such as a trimesh.Trimesh.
+    part: a path, bytes, or a file object that is open for reading bytes; a Mesh, a pair of arrays (vertices (n, 3) in
+        millimetres, faces (m, 3)), an array of triangles (m, 3, 3), or anything with .vertices and .faces, .vertices and
+        .triangles, or .points and .faces, such as a trimesh.Trimesh, a mesh of Open3D, or a PolyData of PyVista.
+        A Part, or a list of them, is a plate: all parts are cut at the same heights, and stay apart in Stack.parts and
+        Layer.parts.
     layer_height: thickness of a layer in millimetres, stacked from the bottom of the part; 0.1 by default.
 
     Instead of one layer height:
-    z: ascending heights in millimetres, (layers,); the mesh is cut exactly there.
+    z: one height, or ascending heights, in millimetres, (layers,); the mesh is cut exactly there.
     offsets: the same, relative to the bottom of the part.
     heights: ranges (from, to, layer_height) in millimetres above the bottom of the part; elsewhere layers are
         `layer_height` high.
@@ -77,12 +88,22 @@ def slice(
     first_layer_height: thickness of the first layer in millimetres, if it differs.
     at: position of the cut within a layer: "bottom", "middle" or "top".
     z_range: keeps only the layers that are cut between these two heights, in millimetres, both included.
-    layers: keeps only the layers with indices from the first of these numbers to the one before the second.
+    layers: keeps only the layers with indices from the first of these numbers to the one before the second; (2, None) keeps
+        all from 2 on.
     snap: vertices at most this far from a plane, in millimetres, count as on it. It is meant for faces that are
         horizontal except for rounding.
     direction: the direction of slicing, (x, y, z) of any length; the mesh is rotated so that this points along z.
-    transform: a (4, 4) matrix in millimetres that is applied to the mesh before this rotation.
-    unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.
+    transform: a (4, 4) matrix in millimetres that is applied to the mesh, or to the whole plate, before this rotation.
+    unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default. A Part has its own.
+
+    Nothing is mended unless you ask for it; `repairs` of the result has the counts. In this order:
+    weld_tolerance: joins vertices that are at most this far apart, in millimetres, the closest pairs first.
+    drop_duplicates: of triangles with the same corners keeps one; those that run in opposite directions cancel in pairs.
+    orient: flips triangles so that neighbours agree, and shells outward, or inward where they are voids.
+    close_gaps: joins ends of open contours that are at most this far apart, in millimetres, the closest first.
+    fill: unites contours that overlap. Material is where the winding number satisfies this rule: "nonzero", "evenodd" or
+        "positive".
+
     engine: the algorithm, one of `engines`.
     strict: raises a DefectError for any defect of the file or its mesh.
     max_memory: largest number of bytes that reading a file and the list of layers may take; otherwise a LimitError is
@@ -99,20 +120,21 @@ def slice(
     do not close because the mesh has holes, if rings bound no material because triangles face inwards, or if horizontal
     faces coincide with a plane except for rounding, which then decides the content of the layer.
     """
-    mesh, plan = _prepared(
+    plate, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
-        direction, transform, unit_mm, engine, strict, max_memory, threads, progress,
+        direction, transform, unit_mm, weld_tolerance, drop_duplicates, orient, close_gaps, fill, engine, strict, max_memory, threads, progress,
     )  # fmt: skip
-    stack = _lamella.slice_stack(mesh, plan, engine, threads, progress)
-    doubts = [f"{mesh.path or 'the mesh'}: {doubt}" for doubt in _lamella.mesh_doubts(stack)]
+    stack = _lamella.slice_stack(plate, plan, engine, threads, progress)
+    doubts = _named(plate, _lamella.mesh_doubts(stack, plate))
     if strict and doubts:
         raise DefectError(with_arguments(doubts[0]))
     warn(doubts)
     return stack
 
 
+@check.suggesting
 def iter_layers(
-    part: MeshLike,
+    part: Sliceable,
     layer_height: Optional[float] = None,
     *,
     z: Optional[npt.ArrayLike] = None,
@@ -123,11 +145,16 @@ def iter_layers(
     first_layer_height: Optional[float] = None,
     at: CutAt = "middle",
     z_range: Optional[Tuple[float, float]] = None,
-    layers: Optional[Tuple[int, int]] = None,
+    layers: Optional[Tuple[int, Optional[int]]] = None,
     snap: float = 0,
     direction: Sequence[float] = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
     unit_mm: Optional[float] = None,
+    weld_tolerance: Optional[float] = None,
+    drop_duplicates: bool = False,
+    orient: bool = False,
+    close_gaps: Optional[float] = None,
+    fill: Optional[FillRule] = None,
     engine: str = "sweep",
     strict: bool = False,
     max_memory: int = 0,
@@ -143,15 +170,19 @@ def iter_layers(
     strict: inspects the mesh first. Otherwise there is no warning about open chains (see Layer.open_chains) and rings
         that bound no material.
     """
-    mesh, plan = _prepared(
+    plate, plan = _prepared(
         part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
-        direction, transform, unit_mm, engine, strict, max_memory, threads, progress,
+        direction, transform, unit_mm, weld_tolerance, drop_duplicates, orient, close_gaps, fill, engine, strict, max_memory, threads, progress,
     )  # fmt: skip
-    return _lamella.stream(mesh, plan, engine, threads, progress)
+    return _lamella.stream(plate, plan, engine, threads, progress)
+
+
+def _named(plate: _lamella.Plate, texts: List[Tuple[int, str]]) -> List[str]:
+    return [f"{plate.names[file]}: {text}" for file, text in texts]
 
 
 def _prepared(
-    part: MeshLike,
+    part: Sliceable,
     layer_height: Optional[float],
     z: Optional[npt.ArrayLike],
     offsets: Optional[npt.ArrayLike],
@@ -161,24 +192,27 @@ def _prepared(
     first_layer_height: Optional[float],
     at: str,
     z_range: Optional[Tuple[float, float]],
-    layers: Optional[Tuple[int, int]],
+    layers: Optional[Tuple[int, Optional[int]]],
     snap: float,
     direction: Sequence[float],
     transform: Optional[npt.ArrayLike],
     unit_mm: Optional[float],
+    weld_tolerance: Optional[float],
+    drop_duplicates: bool,
+    orient: bool,
+    close_gaps: Optional[float],
+    fill: Optional[str],
     engine: str,
     strict: bool,
     max_memory: int,
     threads: int,
     progress: Optional[Progress],
-) -> Tuple[Mesh, _lamella.Plan]:
-    """Returns the placed mesh, and the plan by which it is cut."""
+) -> Tuple[_lamella.Plate, _lamella.Plan]:
+    """Returns the plate, and the plan by which it is cut."""
     _check_conflicts(layer_height, z, offsets, heights, adaptive, cusp, first_layer_height)
-    names = [known.name for known in engines()]
-    if check.text("engine", engine) not in names:
-        raise UsageError(f"engine: there is no engine named '{check.excerpt(engine)}'; the engines are: {', '.join(names)}")
+    check.choice("engine", engine, [known.name for known in engines()])
     threads, progress = check.thread_count(threads), check.listener(progress)
-    where = placing(direction, transform)
+    whole = placing(direction, transform)
     strict = check.flag("strict", strict)
     max_memory = check.whole("max_memory", max_memory)
     above_bottom = check.optional(_heights, "offsets", offsets)
@@ -192,18 +226,20 @@ def _prepared(
     first_height = check.optional(check.positive, "first_layer_height", first_layer_height)
     place = check.choice("at", at, PLACES)
     z_limits = None if z_range is None else check.pair("z_range", z_range, "two numbers (from, to)", check.number)
-    numbers = None if layers is None else check.pair("layers", layers, "two whole numbers (first, end)", check.whole)
+    numbers = check.optional(_index_range, "layers", layers)
     near = check.distance("snap", snap)
-    mesh = as_mesh(
-        "part", part, unit_mm=unit_mm, strict=strict, max_memory=max_memory, threads=threads, progress=progress
+    mending = (
+        check.optional(check.positive, "weld_tolerance", weld_tolerance),
+        check.flag("drop_duplicates", drop_duplicates),
+        check.flag("orient", orient),
     )
-    if strict:
-        found = inspect(mesh, threads=threads, progress=progress)
-        if not found.sound:
-            raise DefectError(f"{mesh.path or 'the mesh'}: the mesh has defects: {found.defects}")
-    mesh = placed(mesh, where, threads)
+    close_gaps = check.optional(check.positive, "close_gaps", close_gaps)
+    fill = check.optional(check.choice, "fill", fill, FILL_RULES)
+    plate = plate_of(
+        "part", part, unit_mm, whole, mending, strict=strict, max_memory=max_memory, threads=threads, progress=progress
+    )
     if above_bottom is not None:
-        cuts = above_bottom + mesh.bounds[0][2]
+        cuts = above_bottom + plate.bottom
     cut: Union[_lamella.UniformLayers, _lamella.ListedPlanes, _lamella.HeightRanges, _lamella.AdaptiveLayers]
     if cuts is not None:
         cut = _lamella.ListedPlanes(cuts)
@@ -213,18 +249,28 @@ def _prepared(
         cut = _lamella.HeightRanges(ranges, height)
     else:
         cut = _lamella.UniformLayers(height, first_height)
-    plan = _lamella.plan(mesh, cut, place, z_limits, numbers, near, max_memory, threads, progress)
-    doubt = _lamella.near_faces(mesh, plan, threads, progress)
-    if doubt:
-        doubt = f"{mesh.path or 'the mesh'}: {doubt}"
-        if strict:
-            raise DefectError(with_arguments(doubt))
-        warn([doubt])
-    return mesh, plan
+    plan = _lamella.plan(
+        plate, cut, place, z_limits, numbers, near, close_gaps, fill or "none", max_memory, threads, progress
+    )
+    doubts = _named(plate, _lamella.near_faces(plate, plan, threads, progress))
+    if strict and doubts:
+        raise DefectError(with_arguments(doubts[0]))
+    warn(doubts)
+    return plate, plan
+
+
+def _index_range(name: str, value: Any) -> Tuple[int, int]:
+    def one(name: str, value: Any) -> Optional[int]:
+        return check.optional(check.whole, name, value)
+
+    first, end = check.pair(name, value, "two whole numbers (first, end)", one)
+    return check.whole(name, first), LAST if end is None else end
 
 
 def _heights(name: str, values: npt.ArrayLike) -> npt.NDArray[np.float64]:
     array = check.array(name, values, "a list of numbers")
+    if array.ndim == 0:
+        array = array.reshape(1)
     if array.ndim != 1:
         raise UsageError(f"{name}: expected a list of numbers, found an array of the shape {array.shape}")
     if len(array) == 0:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import warnings
-from typing import Iterable
+from typing import Iterable, Type
 
 from ._errors import DefectWarning
 
@@ -12,9 +12,9 @@ from ._errors import DefectWarning
 #: Names in Python for fields that texts of the library mention.
 ARGUMENTS = {
     "`snap_mm` ": "snap=",
-    "`close_gaps_mm` ": "lamella slice --close-gaps ",
+    "`close_gaps_mm` ": "close_gaps=",
     "`include` ": "include=",
-    "`orient`": "lamella slice --orient",
+    "`orient`": "orient=True",
     "converting them with `fill` nonzero": 'filled("nonzero")',
 }
 
@@ -25,8 +25,8 @@ def with_arguments(text: str) -> str:
     return text
 
 
-def warn(texts: Iterable[str]) -> None:
-    """Issues a DefectWarning for each text."""
+def warn(texts: Iterable[str], category: Type[Warning] = DefectWarning) -> None:
+    """Issues a warning for each text."""
     package = __name__.rpartition(".")[0]
     level = 1
     frame = sys._getframe(0)
@@ -34,4 +34,4 @@ def warn(texts: Iterable[str]) -> None:
         frame = frame.f_back
         level += 1
     for text in texts:
-        warnings.warn(with_arguments(text), DefectWarning, stacklevel=level)
+        warnings.warn(with_arguments(text), category, stacklevel=level)

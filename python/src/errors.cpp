@@ -5,6 +5,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cerrno>
 #include <exception>
 #include <new>
 
@@ -34,10 +35,11 @@ const char* class_name(ErrorKind kind) {
 }
 
 /// Raises the exception. The text may contain paths, of which bytes that are not UTF-8 are escaped, as in the
-/// program.
-void raise(ErrorKind kind, const char* text) {
-    const py::object type = py::module_::import("lamella._errors").attr(class_name(kind));
-    PyErr_SetObject(type.ptr(), py::str(printable(text)).ptr());
+/// program. `system_error` is the errno of the cause, or 0.
+void raise(ErrorKind kind, const char* text, int system_error = 0) {
+    const py::object error = py::module_::import("lamella._errors")
+                                 .attr("error_of")(class_name(kind), printable(text), system_error);
+    PyErr_SetObject(py::type::of(error).ptr(), error.ptr());
 }
 
 } // namespace
@@ -49,7 +51,7 @@ void register_errors() {
             if (thrown)
                 std::rethrow_exception(thrown);
         } catch (const Error& error) {
-            raise(error.kind(), error.what());
+            raise(error.kind(), error.what(), error.system_error());
         } catch (const py::error_already_set&) {
             throw;                        // an exception of Python
         } catch (const py::cast_error&) { // see made.hpp; pybind11 checks pointers itself
@@ -59,7 +61,8 @@ void register_errors() {
             throw; // an exception of Python
         } catch (const std::bad_alloc&) {
             raise(ErrorKind::limit,
-                  "memory ran out; free some, or work on less at once: fewer parts or fewer layers (layers)");
+                  "memory ran out; free some, or work on less at once: fewer parts or fewer layers (layers)",
+                  ENOMEM);
         } catch (const std::exception& unknown) {
             raise(ErrorKind::internal, unknown.what());
         }

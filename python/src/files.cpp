@@ -1,24 +1,30 @@
 #include "files.hpp"
 
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/verify.hpp"
 #include "lamella/polygon/compare.hpp"
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/any_file.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/write/layer_writer.hpp"
 #include "lamella/write/mesh_writer.hpp"
 
 #include "gil_release.hpp"
+#include "input.hpp"
 #include "layers.hpp"
 #include "placing.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
 #include "source_mesh.hpp"
+#include "source_plate.hpp"
+#include "viewer/viewer_page.hpp"
 
 #include <pybind11/stl.h>
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,9 +51,10 @@ bool holds_scan_vectors(const Stack& stack) {
 }
 
 StackPointer stack_of(const LayerFile& file, std::string label, LayerStack layers,
-                      std::vector<PointArray> hatches) {
+                      std::vector<PointArray> hatches, std::vector<StackPointer> parts = {}) {
     auto stack = std::make_shared<Stack>();
-    stack->layers = shared(std::move(layers), file.rule, std::move(hatches));
+    stack->layers = shared(std::move(layers), file.rule, std::move(hatches), parts);
+    stack->parts = std::move(parts);
     stack->label = std::move(label);
     stack->box = box_of(stack->layers);
     stack->planned = stack->layers.empty() ? 0 : stack->layers.back()->get().index + 1;
@@ -76,7 +83,8 @@ std::vector<PointArray> merged_hatches(const LayerFile& file) {
 /// Returns the stack of the file, with a stack of each part if there are several.
 StackPointer stack_of(LayerFile file) {
     const bool several = file.parts.size() > 1;
-    const StackPointer together = several ? stack_of(file, {}, file.merged(), merged_hatches(file)) : nullptr;
+    LayerStack merged = several ? file.merged() : LayerStack();
+    std::vector<PointArray> hatches = several ? merged_hatches(file) : std::vector<PointArray>();
     std::vector<StackPointer> parts;
     for (LayerPart& part : file.parts) {
         const StackPointer& stack =
@@ -86,16 +94,18 @@ StackPointer stack_of(LayerFile file) {
     }
     if (!several)
         return parts.front();
-    together->parts = std::move(parts);
-    return together;
+    return stack_of(file, {}, std::move(merged), std::move(hatches), std::move(parts));
 }
 
 /// Returns the layers of the file, and its warnings.
-std::pair<StackPointer, py::list> read_stack(const std::string& path, std::uint64_t max_memory,
+std::pair<StackPointer, py::list> read_stack(const py::object& source, std::uint64_t max_memory,
                                              unsigned threads, const py::object& progress) {
+    const Input input(source);
     std::vector<std::string> warnings;
     const StackPointer read = result_of(threads, progress, [&](const Execution& execution) {
-        LayerFile file = read_layers(path, {.max_memory = max_memory}, execution);
+        LayerFile file = input.read_by([&](const auto&... from) {
+            return read_layers(from..., LayerReadOptions{.max_memory = max_memory}, execution);
+        });
         warnings = std::move(file.warnings);
         return stack_of(std::move(file));
     });
@@ -104,14 +114,17 @@ std::pair<StackPointer, py::list> read_stack(const std::string& path, std::uint6
 
 /// Returns the mesh or the layers of the file, and its warnings.
 std::pair<std::variant<MeshPointer, StackPointer>, py::list>
-read_either(const std::string& path, std::optional<double> unit_mm, bool strict, const std::string& include,
+read_either(const py::object& source, std::optional<double> unit_mm, bool strict, const std::string& include,
             std::uint64_t max_triangles, std::uint64_t max_memory, unsigned threads,
             const py::object& progress) {
+    const Input input(source);
+    const MeshReadOptions options{strict, roles_named(include), max_triangles, max_memory};
     std::vector<std::string> warnings;
     using Either = std::variant<MeshPointer, StackPointer>;
     const auto read = result_of(threads, progress, [&](const Execution& execution) -> Either {
-        auto file = read_any(path, {strict, roles_named(include), max_triangles, max_memory}, execution);
+        auto file = input.read_by([&](const auto&... from) { return read_any(from..., options, execution); });
         if (auto* const mesh = std::get_if<MeshFile>(&file)) {
+            input.label(*mesh);
             MeshPointer made = source_mesh(std::move(*mesh), unit_mm, execution);
             warnings = made->origin().warnings;
             return made;
@@ -126,9 +139,12 @@ read_either(const std::string& path, std::optional<double> unit_mm, bool strict,
 /// A slice file under construction. If it is closed or destroyed before `finish`, no file is left behind.
 class StackWriter {
   public:
-    StackWriter(const std::string& path, const std::string& format, const LayerFileInfo& info,
-                const LayerWriteOptions& options)
-        : writer_(open_layer_writer(path, layer_format(format, path), info, options)) {}
+    StackWriter(const std::string& path, const std::string& format, LayerFileInfo info,
+                const LayerWriteOptions& options, bool in_memory) {
+        if (in_memory)
+            info.memory = &memory_;
+        writer_ = open_layer_writer(path, layer_format(format, path), info, options);
+    }
 
     /// Writes the layers of each part, plane by plane.
     void write(const std::vector<std::vector<LayerPointer>>& planes, unsigned threads) {
@@ -150,6 +166,9 @@ class StackWriter {
         return message_texts(writer().warnings());
     }
 
+    /// Returns the bytes of a finished file in memory.
+    [[nodiscard]] py::bytes content() const { return memory_; }
+
     void close() {
         const GilRelease released;
         writer_.reset();
@@ -162,6 +181,7 @@ class StackWriter {
         return *writer_;
     }
 
+    std::string memory_;
     std::unique_ptr<LayerWriter> writer_;
 };
 
@@ -198,6 +218,8 @@ LayerWriteOptions write_options(const py::dict& given) {
     options.exposure.first_s = option<double>(given, "first_exposure_s");
     options.exposure.fade_layers =
         option<std::uint32_t>(given, "fade_layers").value_or(options.exposure.fade_layers);
+    options.page.viewer = viewer_page();
+    options.page.no_viewer = no_viewer();
     return options;
 }
 
@@ -219,7 +241,7 @@ using PartHeads = std::vector<std::tuple<std::string, Bounds, std::optional<Expo
 
 std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::string& format,
                                          const PartHeads& parts, std::uint64_t layers, double bottom,
-                                         const std::string& rule, const py::dict& options) {
+                                         const std::string& rule, const py::dict& options, bool in_memory) {
     LayerFileInfo info{.box = {}, .layers = layers, .bottom = bottom, .parts = {}, .rule = rule_named(rule)};
     for (const auto& [label, bounds, exposure, support] : parts) {
         info.parts.push_back({label, box_of(bounds), exposure, support});
@@ -228,43 +250,93 @@ std::unique_ptr<StackWriter> open_writer(const std::string& path, const std::str
     if (info.box.empty())
         info.box.add(Point3{0, 0, bottom});
     LayerWriteOptions writing = write_options(options);
+    writing.page.title = in_memory ? "layers" : std::filesystem::path(path).filename().string();
     if (layer_format(format, path).exposure)
         writing.exposure.created_s = source_date();
-    return std::make_unique<StackWriter>(path, format, info, writing);
+    return std::make_unique<StackWriter>(path, format, std::move(info), writing, in_memory);
 }
 
-std::vector<std::string> write_mesh(const std::string& path, const std::string& extension,
-                                    const MeshPointer& mesh, const std::string& name, bool strict) {
-    const GilRelease released;
+/// Writes a mesh to the path or, unless it is null, to `memory`. Returns the warnings. Must be called without
+/// the interpreter lock.
+std::vector<std::string> write_mesh_file(const std::string& path, const std::string& format,
+                                         const SourceMesh& mesh, const std::string& name, bool strict,
+                                         std::string* memory) {
     std::vector<std::string> warnings;
-    if (mesh->source().has_negatives()) {
+    if (mesh.source().has_negatives()) {
         warnings.emplace_back("its negative volumes are not subtracted: only layers are without them");
         if (strict)
             throw Error(ErrorKind::defect, path + ": " + warnings.front());
     }
-    if (extension == ".ply")
-        write_ply(path, mesh->welded({}));
-    else if (extension == ".obj")
-        write_obj(path, mesh->welded({}), name);
+    if (format == "ply")
+        write_ply(path, mesh.welded({}), memory);
+    else if (format == "obj")
+        write_obj(path, mesh.welded({}), name, memory);
     else
-        for (std::string& warning : write_stl(path, mesh->mesh(), strict))
+        for (std::string& warning : write_stl(path, mesh.mesh(), strict, memory))
             warnings.push_back(std::move(warning));
     return warnings;
 }
 
-py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string& at, double snap_mm,
-                  double tolerance, unsigned threads, const py::object& progress) {
+/// Returns the stack after a fill rule for each of its parts, and the number of hatch lines that are left out
+/// because the contours that they fill were changed.
+std::pair<StackPointer, std::uint64_t> filled(const Stack& stack, const std::string& rule, unsigned threads,
+                                              const py::object& progress) {
+    return result_of(threads, progress, [&](const Execution& execution) {
+        ChangedStacks changed =
+            take_steps({.fill = fill_rule(rule)}, plain_parts(stack), {.execution = execution});
+        std::uint64_t lost = 0;
+        std::vector<StackPointer> parts;
+        for (std::size_t i = 0; i < changed.parts.size(); ++i) {
+            const Stack& before = stack.parts.empty() ? stack : *stack.parts[i];
+            Stack& part = *parts.emplace_back(std::make_shared<Stack>(before));
+            std::vector<PointArray> hatches;
+            for (std::size_t k = 0; k < part.layers.size(); ++k) {
+                const SharedLayer& layer = *before.layers[k];
+                const bool kept = same_contours(layer.get(), changed.parts[i][k]);
+                hatches.push_back(kept ? layer.hatches() : PointArray());
+                lost += kept ? 0 : layer.hatches().size() / 2;
+            }
+            part.layers = shared(std::move(changed.parts[i]), part.rule, std::move(hatches));
+            part.box = box_of(part.layers);
+        }
+        if (stack.parts.empty())
+            return std::pair(parts.front(), lost);
+        auto together = std::make_shared<Stack>(stack);
+        together->parts = std::move(parts);
+        return std::pair(std::move(together), lost);
+    });
+}
+
+/// Returns the warnings, and the bytes of a file in memory.
+std::pair<std::vector<std::string>, py::bytes> write_mesh(const std::string& path, const std::string& format,
+                                                          const MeshPointer& mesh, const std::string& name,
+                                                          bool strict, bool in_memory) {
+    std::string memory;
+    std::vector<std::string> warnings;
+    {
+        const GilRelease released;
+        warnings = write_mesh_file(path, format, *mesh, name, strict, in_memory ? &memory : nullptr);
+    }
+    return {std::move(warnings), memory};
+}
+
+void set_reference(VerifyOptions& options, const SourcePlate& plate, const Execution& execution) {
+    options.mesh = joined(plate.placed, execution);
+    if (!plate.placed.negatives.empty())
+        options.plate = plate.placed;
+}
+
+py::dict verified(const Stack& stack, const PlatePointer& plate, const std::string& at, double snap_mm,
+                  double tolerance, const std::string& fill, unsigned threads, const py::object& progress) {
     if (holds_scan_vectors(stack))
         throw Error(ErrorKind::usage,
                     stack.path + " holds scan vectors, which lamella.verify_vectors checks");
     const Verification found = result_of(threads, progress, [&](const Execution& execution) {
         VerifyOptions options{
             .rule = stack.rule, .snap_mm = snap_mm, .rounding = stack.rounding, .tolerance_mm = tolerance};
-        if (mesh) {
-            options.mesh = mesh->mesh();
-            if (mesh->source().has_negatives())
-                options.plate = mesh->source().plate(execution);
-        }
+        options.steps.fill = fill_rule(fill);
+        if (plate)
+            set_reference(options, *plate, execution);
         LayerStack layers = plain(stack.layers);
         for (const LayerPointer& layer : stack.layers)
             options.hatch_lines += layer->hatches().size() / 2;
@@ -292,22 +364,22 @@ py::dict verified(const Stack& stack, const MeshPointer& mesh, const std::string
 }
 
 /// Returns the findings, and the warnings of the file.
-std::pair<py::dict, py::list> vectors_verified(const std::string& path, const MeshPointer& mesh,
+std::pair<py::dict, py::list> vectors_verified(const py::object& source, const PlatePointer& plate,
                                                const std::optional<ScanStrategy>& strategy,
                                                const std::string& at, double snap_mm, double tolerance,
                                                unsigned threads, const py::object& progress) {
+    const Input input(source);
     std::vector<std::string> warnings;
     const VectorVerification found = result_of(threads, progress, [&](const Execution& execution) {
-        LayerFile file = read_layers(path, {}, execution);
+        LayerFile file = input.read_by(
+            [&](const auto&... from) { return read_layers(from..., LayerReadOptions{}, execution); });
         if (!holds_scan_vectors(file))
-            throw Error(ErrorKind::usage, path + " holds no scan vectors; lamella.verify checks layers");
+            throw Error(ErrorKind::usage,
+                        input.name() + " holds no scan vectors; lamella.verify checks layers");
         VerifyOptions options{
             .rule = file.rule, .snap_mm = snap_mm, .rounding = file.rounding, .tolerance_mm = tolerance};
-        if (mesh) {
-            options.mesh = mesh->mesh();
-            if (mesh->source().has_negatives())
-                options.plate = mesh->source().plate(execution);
-        }
+        if (plate)
+            set_reference(options, *plate, execution);
         options.strategy = strategy;
         if (!at.empty())
             options.rule = place_cuts(file, slice_at_named(at));
@@ -364,6 +436,7 @@ py::tuple compared(const Stack& first, const Stack& second, std::optional<double
 void bind_files(py::module_& module) {
     module.def("read_layers", &read_stack);
     module.def("read_any", &read_either);
+    module.def("filled", &filled);
     module.def("verify", &verified);
     module.def("verify_vectors", &vectors_verified);
     module.def("compare", &compared);
@@ -371,6 +444,7 @@ void bind_files(py::module_& module) {
     py::class_<StackWriter>(module, "StackWriter")
         .def("write", &StackWriter::write)
         .def("finish", &StackWriter::finish)
+        .def("content", &StackWriter::content)
         .def("close", &StackWriter::close);
     module.def("open_writer", &open_writer);
     module.def("formats_with", &formats_with);

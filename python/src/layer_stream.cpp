@@ -20,16 +20,16 @@ constexpr std::size_t most_points = (std::size_t{16} << 20) / sizeof(Point2);
 
 } // namespace
 
-void LayerQueue::put(Layer&& layer) {
+void LayerQueue::put(MendedLayer&& made) {
     std::unique_lock lock(mutex_);
     const auto has_room = [&] {
-        return closed_.requested() || waiting_.empty() || points_ + layer.points.size() <= most_points;
+        return closed_.requested() || waiting_.empty() || points_ + made.points <= most_points;
     };
     room_.wait(lock, has_room);
     if (closed_.requested())
         throw Error(ErrorKind::cancelled, "cancelled");
-    points_ += layer.points.size();
-    waiting_.push_back(std::move(layer));
+    points_ += made.points;
+    waiting_.push_back(std::move(made));
     news_.notify_one();
 }
 
@@ -46,14 +46,14 @@ void LayerQueue::close() {
     room_.notify_all();
 }
 
-LayerQueue::Found LayerQueue::take(Layer& layer) {
+LayerQueue::Found LayerQueue::take(MendedLayer& made) {
     std::unique_lock lock(mutex_);
     if (!news_.wait_for(lock, between_signals, [&] { return !waiting_.empty() || ended_; }))
         return Found::nothing_yet;
     if (!waiting_.empty()) {
-        layer = std::move(waiting_.front());
+        made = std::move(waiting_.front());
         waiting_.pop_front();
-        points_ -= layer.points.size();
+        points_ -= made.points;
         room_.notify_one();
         return Found::layer;
     }
@@ -62,18 +62,50 @@ LayerQueue::Found LayerQueue::take(Layer& layer) {
     return Found::end;
 }
 
-Plan CutPlan::only(std::uint64_t begin, std::uint64_t end, const SourceMesh& mesh,
+MendedLayer CutPlan::mended(std::span<const Layer> bodies, const SourcePlate& plate,
+                            const LayerLimits& limits) const {
+    MendedLayer made;
+    ClosedPlane closed;
+    if (close_gaps_mm) {
+        closed = close_gaps_on_plane(bodies, *close_gaps_mm);
+        made.joins = std::move(closed.joins);
+        bodies = closed.layers;
+    }
+    PlateMaterial material = material_of(bodies, plate.mended.negatives, {.fill = fill}, limits);
+    made.changes = material.changes;
+    std::vector<Layer>& parts = material.parts;
+    std::vector<LayerPointer> apart;
+    Layer whole = parts.size() == 1 ? with_own_points(std::move(parts.front())) : merged(parts);
+    made.points = whole.points.size();
+    if (plate.several())
+        for (Layer& part : parts) {
+            made.points += part.points.size();
+            apart.push_back(std::make_shared<SharedLayer>(with_own_points(std::move(part)), plan.rule));
+        }
+    made.layer = std::make_shared<SharedLayer>(std::move(whole), plan.rule, PointArray(), std::move(apart));
+    return made;
+}
+
+void CutPlan::add(Repairs& sum, const MendedLayer& layer) const {
+    if (close_gaps_mm)
+        python::add(sum, layer.joins);
+    if (fill != FillRule::none)
+        python::add(sum, layer.changes);
+}
+
+Plan CutPlan::only(std::uint64_t begin, std::uint64_t end, const SourcePlate& plate,
                    const Execution& execution) const {
     FileJob job;
     job.layering = layering;
     job.layering.only = {.index_range = {{begin, end}}};
-    return plan_of(job, mesh.plate(), execution);
+    return plan_of(job, plate.placed, execution);
 }
 
-LayerStream::LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, unsigned threads,
+LayerStream::LayerStream(PlatePointer plate, CutPlan cuts, const Engine& with, unsigned threads,
                          py::object listener)
-    : mesh_(std::move(mesh)), cuts_(std::move(cuts)), engine_(with), threads_(threads),
-      listener_(std::move(listener)) {
+    : plate_(std::move(plate)), cuts_(std::move(cuts)), engine_(with), threads_(threads),
+      listener_(std::move(listener)), repairs_(plate_->repairs) {
+    cuts_.add(repairs_, {});
     Execution execution{.threads = threads, .cancel = &queue_.closed()};
     if (!listener_.is_none())
         execution.progress = [this](const Progress& progress) {
@@ -82,16 +114,12 @@ LayerStream::LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, uns
     worker_ = std::thread([this, execution] {
         std::exception_ptr failure;
         try {
-            const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
-                return [this, kept = with_own_points(std::move(layer))]() mutable {
+            const PlateSink sink{.prepare = [&](std::span<const Layer> bodies) -> Commit {
+                return [this, kept = cuts_.mended(bodies, *plate_, layer_limits(execution))]() mutable {
                     queue_.put(std::move(kept));
                 };
             }};
-            const SliceOptions options{.execution = execution, .engine = engine_};
-            if (mesh_->source().has_negatives())
-                slice_to(sink, mesh_->source().plate(execution), plan(), options);
-            else
-                slice_to(sink, mesh_->mesh(), plan(), options);
+            slice_to(sink, plate_->mended, plan(), {.execution = execution, .engine = engine_});
         } catch (...) {
             failure = std::current_exception();
         }
@@ -106,11 +134,11 @@ LayerStream::~LayerStream() { // NOLINT(bugprone-exception-escape)
 
 LayerPointer LayerStream::next() {
     try {
-        for (Layer layer; !closed_;) {
+        for (MendedLayer made; !closed_;) {
             LayerQueue::Found found = LayerQueue::Found::nothing_yet;
             {
                 const GilRelease released;
-                found = queue_.take(layer);
+                found = queue_.take(made);
             }
             // A copy, because the listener may close the stream, which releases the listener.
             report(progress_, py::object(listener_));
@@ -119,7 +147,8 @@ LayerPointer LayerStream::next() {
                 close();
             else if (found == LayerQueue::Found::layer) {
                 ++taken_;
-                return std::make_shared<SharedLayer>(std::move(layer), plan().rule);
+                cuts_.add(repairs_, made);
+                return std::move(made.layer);
             }
         }
     } catch (
@@ -165,12 +194,13 @@ LayerStream::Beside LayerStream::beside(std::uint64_t below, std::uint64_t above
         // Includes layers that were already taken, because all remaining layers may miss the part, which is
         // an error for a plan.
         const Plan wider =
-            cuts_.only(std::min(lowest, plan().layers.front().index), last + 1 + above, *mesh_, execution);
+            cuts_.only(std::min(lowest, plan().layers.front().index), last + 1 + above, *plate_, execution);
         const auto sliced = [&](const auto& wanted) {
             Plan some{{}, wider.rule, wider.snap_mm};
             std::copy_if(wider.layers.begin(), wider.layers.end(), std::back_inserter(some.layers), wanted);
-            return some.layers.empty() ? std::vector<LayerPointer>()
-                                       : lamella::python::sliced(mesh_->mesh(), some, execution, engine_);
+            return some.layers.empty()
+                       ? std::vector<LayerPointer>()
+                       : lamella::python::sliced(*plate_, cuts_, some, execution, engine_, nullptr);
         };
         return Beside{
             sliced([&](const PlannedLayer& layer) { return lowest <= layer.index && layer.index < first; }),
@@ -178,17 +208,18 @@ LayerStream::Beside LayerStream::beside(std::uint64_t below, std::uint64_t above
     });
 }
 
-std::vector<LayerPointer> sliced(const Mesh& mesh, const Plan& plan, const Execution& execution,
-                                 const Engine& engine) {
+std::vector<LayerPointer> sliced(const SourcePlate& plate, const CutPlan& cuts, const Plan& plan,
+                                 const Execution& execution, const Engine& engine, Repairs* repairs) {
     std::vector<LayerPointer> layers;
     layers.reserve(plan.layers.size());
-    const LayerSink sink{.prepare = [&](Layer&& layer) -> Commit {
-        return [&, kept = std::make_shared<SharedLayer>(with_own_points(std::move(layer)),
-                                                        plan.rule)]() mutable {
-            layers.push_back(std::move(kept));
+    const PlateSink sink{.prepare = [&](std::span<const Layer> bodies) -> Commit {
+        return [&, made = cuts.mended(bodies, plate, layer_limits(execution))]() mutable {
+            if (repairs != nullptr)
+                cuts.add(*repairs, made);
+            layers.push_back(std::move(made.layer));
         };
     }};
-    slice_to(sink, mesh, plan, {.execution = execution, .engine = engine});
+    slice_to(sink, plate.mended, plan, {.execution = execution, .engine = engine});
     return layers;
 }
 

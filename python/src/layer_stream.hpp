@@ -1,7 +1,10 @@
 #pragma once
 
+#include "lamella/contour/close_gaps.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/layer_limits.hpp"
+#include "lamella/polygon/layer_steps.hpp"
 #include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
@@ -9,7 +12,7 @@
 #include "made.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
-#include "source_mesh.hpp"
+#include "source_plate.hpp"
 
 #include <pybind11/pybind11.h>
 
@@ -18,17 +21,27 @@
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <optional>
+#include <span>
 #include <thread>
 #include <utility>
 #include <vector>
 
 namespace lamella::python {
 
+/// A layer of a plate, and what was mended in it.
+struct MendedLayer {
+    LayerPointer layer;
+    std::size_t points = 0; ///< including those of its parts
+    std::vector<GapJoin> joins;
+    LayerChanges changes;
+};
+
 /// A bounded queue of layers between the threads that slice them and the thread that takes them.
 class LayerQueue {
   public:
     /// Adds a layer, and waits until there is space for it. Throws Error{cancelled} once the queue is closed.
-    void put(Layer&& layer);
+    void put(MendedLayer&& made);
     /// Marks the end of the layers. If an error is the reason, `failure` is this error.
     void end(std::exception_ptr failure);
 
@@ -38,33 +51,41 @@ class LayerQueue {
 
     enum class Found { layer, nothing_yet, end };
     /// Takes a layer; waits a moment if there is none. At the end, throws the failure if there was one.
-    Found take(Layer& layer);
+    Found take(MendedLayer& made);
 
   private:
     std::mutex mutex_;
     std::condition_variable room_;
     std::condition_variable news_;
-    std::deque<Layer> waiting_;
+    std::deque<MendedLayer> waiting_;
     std::size_t points_ = 0; ///< points of the waiting layers
     CancelFlag closed_;
     bool ended_ = false;
     std::exception_ptr failure_;
 };
 
-/// A plan, and the layering from which it was made.
+/// A plan, the layering from which it was made, and what is mended in the layers.
 struct CutPlan {
     Plan plan;
     Layering layering;
+    std::optional<double> close_gaps_mm = {};
+    FillRule fill = FillRule::none;
+
+    /// Returns the layer of the plate with its own points, mended as the plan asks for it.
+    [[nodiscard]] MendedLayer mended(std::span<const Layer> bodies, const SourcePlate& plate,
+                                     const LayerLimits& limits) const;
+    /// Adds what was mended in a layer; an empty one makes the figures of these repairs begin at 0.
+    void add(Repairs& sum, const MendedLayer& layer) const;
 
     /// Returns the plan restricted to the layers [begin, end) that exist.
-    [[nodiscard]] Plan only(std::uint64_t begin, std::uint64_t end, const SourceMesh& mesh,
+    [[nodiscard]] Plan only(std::uint64_t begin, std::uint64_t end, const SourcePlate& plate,
                             const Execution& execution) const;
 };
 
 /// Slices in the background, while the caller takes the layers one by one, in ascending z.
 class LayerStream {
   public:
-    LayerStream(MeshPointer mesh, CutPlan cuts, const Engine& with, unsigned threads,
+    LayerStream(PlatePointer plate, CutPlan cuts, const Engine& with, unsigned threads,
                 pybind11::object listener);
     LayerStream(const LayerStream&) = delete;
     LayerStream& operator=(const LayerStream&) = delete;
@@ -76,8 +97,10 @@ class LayerStream {
     /// Stops slicing, and waits until it has stopped.
     void close();
 
-    [[nodiscard]] const SourceMesh& mesh() const noexcept { return *mesh_; }
+    [[nodiscard]] const SourcePlate& plate() const noexcept { return *plate_; }
     [[nodiscard]] const Plan& plan() const noexcept { return cuts_.plan; }
+    /// Returns what was mended in the meshes and in the layers taken so far.
+    [[nodiscard]] const Repairs& repairs() const noexcept { return repairs_; }
     /// Returns the number of remaining layers.
     [[nodiscard]] std::size_t left() const noexcept { return closed_ ? 0 : plan().layers.size() - taken_; }
     /// Returns the bottom of the next layer. Throws Error{usage} if none is left.
@@ -93,7 +116,7 @@ class LayerStream {
     void forget_listener() { listener_ = pybind11::none(); }
 
   private:
-    MeshPointer mesh_;
+    PlatePointer plate_;
     CutPlan cuts_;
     const Engine& engine_;
     unsigned threads_;
@@ -101,12 +124,15 @@ class LayerStream {
     ProgressBox progress_;
     LayerQueue queue_;
     std::size_t taken_ = 0;
+    Repairs repairs_;
     bool closed_ = false;
     std::thread worker_;
 };
 
-/// Returns the layers of the plan, each with its own points.
-[[nodiscard]] std::vector<LayerPointer> sliced(const Mesh& mesh, const Plan& plan, const Execution& execution,
-                                               const Engine& engine);
+/// Returns the layers of `plan`, which has layers of the cuts; each has its own points. Adds what was mended
+/// in them to `repairs` if it is not null.
+[[nodiscard]] std::vector<LayerPointer> sliced(const SourcePlate& plate, const CutPlan& cuts,
+                                               const Plan& plan, const Execution& execution,
+                                               const Engine& engine, Repairs* repairs);
 
 } // namespace lamella::python

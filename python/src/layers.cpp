@@ -6,6 +6,7 @@
 #include "lamella/core/printable.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/compare.hpp"
+#include "lamella/polygon/contour_defects.hpp"
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 
@@ -106,6 +107,20 @@ std::vector<std::pair<std::uint32_t, std::vector<std::uint32_t>>> polygons_of(co
     });
 }
 
+/// Kind, contour, the other contour and location of each defect; the number of crossings, and whether the
+/// search ended there.
+py::tuple diagnosed(const LayerPointer& layer, double resolution, std::size_t keep) {
+    const ContourDefects defects =
+        result_of_points(layer->get().points.size(), [=](const Execution& /*execution*/) {
+            return contour_defects(layer->get(), {.step_mm = resolution}, keep);
+        });
+    py::list found;
+    for (const ContourDefect& defect : defects.found)
+        found.append(py::make_tuple(contour_defect_name(defect.kind), defect.contour, defect.other,
+                                    std::pair(defect.at.x, defect.at.y)));
+    return py::make_tuple(found, defects.crossings, defects.or_more);
+}
+
 /// The fields of a layer except the arrays, for construction and pickling.
 struct LayerHeader {
     std::uint64_t index = 0;
@@ -139,7 +154,8 @@ std::vector<std::uint64_t> offsets_of(const Numbers& numbers, std::size_t points
 }
 
 LayerPointer layer_of_arrays(const LayerHeader& header, const Doubles& points, const Numbers& offsets,
-                             std::size_t rings, const Doubles& hatches, std::optional<PlaneRule> rule) {
+                             std::size_t rings, const Doubles& hatches, std::optional<PlaneRule> rule,
+                             std::vector<LayerPointer> parts) {
     if (!(std::isfinite(header.bottom) && std::isfinite(header.top) && header.bottom <= header.z &&
           header.z <= header.top))
         throw Error(ErrorKind::input, "a layer is cut between its bottom and its top, which are finite");
@@ -153,7 +169,7 @@ LayerPointer layer_of_arrays(const LayerHeader& header, const Doubles& points, c
     if (rings > layer.contours())
         throw Error(ErrorKind::input, "there are more closed contours than contours");
     // Not converted to normal form, because the order of scan vectors is significant.
-    return std::make_shared<SharedLayer>(std::move(layer), rule, std::move(lines));
+    return std::make_shared<SharedLayer>(std::move(layer), rule, std::move(lines), std::move(parts));
 }
 
 /// Adds a contour by the rules of docs/conventions.md: drops points equal to the one before them, and the
@@ -176,14 +192,6 @@ LayerPointer layer_of_contours(const std::vector<Doubles>& rings, double z, doub
         for (const Doubles& contour : *contours)
             add_contour(points_of(contour), contours == &rings, builder);
     return std::make_shared<SharedLayer>(builder.finish(index, z, bottom, top));
-}
-
-/// Returns the rule of this name, which is one of the three.
-FillRule fill_rule(const std::string& name) {
-    for (const FillRule rule : {FillRule::nonzero, FillRule::evenodd})
-        if (fill_rule_name(rule) == name)
-            return rule;
-    return FillRule::positive;
 }
 
 /// Returns the corner of this name, which is one of the three.
@@ -236,7 +244,17 @@ py::tuple layer_state(const py::object& self) {
     if (const auto known = shared.rule())
         rule = plane_rule_name(*known);
     return py::make_tuple(layer.index, layer.z, layer.bottom, layer.top, view_of(layer.points.span(), self),
-                          offsets_of(self), layer.rings, view_of(shared.hatches().span(), self), rule);
+                          offsets_of(self), layer.rings, view_of(shared.hatches().span(), self), rule,
+                          shared.parts());
+}
+
+/// Converts a list. Throws for None, which pybind11 would convert to a null pointer.
+template <class Pointer>
+std::vector<Pointer> pointers_of(const py::object& list) {
+    auto pointers = list.cast<std::vector<Pointer>>();
+    if (std::find(pointers.begin(), pointers.end(), nullptr) != pointers.end())
+        throw Error(ErrorKind::input, "None is in the place of a layer or a part of what was pickled");
+    return pointers;
 }
 
 LayerPointer layer_of_state(const py::tuple& state) {
@@ -246,12 +264,14 @@ LayerPointer layer_of_state(const py::tuple& state) {
     if (!state[8].is_none())
         rule = rule_named(state[8].cast<std::string>());
     return layer_of_arrays(header, state[4].cast<Doubles>(), state[5].cast<Numbers>(),
-                           state[6].cast<std::size_t>(), state[7].cast<Doubles>(), rule);
+                           state[6].cast<std::size_t>(), state[7].cast<Doubles>(), rule,
+                           pointers_of<LayerPointer>(state[9]));
 }
 
 using StackPointer = std::shared_ptr<Stack>;
 
-StackPointer part_of(const Stack& stack, const py::slice& range) {
+/// Returns the positions of the layers of a slice.
+std::vector<std::size_t> positions_of(const Stack& stack, const py::slice& range) {
     py::ssize_t start = 0;
     py::ssize_t stop = 0;
     py::ssize_t step = 0;
@@ -260,12 +280,20 @@ StackPointer part_of(const Stack& stack, const py::slice& range) {
         throw py::error_already_set();
     if (step < 0)
         throw py::value_error("layers of a stack ascend: its slices cannot run backwards");
+    std::vector<std::size_t> positions;
+    for (py::ssize_t i = 0; i < count; ++i)
+        positions.push_back(static_cast<std::size_t>(start + i * step));
+    return positions;
+}
+
+/// Returns a stack of the layers at these positions, which ascend.
+StackPointer part_of(const Stack& stack, const std::vector<std::size_t>& positions) {
     auto part = std::make_shared<Stack>(stack);
     for (StackPointer& each : part->parts)
-        each = part_of(*each, range);
+        each = part_of(*each, positions);
     part->layers.clear();
-    for (py::ssize_t i = 0; i < count; ++i)
-        part->layers.push_back(stack.layers[static_cast<std::size_t>(start + i * step)]);
+    for (const std::size_t position : positions)
+        part->layers.push_back(stack.layers.at(position));
     if (!part->of_mesh)
         part->box = box_of(part->layers);
     return part;
@@ -369,16 +397,7 @@ py::tuple pickled(const Stack& stack) {
     return py::make_tuple(stack.layers, py::bytes(stack.label), bounds_of(stack.box), matrix_of(stack.matrix),
                           py::bytes(stack.path), stack.format, stack.rounding.step_mm,
                           stack.rounding.single_precision, plane_rule_name(stack.rule), stack.parts,
-                          stack.exposure, stack.support, stack.of_mesh, stack.planned);
-}
-
-/// Converts a list. Throws for None, which pybind11 would convert to a null pointer.
-template <class Pointer>
-std::vector<Pointer> pointers_of(const py::object& list) {
-    auto pointers = list.cast<std::vector<Pointer>>();
-    if (std::find(pointers.begin(), pointers.end(), nullptr) != pointers.end())
-        throw Error(ErrorKind::input, "None is in the place of a layer or a part of a pickled stack");
-    return pointers;
+                          stack.exposure, stack.support, stack.of_mesh, stack.planned, stack.repairs);
 }
 
 StackPointer unpickled(const py::tuple& state) {
@@ -398,6 +417,7 @@ StackPointer unpickled(const py::tuple& state) {
     stack->support = state[11].cast<bool>();
     stack->of_mesh = state[12].cast<bool>();
     stack->planned = state[13].cast<std::uint64_t>();
+    stack->repairs = state[14].cast<Repairs>();
     if (!finite(stack->matrix) || !(stack->box.empty() || finite(stack->box)))
         throw Error(ErrorKind::input, "the bounds and the matrix of a pickled stack must be finite");
     return stack;
@@ -493,7 +513,15 @@ void bind_layer(py::module_& module) {
             },
             "Fill lines that a slice file held beside the contours, from point to point: (n, 2, 2) float64,\n"
             "millimetres, read-only. Slicing makes none.")
+        .def_property_readonly(
+            "parts",
+            [](const LayerPointer& self) {
+                return self->parts().empty() ? std::vector<LayerPointer>{self} : self->parts();
+            },
+            "The layers of the parts of a plate, or of a slice file that holds several, in the order of "
+            "Stack.parts;\nelse the layer itself.")
         .def("_polygons", &polygons_of)
+        .def("_diagnosed", &diagnosed)
         .def("_filled", [](const LayerPointer& self,
                            const std::string& rule) { return after(self, {.fill = fill_rule(rule)}); })
         .def("_offset",
@@ -515,7 +543,7 @@ void bind_layer(py::module_& module) {
             py::is_operator())
         .def("__hash__", [](const SharedLayer& self) { return self.hash() >> 1; })
         .def("__repr__", &layer_text);
-    bind_pickle(cls, "layer", 9, &layer_state, &layer_of_state);
+    bind_pickle(cls, "layer", 10, &layer_state, &layer_of_state);
 }
 
 void bind_stack(py::module_& module) {
@@ -554,10 +582,10 @@ void bind_stack(py::module_& module) {
             },
             "The hash of each layer, see Layer.hash.")
         .def_property_readonly("volume", &volume_of, "The sum of area times thickness, in cubic millimetres.")
-        .def_property_readonly(
-            "points",
-            [](const Stack& self) { return sum_of(self, [](const Layer& l) { return l.points.size(); }); },
-            "How many points all contours have.")
+        .def_property_readonly("point_counts", numbers_of<std::int64_t>([](const SharedLayer& l) {
+                                   return l.get().points.size();
+                               }),
+                               "How many points the contours of each layer have: (layers,) int64.")
         .def_property_readonly(
             "label", [](const Stack& self) { return path_text(self.label); },
             "What the part is called in slice files.")
@@ -575,15 +603,16 @@ void bind_stack(py::module_& module) {
             [](const StackPointer& self) {
                 return self->parts.empty() ? std::vector<StackPointer>{self} : self->parts;
             },
-            "The parts of a slice file that holds several, each a stack with a label; else the stack itself.")
+            "The parts of a plate, or of a slice file that holds several, each a stack with a label; else "
+            "the "
+            "stack\nitself.")
         .def_property_readonly(
             "exposure", [](const Stack& self) { return self.exposure; },
             "What is exposed, and how, where the layers are scan vectors from a file: an Exposure; None for "
             "contours.\n"
             "What the file does not say of parameters is 0.")
         .def_property_readonly(
-            "support", [](const Stack& self) { return self.support; },
-            "Whether that file marks the part as a support.")
+            "support", [](const Stack& self) { return self.support; }, "Whether the part is a support.")
         // If there are no layers, it is the empty box, from inf to -inf, while `bounds` is the origin.
         .def_property_readonly("_box", [](const Stack& self) { return bounds_of(self.box); })
         .def_property_readonly("_planned", [](const Stack& self) { return self.planned; })
@@ -603,22 +632,34 @@ void bind_stack(py::module_& module) {
             "Whether layers are sections of what is just above their plane (\"section_above\"), or, cut at "
             "the\n"
             "top, of what is just below it (\"section_below\").")
+        .def_property_readonly(
+            "repairs", [](const Stack& self) { return self.repairs; },
+            "What was mended before and while it was sliced: a dict of counts for each repair that was asked "
+            "for.")
         .def("__len__", [](const Stack& self) { return self.layers.size(); })
         .def("__getitem__",
              [](const Stack& self, const py::object& index) -> py::object {
                  if (py::isinstance<py::slice>(index))
-                     return py::cast(part_of(self, index));
+                     return py::cast(part_of(self, positions_of(self, index)));
                  return py::cast(self.layers[place_in(index, self.layers.size(), "layer")]);
              })
+        .def("_chosen", &part_of)
         .def("__iter__", &each_of)
         .def(
             "__eq__", [](const Stack& self, const Stack& other) { return same_stacks(self, other); },
             py::is_operator())
         .def("__repr__", &stack_text);
-    bind_pickle(cls, "stack of layers", 14, &pickled, &unpickled);
+    bind_pickle(cls, "stack of layers", 15, &pickled, &unpickled);
 }
 
 } // namespace
+
+FillRule fill_rule(const std::string& name) {
+    for (const FillRule rule : {FillRule::nonzero, FillRule::evenodd, FillRule::positive})
+        if (fill_rule_name(rule) == name)
+            return rule;
+    return FillRule::none;
+}
 
 py::str path_text(const std::string& path) {
     return py::reinterpret_steal<py::str>(

@@ -6,8 +6,10 @@
 #include "files.hpp"
 #include "layers.hpp"
 #include "scanning.hpp"
+#include "sections.hpp"
 #include "slicing.hpp"
 #include "source_mesh.hpp"
+#include "source_plate.hpp"
 
 #include <pybind11/pybind11.h>
 
@@ -21,8 +23,10 @@ PYBIND11_MODULE(_lamella, module) {
     module.attr("__version__") = lamella::version();
     lamella::python::register_errors();
     lamella::python::bind_meshes(module);
+    lamella::python::bind_plates(module);
     lamella::python::bind_layers(module);
     lamella::python::bind_slicing(module);
+    lamella::python::bind_sections(module);
     lamella::python::bind_scanning(module);
     lamella::python::bind_files(module);
 }

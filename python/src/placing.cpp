@@ -45,10 +45,11 @@ pybind11::array_t<double> matrix_of(const Transform& map) {
     return pybind11::array_t<double>({4, 4}, rows.front().data());
 }
 
-Transform transform_of(const Matrix& rows) {
+Transform transform_of(const Matrix& rows, const char* argument) {
     if (rows[3] != std::array<double, 4>{0, 0, 0, 1})
         throw Error(ErrorKind::usage,
-                    "transform: the last row of a transform must be 0, 0, 0, 1, and this one is " +
+                    std::string(argument) +
+                        ": the last row of a transform must be 0, 0, 0, 1, and this one is " +
                         row_text(rows[3]) + ": meshes are moved, rotated and scaled, but not projected");
     Transform map;
     for (std::size_t r = 0; r < 3; ++r) {

@@ -19,7 +19,7 @@ using Matrix = std::array<std::array<double, 4>, 4>; ///< by rows; acts on colum
 [[nodiscard]] bool finite(const Box3& box) noexcept;
 
 [[nodiscard]] pybind11::array_t<double> matrix_of(const Transform& map);
-/// Returns the transform. Throws Error{usage} if the last row is not 0, 0, 0, 1.
-[[nodiscard]] Transform transform_of(const Matrix& rows);
+/// Returns the transform. Throws Error{usage} that names the argument if the last row is not 0, 0, 0, 1.
+[[nodiscard]] Transform transform_of(const Matrix& rows, const char* argument = "transform");
 
 } // namespace lamella::python

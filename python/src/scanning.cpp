@@ -178,15 +178,20 @@ struct ScanLosses {
     LayerDoubts found;
     std::uint64_t hatches = 0;
 
-    void add(const LayerPointer& shared) {
-        const Layer& layer = shared->get();
-        hatches += shared->hatches().size() / 2;
+    /// Adds the layers of the parts on the next plane.
+    void add(const std::vector<LayerPointer>& parts) {
+        OpenGaps gaps;
+        InvertedRings inverted;
+        for (const LayerPointer& part : parts) {
+            hatches += part->hatches().size() / 2;
+            gaps += open_gaps(part->get());
+            inverted += result_of_points(part->get().points.size(), [part](const Execution& execution) {
+                return inverted_rings(part->get(), {}, InversionSearch::full, layer_limits(execution));
+            });
+        }
+        const Layer& layer = parts.front()->get();
         ++found.layers;
-        found.add(layer.z, layer.thickness(), open_gaps(layer),
-                  result_of_points(layer.points.size(), [shared](const Execution& execution) {
-                      return inverted_rings(shared->get(), {}, InversionSearch::full,
-                                            layer_limits(execution));
-                  }));
+        found.add(layer.z, layer.thickness(), gaps, inverted);
     }
 };
 
@@ -197,22 +202,20 @@ void bind_losses(py::module_& module) {
         .def("texts", [](const ScanLosses& self) { return self.found.scan_losses(self.hatches); });
     module.def("scan_losses", [](const Stack& stack) {
         return result_of(0, py::none(), [&](const Execution& execution) {
-            const LayerStack layers = plain(stack.layers);
             std::uint64_t hatches = 0;
             for (const LayerPointer& layer : stack.layers)
                 hatches += layer->hatches().size() / 2;
-            return layer_doubts({&layers, 1}, stack.rounding, InversionSearch::full, execution)
+            return layer_doubts(plain_parts(stack), stack.rounding, InversionSearch::full, execution)
                 .scan_losses(hatches);
         });
     });
     module.def("inverted_layers", [](const Stack& stack, unsigned threads, const py::object& progress) {
         return result_of(threads, progress, [&](const Execution& execution) -> std::vector<std::string> {
-            const LayerStack layers = plain(stack.layers);
             const InvertedLayers inverted =
-                layer_doubts({&layers, 1}, stack.rounding, InversionSearch::quick, execution).inverted;
+                layer_doubts(plain_parts(stack), stack.rounding, InversionSearch::quick, execution).inverted;
             if (inverted.rings == 0)
                 return {};
-            return {inverted.text_of_file(layers.size())};
+            return {inverted.text_of_file(stack.layers.size())};
         });
     });
 }
@@ -333,6 +336,7 @@ void bind_scanning(py::module_& module) {
     bind_figures(module);
     bind_losses(module);
     module.def("check_strategy", &check_strategy);
+    module.def("strategy_text", [](const ScanStrategy& strategy) { return strategy_text(strategy); });
     module.def("exposures", &exposures);
     module.def("support_exposures", &support_exposures);
     module.def("scan", &scanned);

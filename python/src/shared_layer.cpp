@@ -50,12 +50,18 @@ Box3 shown_box(const Stack& stack) {
 }
 
 std::vector<LayerPointer> shared(LayerStack layers, std::optional<PlaneRule> rule,
-                                 std::vector<PointArray> hatches) {
+                                 std::vector<PointArray> hatches,
+                                 const std::vector<std::shared_ptr<Stack>>& parts) {
     hatches.resize(layers.size());
     std::vector<LayerPointer> pointers;
     pointers.reserve(layers.size());
-    for (std::size_t i = 0; i < layers.size(); ++i)
-        pointers.push_back(std::make_shared<SharedLayer>(std::move(layers[i]), rule, std::move(hatches[i])));
+    for (std::size_t i = 0; i < layers.size(); ++i) {
+        std::vector<LayerPointer> of_parts;
+        for (const std::shared_ptr<Stack>& part : parts)
+            of_parts.push_back(part->layers[i]);
+        pointers.push_back(std::make_shared<SharedLayer>(std::move(layers[i]), rule, std::move(hatches[i]),
+                                                         std::move(of_parts)));
+    }
     return pointers;
 }
 
@@ -78,6 +84,15 @@ LayerStack plain(const std::vector<LayerPointer>& shared) {
     for (const LayerPointer& layer : shared)
         layers.push_back(layer->get());
     return layers;
+}
+
+std::vector<LayerStack> plain_parts(const Stack& stack) {
+    if (stack.parts.empty())
+        return {plain(stack.layers)};
+    std::vector<LayerStack> parts;
+    for (const std::shared_ptr<Stack>& part : stack.parts)
+        parts.push_back(plain(part->layers));
+    return parts;
 }
 
 } // namespace lamella::python

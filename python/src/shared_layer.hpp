@@ -10,6 +10,7 @@
 #include "lamella/polygon/nesting.hpp"
 
 #include "made.hpp"
+#include "repairs.hpp"
 
 #include <cstdint>
 #include <memory>
@@ -24,8 +25,9 @@ namespace lamella::python {
 /// the interpreter lock, because another thread may be computing the same property.
 class SharedLayer {
   public:
-    explicit SharedLayer(Layer layer, std::optional<PlaneRule> rule = {}, PointArray hatches = {})
-        : layer_(std::move(layer)), hatches_(std::move(hatches)), rule_(rule) {}
+    explicit SharedLayer(Layer layer, std::optional<PlaneRule> rule = {}, PointArray hatches = {},
+                         std::vector<std::shared_ptr<SharedLayer>> parts = {})
+        : layer_(std::move(layer)), hatches_(std::move(hatches)), rule_(rule), parts_(std::move(parts)) {}
 
     [[nodiscard]] const Layer& get() const noexcept { return layer_; }
     /// Returns the hatch lines of a slice file, or of scan vectors: two points for each line.
@@ -33,6 +35,8 @@ class SharedLayer {
     /// Returns the rule by which this layer, or the layer from which it was made, was cut; nullopt if it was
     /// made from arrays.
     [[nodiscard]] std::optional<PlaneRule> rule() const noexcept { return rule_; }
+    /// Returns the layers of the parts from which this layer was merged; none if there are no several parts.
+    [[nodiscard]] const std::vector<std::shared_ptr<SharedLayer>>& parts() const noexcept { return parts_; }
     [[nodiscard]] const LayerMeasure& measure() const;
     [[nodiscard]] const Nesting& nesting() const;
     [[nodiscard]] std::uint64_t hash() const;
@@ -44,6 +48,7 @@ class SharedLayer {
     Layer layer_;
     PointArray hatches_;
     std::optional<PlaneRule> rule_;
+    std::vector<std::shared_ptr<SharedLayer>> parts_;
     mutable std::once_flag measured_;
     mutable std::once_flag nested_;
     mutable std::once_flag hashed_;
@@ -74,6 +79,7 @@ struct Stack {
     /// If set, the layers are scan vectors.
     std::optional<Exposure> exposure = {};
     bool support = false; ///< marked as support in that file
+    Repairs repairs = {};
     /// The parts of a file with several parts, with the same number of layers.
     std::vector<std::shared_ptr<Stack>> parts = {};
 };
@@ -83,9 +89,10 @@ struct Stack {
 /// Returns the box of the stack or, if it is empty, the origin at the heights of its layers.
 [[nodiscard]] Box3 shown_box(const Stack& stack);
 
-/// `hatches` has the hatch lines of each layer, or none.
+/// `hatches` has the hatch lines of each layer, or none. `parts` are those from which the layers were merged.
 [[nodiscard]] std::vector<LayerPointer> shared(LayerStack layers, std::optional<PlaneRule> rule,
-                                               std::vector<PointArray> hatches = {});
+                                               std::vector<PointArray> hatches = {},
+                                               const std::vector<std::shared_ptr<Stack>>& parts = {});
 /// Returns the layer with its own copy of its points. Slicing stores the points of many layers in one
 /// allocation, which each of them would keep in memory.
 [[nodiscard]] Layer with_own_points(Layer layer);
@@ -93,5 +100,7 @@ struct Stack {
 [[nodiscard]] PlaneRule rule_named(const std::string& name);
 /// Returns the layers without copying their points, and without their hatch lines.
 [[nodiscard]] LayerStack plain(const std::vector<LayerPointer>& shared);
+/// Returns those of each part.
+[[nodiscard]] std::vector<LayerStack> plain_parts(const Stack& stack);
 
 } // namespace lamella::python

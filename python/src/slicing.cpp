@@ -1,6 +1,7 @@
 #include "slicing.hpp"
 
 #include "lamella/contour/open_gaps.hpp"
+#include "lamella/core/error.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/layering.hpp"
@@ -15,7 +16,7 @@
 #include "placing.hpp"
 #include "run.hpp"
 #include "shared_layer.hpp"
-#include "source_mesh.hpp"
+#include "source_plate.hpp"
 
 #include <pybind11/stl.h>
 
@@ -37,8 +38,9 @@ using ZRange = std::optional<std::pair<double, double>>;
 using IndexRange = std::optional<std::pair<std::uint64_t, std::uint64_t>>;
 
 /// Returns the plan that slice_file would use for the layering of a job.
-CutPlan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at, const ZRange& z_range,
-                 const IndexRange& layers, double snap_mm, std::uint64_t max_memory, unsigned threads,
+CutPlan plan_for(const PlatePointer& plate, const Cut& cut, const std::string& at, const ZRange& z_range,
+                 const IndexRange& layers, double snap_mm, std::optional<double> close_gaps_mm,
+                 const std::string& fill, std::uint64_t max_memory, unsigned threads,
                  const py::object& progress) {
     FileJob job;
     job.max_memory = max_memory;
@@ -47,55 +49,106 @@ CutPlan plan_for(const MeshPointer& mesh, const Cut& cut, const std::string& at,
                     .only = {.z_range = z_range, .index_range = layers},
                     .snap_mm = snap_mm};
     Plan plan = result_of(threads, progress,
-                          [&](const Execution& execution) { return plan_of(job, mesh->plate(), execution); });
-    return {std::move(plan), std::move(job.layering)};
+                          [&](const Execution& execution) { return plan_of(job, plate->placed, execution); });
+    return {std::move(plan), std::move(job.layering), close_gaps_mm, fill_rule(fill)};
 }
 
 /// Returns the number of layers of the whole plan, but at most one more than the index after the last of
 /// these layers, which shows whether there are layers above them.
-std::uint64_t planned(const CutPlan& cuts, const SourceMesh& mesh, const Execution& execution) {
+std::uint64_t planned(const CutPlan& cuts, const SourcePlate& plate, const Execution& execution) {
     const std::uint64_t end = cuts.plan.layers.back().index + 1;
     const PlaneSelection& only = cuts.layering.only;
     return only.z_range || only.index_range
-               ? cuts.only(cuts.plan.layers.front().index, end + 1, mesh, execution).layers.back().index + 1
+               ? cuts.only(cuts.plan.layers.front().index, end + 1, plate, execution).layers.back().index + 1
                : end;
 }
 
-std::shared_ptr<Stack> slice_stack(const MeshPointer& mesh, const CutPlan& cuts, const std::string& with,
+/// Returns the layers of each part, if there are several.
+std::vector<std::shared_ptr<Stack>> parts_of(const Stack& stack, const SourcePlate& plate) {
+    std::vector<std::shared_ptr<Stack>> parts;
+    for (std::size_t i = 0; plate.several() && i < plate.placed.parts.size(); ++i) {
+        const PlatePart& placed = plate.placed.parts[i];
+        Stack& part = *parts.emplace_back(std::make_shared<Stack>());
+        for (const LayerPointer& layer : stack.layers)
+            part.layers.push_back(layer->parts()[i]);
+        part.label = placed.label;
+        part.box = placed.box;
+        part.of_mesh = true;
+        part.planned = stack.planned;
+        part.matrix = plate.matrices[i];
+        part.rule = stack.rule;
+        part.support = placed.support;
+    }
+    return parts;
+}
+
+std::shared_ptr<Stack> slice_stack(const PlatePointer& plate, const CutPlan& cuts, const std::string& with,
                                    unsigned threads, const py::object& progress) {
     const Engine& chosen = engine(with);
     auto stack = std::make_shared<Stack>();
+    stack->repairs = plate->repairs;
+    cuts.add(stack->repairs, {});
     run(threads, progress, [&](const Execution& execution) {
-        stack->layers = mesh->source().has_negatives()
-                            ? shared(slice(mesh->source().plate(execution), cuts.plan,
-                                           {.execution = execution, .engine = chosen}),
-                                     cuts.plan.rule)
-                            : sliced(mesh->mesh(), cuts.plan, execution, chosen);
-        stack->planned = planned(cuts, *mesh, execution);
+        stack->layers = sliced(*plate, cuts, cuts.plan, execution, chosen, &stack->repairs);
+        stack->planned = planned(cuts, *plate, execution);
     });
     stack->rule = cuts.plan.rule;
-    stack->label = mesh->origin().label;
-    stack->box = mesh->box();
+    stack->label = plate->label;
+    stack->box = plate->placed.box;
     stack->of_mesh = true;
-    stack->matrix = mesh->origin().matrix;
+    stack->matrix = plate->matrix;
+    stack->support = plate->apart && !plate->several() && plate->placed.parts.front().support;
+    stack->parts = parts_of(*stack, *plate);
     return stack;
 }
 
-/// Returns the defects of the mesh that show in its layers.
-std::vector<std::string> doubts_of(const Stack& stack) {
+/// Index of a file of a plate, and a text about it.
+using FileTexts = std::vector<std::pair<std::size_t, std::string>>;
+
+/// Returns the defects of the meshes that show in their layers.
+FileTexts doubts_of(const Stack& stack, const PlatePointer& plate) {
+    std::vector<std::vector<LayerStack>> files(plate->placed.files.size());
+    std::vector<LayerStack> parts = plain_parts(stack);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        files[plate->placed.shapes[plate->placed.parts[i].shape].input].push_back(std::move(parts[i]));
     return result_of(0, py::none(), [&](const Execution& execution) {
-        const LayerStack layers = plain(stack.layers);
-        return layer_doubts({&layers, 1}, {}, InversionSearch::quick, execution).texts();
+        FileTexts texts;
+        for (std::size_t file = 0; file < files.size(); ++file)
+            for (std::string& text : layer_doubts(files[file], {}, InversionSearch::quick, execution).texts())
+                texts.emplace_back(file, std::move(text));
+        return texts;
     });
 }
 
-/// Returns a warning if rounding decides the content of layers; else "".
-std::string near_faces_of(const MeshPointer& mesh, const CutPlan& cuts, unsigned threads,
-                          const py::object& progress) {
-    const NearFaceLayers found = result_of(threads, progress, [&](const Execution& execution) {
-        return near_faces(mesh->mesh(), cuts.plan, execution);
+/// Returns a warning for each file with layers whose content rounding decides.
+FileTexts near_faces_of(const PlatePointer& plate, const CutPlan& cuts, unsigned threads,
+                        const py::object& progress) {
+    return result_of(threads, progress, [&](const Execution& execution) {
+        FileTexts texts;
+        for (std::size_t file = 0; file < plate->mended.files.size(); ++file) {
+            std::vector<Mesh> meshes;
+            for (const PlateShape& shape : plate->mended.shapes)
+                if (shape.input == file)
+                    meshes.push_back(shape.mesh);
+            const NearFaceLayers found = near_faces(joined(meshes, execution), cuts.plan, execution);
+            if (found.layers > 0)
+                texts.emplace_back(file, found.text(cuts.plan.layers.size()));
+        }
+        return texts;
     });
-    return found.text(cuts.plan.layers.size());
+}
+
+/// Label and bounds of a part, and whether it is a support.
+using PartHeader = std::tuple<std::string, py::array_t<double>, bool>;
+
+/// Returns what a slice file says of each part of the plate.
+std::vector<PartHeader> headers_of(const SourcePlate& plate) {
+    if (!plate.apart)
+        return {{plate.label, bounds_of(plate.placed.box), false}};
+    std::vector<PartHeader> parts;
+    for (const PlatePart& part : plate.placed.parts)
+        parts.emplace_back(part.label, bounds_of(part.box), part.support);
+    return parts;
 }
 
 void bind_cuts(py::module_& module) {
@@ -169,18 +222,37 @@ void bind_stream(py::module_& module) {
             },
             "Where layers are cut, those already taken included, in millimetres: (layers,) float64.")
         .def_property_readonly(
-            "bounds", [](const LayerStream& self) { return bounds_of(self.mesh().box()); },
+            "bounds", [](const LayerStream& self) { return bounds_of(self.plate().placed.box); },
             "The smallest and the largest x, y and z of the mesh in millimetres: (2, 3) float64.")
         .def_property_readonly(
-            "label", [](const LayerStream& self) { return path_text(self.mesh().origin().label); },
-            "What the part is called in slice files.")
+            "label", [](const LayerStream& self) { return path_text(self.plate().label); },
+            "What the part is called in slice files; empty for several parts.")
+        .def_property_readonly(
+            "labels",
+            [](const LayerStream& self) {
+                py::list labels;
+                for (const PartHeader& part : headers_of(self.plate()))
+                    labels.append(path_text(std::get<std::string>(part)));
+                return labels;
+            },
+            "What the parts are called in slice files, in the order of Layer.parts.")
         .def_property_readonly(
             "rule", [](const LayerStream& self) { return plane_rule_name(self.plan().rule); },
             "The rule of the plane, as Stack.rule.")
+        .def_property_readonly(
+            "repairs", [](const LayerStream& self) { return self.repairs(); },
+            "What was mended in the mesh and in the layers taken so far, as Stack.repairs.")
+        .def_property_readonly("_parts",
+                               [](const LayerStream& self) {
+                                   py::list parts;
+                                   for (const auto& [label, bounds, support] : headers_of(self.plate()))
+                                       parts.append(py::make_tuple(py::bytes(label), bounds, support));
+                                   return parts;
+                               })
         .def_property_readonly("_bottom", &LayerStream::bottom)
         .def("_beside", &LayerStream::beside)
         .def("_close", &LayerStream::close)
-        .def("__length_hint__", &LayerStream::left)
+        .def("__len__", &LayerStream::left)
         .def("__iter__", [](const py::object& self) { return self; })
         .def("__next__", &LayerStream::next)
         .def("__enter__", [](const py::object& self) { return self; })
@@ -189,9 +261,9 @@ void bind_stream(py::module_& module) {
             return "<lamella.LayerStream: " + std::to_string(self.left()) + " of " +
                    std::to_string(self.plan().layers.size()) + " layers left>";
         });
-    module.def("stream", [](const MeshPointer& mesh, const CutPlan& cuts, const std::string& with,
+    module.def("stream", [](const PlatePointer& plate, const CutPlan& cuts, const std::string& with,
                             unsigned threads, const py::object& progress) {
-        return std::make_unique<LayerStream>(mesh, cuts, engine(with), threads, progress);
+        return std::make_unique<LayerStream>(plate, cuts, engine(with), threads, progress);
     });
 }
 

@@ -1,12 +1,14 @@
 #include "source_mesh.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "arrays.hpp"
 #include "gil_release.hpp"
+#include "input.hpp"
 #include "layers.hpp"
 #include "pickled.hpp"
 #include "placing.hpp"
@@ -20,7 +22,10 @@
 #include <cstddef>
 #include <cstdio>
 #include <limits>
+#include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 namespace py = pybind11;
 
@@ -92,10 +97,13 @@ MeshPointer mesh_of_arrays(const Doubles& vertices, const Numbers& faces) {
     return std::make_shared<SourceMesh>(std::move(source), std::move(placed), std::move(origin), Execution{});
 }
 
-MeshPointer read_source_mesh(const std::string& path, std::optional<double> unit_mm,
+MeshPointer read_source_mesh(const Input& input, std::optional<double> unit_mm,
                              const MeshReadOptions& options, unsigned threads, const py::object& progress) {
     return result_of(threads, progress, [&](const Execution& execution) {
-        return source_mesh(read_mesh(path, options, execution), unit_mm, execution);
+        MeshFile file =
+            input.read_by([&](const auto&... from) { return read_mesh(from..., options, execution); });
+        input.label(file);
+        return source_mesh(std::move(file), unit_mm, execution);
     });
 }
 
@@ -132,12 +140,8 @@ MeshPointer transformed(const SourceMesh& source, const Transform& map, const ch
     });
 }
 
-py::dict defects_of(const SourceMesh& source, unsigned threads, const py::object& progress) {
-    const Inspection found = result_of(threads, progress, [&](const Execution& execution) {
-        return inspect(source.welded(execution), execution);
-    });
-    py::dict fields;
-    fields["triangles"] = source.origin().stored_triangles;
+/// Adds the figures and counts of an inspection.
+void add_counts(py::dict& fields, const Inspection& found) {
     fields["vertices"] = found.vertices;
     fields["volume"] = found.volume_mm3;
     fields["area"] = found.area_mm2;
@@ -147,6 +151,58 @@ py::dict defects_of(const SourceMesh& source, unsigned threads, const py::object
     fields["cavities"] = found.cavities;
     for (const DefectKind& kind : defect_kinds)
         fields[py::str(kind.words.key)] = found.*kind.count;
+}
+
+/// Returns the defects in words, such as "2 boundary edges, 1 inverted shell"; "" for a sound mesh.
+std::string defects_of(const SourceMesh& source, unsigned threads, const py::object& progress) {
+    const Inspection found = result_of(threads, progress, [&](const Execution& execution) {
+        return inspect(source.welded(execution), execution);
+    });
+    return found.sound() ? std::string() : describe_defects(found);
+}
+
+/// Returns a copy of a list of points, or of tuples of points, as an array of this shape.
+template <class Item>
+py::array_t<double> points_array(const std::vector<Item>& items, std::vector<py::ssize_t> shape) {
+    shape.insert(shape.begin(), static_cast<py::ssize_t>(items.size()));
+    return py::array_t<double>(shape, reinterpret_cast<const double*>(items.data()));
+}
+
+py::dict diagnosed(const SourceMesh& source, bool self_intersections, std::size_t keep, unsigned threads,
+                   const py::object& progress) {
+    static_assert(sizeof(EdgeLocation) == 6 * sizeof(double) && sizeof(Box3) == sizeof(EdgeLocation));
+    const Diagnosis found = result_of(threads, progress, [&](const Execution& execution) {
+        return diagnose(source.welded(execution), {.keep = keep, .self_intersections = self_intersections},
+                        execution);
+    });
+    py::dict fields;
+    fields["triangles"] = source.origin().stored_triangles;
+    add_counts(fields, found.counts);
+    py::list loops;
+    for (const BoundaryLoop& loop : found.loops)
+        loops.append(points_array(loop.points, {3}));
+    py::dict places;
+    places["boundary_loops"] = loops;
+    places["nonmanifold_edges"] = points_array(found.nonmanifold_edges, {2, 3});
+    places["orientation_conflicts"] = points_array(found.conflicting_edges, {2, 3});
+    places["nonmanifold_vertices"] = points_array(found.vertices, {3});
+    std::vector<Box3> inverted;
+    for (const Shell& shell : found.shells)
+        if (shell.kind == ShellKind::inverted)
+            inverted.push_back(shell.box);
+    places["inverted_shells"] = points_array(inverted, {2, 3});
+    places["duplicate_triangles"] = found.duplicate_triangles;
+    places["degenerate_triangles"] = found.degenerate_triangles;
+    fields["places"] = places;
+    fields["self_intersections"] = py::none();
+    if (const auto& met = found.self_intersections) {
+        py::list first;
+        for (const TriangleIntersection& one : met->first)
+            first.append(py::make_tuple(words_of(one.kind).key, std::pair(one.triangle_a, one.triangle_b),
+                                        std::tuple(one.at.x, one.at.y, one.at.z)));
+        fields["self_intersections"] =
+            py::make_tuple(met->crossing, met->overlapping, met->touching, met->flat_triangles, first);
+    }
     return fields;
 }
 
@@ -293,6 +349,7 @@ void bind_meshes(py::module_& module) {
             "warnings", [](const SourceMesh& self) { return message_texts(self.origin().warnings); },
             "What was odd about the file, and what was made of it: a line each.")
         .def("_defects", &defects_of)
+        .def("_diagnosed", &diagnosed)
         .def("_transformed",
              [](const SourceMesh& self, const Matrix& rows, unsigned threads) {
                  return transformed(self, transform_of(rows), "transform", threads);
@@ -311,11 +368,11 @@ void bind_meshes(py::module_& module) {
             kinds.push_back({kind.words.key, kind.words.one, kind.words.many});
         return kinds;
     });
-    module.def("read_mesh", [](const std::string& path, std::optional<double> unit_mm, bool strict,
+    module.def("read_mesh", [](const py::object& source, std::optional<double> unit_mm, bool strict,
                                const std::string& include, std::uint64_t max_triangles,
                                std::uint64_t max_memory, unsigned threads, const py::object& progress) {
-        return read_source_mesh(path, unit_mm, {strict, roles_named(include), max_triangles, max_memory},
-                                threads, progress);
+        return read_source_mesh(Input(source), unit_mm,
+                                {strict, roles_named(include), max_triangles, max_memory}, threads, progress);
     });
 }
 

@@ -1,6 +1,8 @@
 """Wrong arguments: the texts are of the package, in words of Python, and name the keyword."""
 
 import inspect
+import io
+import os
 import pickle
 import subprocess
 import sys
@@ -52,19 +54,31 @@ MISTAKES = [
     np.datetime64("2026-01-01"), memoryview(b"bytes"), range(3), (n for n in "ab"), closed_stream,
 ]  # fmt: skip
 
+class Square:
+    """A polygon as shapely has them."""
+
+    geom_type, is_empty, interiors = "Polygon", False, ()
+
+    class exterior:  # noqa: N801, as shapely calls it
+        coords, is_ccw = SQUARE, True
+
+
 # Every function and every class that takes something, with arguments that are right.
 CALLS = {
     "slice": (lamella.slice, {"part": box_arrays()}),
     "iter_layers": (lamella.iter_layers, {"part": box_arrays()}),
-    "read": (lamella.read, {"path": "box.stl"}),
-    "write": (lamella.write, {"path": "out.zip", "what": stack(), "format": "png-zip"}),
+    "read": (lamella.read, {"file": "box.stl"}),
+    "read_mesh": (lamella.read_mesh, {"file": "box.stl"}),
+    "read_layers": (lamella.read_layers, {"file": "box.json"}),
+    "write": (lamella.write, {"file": "out.zip", "content": stack(), "format": "png-zip"}),
     "convert": (lamella.convert, {"source": "box.json", "target": "out.cli"}),
     "inspect": (lamella.inspect, {"part": box_arrays()}),
     "verify": (lamella.verify, {"layers": stack(), "mesh": box_arrays()}),
-    "verify_vectors": (lamella.verify_vectors, {"path": "job.cli", "mesh": box_arrays()}),
+    "verify_vectors": (lamella.verify_vectors, {"file": "job.cli", "mesh": box_arrays()}),
     "compare": (lamella.compare, {"first": stack(), "second": stack()}),
     "scan": (lamella.scan, {"layers": list(stack())}),
     "to_pyslm": (lamella.to_pyslm, {"layer": next(lamella.scan(stack()))}),
+    "Part": (lamella.Part, {"mesh": box_arrays()}),
     "Mesh": (lamella.Mesh, dict(zip(("vertices", "faces"), box_arrays()))),
     "Layer": (lamella.Layer, {"rings": [SQUARE], "z": 1}),
     "Stack": (lamella.Stack, {"layers": list(stack())}),
@@ -74,6 +88,12 @@ CALLS = {
     "ScanStrategy": (lamella.ScanStrategy, {}),
     "SkinRule": (lamella.SkinRule, {}),
     "SupportRule": (lamella.SupportRule, {}),
+    "Slicer": (lamella.Slicer, {"part": box_arrays()}),
+    "Slicer.section": (lamella.Slicer(box_arrays()).section, {"z": 1}),
+    "Slicer.section of any plane": (lamella.Slicer(box_arrays()).section, {"origin": (1, 1, 1), "normal": (1, 1, 0)}),
+    "Layer.diagnose": (stack()[0].diagnose, {}),
+    "Stack.at": (stack().at, {"z": 1}),
+    "Layer.from_shapely": (lamella.Layer.from_shapely, {"geometry": Square(), "z": 1}),
     "Layer.filled": (stack()[0].filled, {}),
     "Layer.offset": (stack()[0].offset, {"distance": 1}),
     "Layer.simplified": (stack()[0].simplified, {"tolerance": 1}),
@@ -97,11 +117,11 @@ def test_every_function_is_looked_at():
     assert functions - set(CALLS) == {"engines", "layer_formats", "mesh_formats"}, "these take nothing"
     methods = {
         f"{cls.__name__}.{name}"
-        for cls in (lamella.Layer, lamella.Stack, lamella.Mesh, lamella.LayerStream)
+        for cls in (lamella.Layer, lamella.Stack, lamella.Mesh, lamella.LayerStream, lamella.Slicer)
         for name, method in vars(cls).items()
         if not name.startswith("_") and callable(method)
     }
-    assert methods - set(CALLS) == {"Layer.polygons", "Layer.to_shapely", "LayerStream.close"}, "likewise"
+    assert methods - set(CALLS) == {"Layer.plot", "Layer.polygons", "Layer.to_shapely", "LayerStream.close", "Stack.show"}, "likewise, or axes"
 
 
 def in_words_of_python(text):
@@ -121,7 +141,7 @@ def test_mistakes_are_errors_of_the_documented_kinds(folder, name, parameter):
             function(**{**arguments, parameter: given})
         except TypeError as error:
             if not (parameter == "progress" and callable(given)):  # which raises what it likes
-                names = [parameter, "vertices", "faces"] if parameter in ("part", "mesh") else [parameter]
+                names = [parameter, "vertices", "faces"] if parameter in ("part", "mesh", "content") else [parameter]
                 named = any(f"{name}: " in str(error) for name in names)
                 assert in_words_of_python(str(error)) and named, f"{mistake!r}: {error}"
         except lamella.Error as error:
@@ -191,40 +211,68 @@ TEXTS = [
      "heights: expected ranges, each of three numbers (from, to, layer_height), found none"),
     (lambda: lamella.slice(np.zeros((2, 3, 3), dtype="U1")), ValueError,
      "part: expected an array of numbers of the shape (m, 3, 3), found (2, 3, 3) of <U1"),
-    (lambda: lamella.write("x.html", stack()), ValueError,
-     "x.html: pages are written by the program, with lamella view, not by Python"),
     (lambda: lamella.read("box.json", unit_mm=2), ValueError,
      "unit_mm goes with meshes, and box.json holds layers, which say their unit"),
-    (lambda: lamella.read(5), TypeError, "path: expected a path: str, bytes or os.PathLike, found 5"),
-    (lambda: lamella.read(""), ValueError, "path: expected the path of a file, found an empty one"),
-    (lambda: lamella.read("a\0b"), ValueError, "path: 'a\\x00b' is not possible; the path of a file holds no null character"),
+    (lambda: lamella.read(5), TypeError, "file: expected a path (str or os.PathLike), bytes or a binary file, found 5"),
+    (lambda: lamella.read(io.StringIO("solid")), TypeError,
+     'file: expected a binary file, found one of text; open it with the mode "rb"'),
+    (lambda: lamella.write(io.StringIO(), stack(), format="cli"), TypeError,
+     'file: expected a binary file, found one of text; open it with the mode "wb"'),
+    (lambda: lamella.write(b"out.cli", stack()), TypeError,
+     "file: expected a path (str or os.PathLike) or a binary file, found b'out.cli'"),
+    (lambda: lamella.write(io.BytesIO(), stack(), format="png"), ValueError,
+     "png writes a folder, so <BytesIO> is not possible; give the path of a folder"),
+    (lambda: lamella.write(io.BytesIO(), lamella.Mesh(*box_arrays())), ValueError,
+     "<BytesIO>: meshes are written as stl, ply, obj, by the extension or `format`; slice the mesh to get layers"),
+    (lambda: lamella.read(""), ValueError, "file: expected the path of a file, found an empty one"),
+    (lambda: lamella.read("a\0b"), ValueError, "file: 'a\\x00b' is not possible; the path of a file holds no null character"),
     (lambda: lamella.read("x", max_memory=-1), ValueError,
      "max_memory: -1 is not possible; expected a whole number, 0 or more"),
     (lambda: lamella.write("x.cli", 5), TypeError,
-     "what: expected a lamella.Mesh, Layer or Stack, or an iterable of layers, stacks or scan layers, found 5"),
+     "content: expected a mesh, a lamella.Layer or Stack, or an iterable of layers, stacks or scan layers, found 5"),
     (lambda: lamella.write("x.cli", [stack(), stack()[0]]), TypeError,
-     "what: expected a lamella.Mesh, Layer or Stack, or an iterable of layers, stacks or scan layers, found an object of "
+     "content: expected a mesh, a lamella.Layer or Stack, or an iterable of layers, stacks or scan layers, found an object of "
      "type Layer"),
-    (lambda: lamella.write("x.cli", []), ValueError, "what: there are no layers to write"),
+    (lambda: lamella.write("x.cli", []), ValueError, "content: there are no layers to write"),
     (lambda: lamella.write("x.cli", closed_stream()), ValueError,
-     "what: there are no layers to write: the stream is closed or at its end"),
+     "content: there are no layers to write: the stream is closed or at its end"),
     (lambda: lamella.write("x.cli", stack(), gamma=2), ValueError,
      "gamma goes with the formats png, png-zip, sl1, sl1s, not with cli"),
     (lambda: lamella.write("x.svg", stack(), units_mm=2), ValueError, "units_mm goes with the formats cli, cli-ascii, ilt, 3mf-toolpath, not with svg"),
     (lambda: lamella.write("x.zip", stack(), exposure_s=2, format="png-zip"), ValueError,
      "exposure_s goes with the formats sl1, sl1s, not with png-zip"),
     (lambda: lamella.write("x.stl", lamella.Mesh(*box_arrays()), gamma=2), ValueError,
-     "gamma goes with layers, and what is written is a mesh"),
+     "gamma goes with layers, and the content is a mesh"),
+    (lambda: lamella.write("x.out", stack(), format="3fm"), ValueError,
+     'format: "3fm" is none of ' + ", ".join(f'"{name}"' for name, _, _ in lamella.layer_formats()[:-1]) +
+     ' and "sl1s"; did you mean "3mf"?'),
     (lambda: lamella.write("x.sl1", stack(), antialias=65), ValueError,
      "antialias: 65 is not possible; expected a whole number from 1 to 64"),
     (lambda: lamella.write("x.sl1", stack(), mirror="z"), ValueError, 'mirror: "z" is none of "none", "x", "y" and "xy"'),
     (lambda: lamella.verify(stack(), unit_mm=2), ValueError, "unit_mm goes with a mesh, and none is given"),
-    (lambda: lamella.verify(5), TypeError, "layers: expected a path or a lamella.Stack, found 5"),
+    (lambda: lamella.verify(5), TypeError, "layers: expected a path, bytes, a binary file or a lamella.Stack, found 5"),
     (lambda: lamella.compare(stack(), stack(), -1), ValueError,
      "tolerance: -1 is not possible; expected a distance, which is not negative"),
     (lambda: lamella.inspect(None), TypeError,
-     "part: a mesh is a path, a lamella.Mesh, a pair of arrays (vertices, faces), or something with .vertices and "
-     ".faces; this is None"),
+     "part: a mesh is a path, bytes, a binary file, a lamella.Mesh, a pair of arrays (vertices, faces), or something with "
+     ".vertices and .faces; this is None"),
+    (lambda: lamella.scan("part.stl"), TypeError, "layers: a path is not taken; slice it first"),
+    (lambda: lamella.scan(b"solid"), TypeError, "layers: a file is not taken; slice it first"),
+    (lambda: lamella.scan(lamella.Mesh(*box_arrays())), TypeError, "layers: a mesh is not taken; slice it first"),
+    (lambda: lamella.slice(box_arrays(), layer_hight=1), TypeError,
+     "slice() got an unexpected keyword argument 'layer_hight'; did you mean 'layer_height'?"),
+    (lambda: stack()[0].offset(1, corner="round"), TypeError,
+     "Layer.offset() got an unexpected keyword argument 'corner'; did you mean 'corners'?"),
+    (lambda: stack()[0].offset(1, corners="miter"), ValueError,
+     'corners: "miter" is none of "mitre", "bevel" and "round"; did you mean "mitre"?'),
+    (lambda: lamella.slice(box_arrays(), at="center"), ValueError, 'at: "center" is none of "bottom", "middle" and "top"'),
+    (lambda: lamella.slice(box_arrays(), engine="swep"), ValueError, 'engine: "swep" is none of ' +
+     " and ".join([", ".join(f'"{engine.name}"' for engine in lamella.engines()[:-1]), f'"{lamella.engines()[-1].name}"']) +
+     '; did you mean "sweep"?'),
+    (lambda: stack().at(99), ValueError, "z: there is no layer at 99 mm; they reach from 0 to 10 mm"),
+    (lambda: stack()[[1, 0]], ValueError,
+     "index: expected whole numbers that ascend, or True or False for each layer; layers of a stack ascend"),
+    (lambda: lamella.Layer.from_shapely(5, 1), TypeError, "geometry: expected a geometry of shapely, found 5"),
     (lambda: lamella.Layer([[(0, 0, 0)]], 1), ValueError,
      "rings: expected contours, each an array of numbers of the shape (n, 2), found (1, 3) of int64"),
     (lambda: lamella.Layer([[(0, 0), (1, 0), (1, np.nan)]], 1), ValueError,
@@ -258,7 +306,7 @@ QUOTED = {
     "layer_height": lambda: lamella.slice("part.stl", Decimal("-" + "1" * 10**5)),
     "layers": lambda: lamella.slice("part.stl", layers=(0, -(10**4000))),
     "path": lambda: lamella.read(LONG + "\0"),
-    "kind": lambda: lamella.read("part.stl", kind=LONG),
+    "format": lambda: lamella.write("part.cli", stack(), format=LONG),
     "label": lambda: lamella.Stack([], label=LONG + "\ud800"),
     "rings": lambda: lamella.Layer([type(LONG, (), {})()], 1),
     "rule": lambda: stack()[0].filled(LONG),
@@ -294,18 +342,20 @@ READERS = {
 
 
 @pytest.mark.parametrize("name", READERS)
-@pytest.mark.parametrize("path", ["missing.stl", "missing.cli", "missing/part.stl", "box.json/part.cli", b"missing\xff.cli"])
+@pytest.mark.parametrize("path", ["missing.stl", "missing.cli", "missing/part.stl", "box.json/part.cli", "missing\udcff.cli"])
 def test_files_that_are_not_there_are_errors_of_input(folder, name, path):
     with pytest.raises(lamella.InputError) as caught:
         READERS[name](path)
-    assert str(caught.value).startswith(f"{path}: " if isinstance(path, str) else "missing\\xff.cli: ")
+    assert str(caught.value).startswith(f"{path}: " if path.isascii() else "missing\\xff.cli: ")
+    assert isinstance(caught.value, NotADirectoryError if path.startswith("box") else FileNotFoundError)
     assert not (folder / "out.cli").exists()
 
 
 @pytest.mark.parametrize("name", set(READERS) - {"convert to itself"})
 def test_folders_are_errors_of_input(folder, name):
-    with pytest.raises(lamella.InputError, match="folder"):
+    with pytest.raises(lamella.InputError, match="folder") as caught:
         READERS[name]("folder")
+    assert isinstance(caught.value, IsADirectoryError)
 
 
 @pytest.mark.parametrize("target", ["missing/out.cli", "box.json/out.cli"])
@@ -315,8 +365,9 @@ def test_places_that_cannot_be_written_to_are_errors_of_output(folder, target):
         lambda: lamella.convert("box.json", target),
         lambda: lamella.write(target.replace("cli", "stl"), lamella.Mesh(*box_arrays())),
     ):
-        with pytest.raises(lamella.OutputError, match="out"):
+        with pytest.raises(lamella.OutputError, match="out") as caught:
             write()
+        assert isinstance(caught.value, NotADirectoryError if target.startswith("box") else FileNotFoundError)
 
 
 def test_numbers_of_any_kind_are_numbers():
@@ -354,6 +405,7 @@ resource.setrlimit(resource.RLIMIT_AS, (taken + (64 << 20), resource.RLIM_INFINI
 try:
     lamella.Mesh(vertices, faces)
 except lamella.LimitError as error:
+    assert isinstance(error, MemoryError)
     print(error)
 """
     result = subprocess.run([sys.executable, "-B", "-c", code], env={"PYTHONPATH": PACKAGE}, capture_output=True,

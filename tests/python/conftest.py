@@ -98,3 +98,17 @@ def open_box():
 def shoelace(ring):
     x, y = ring[:, 0], ring[:, 1]
     return (x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2
+
+
+def run_python(code, *arguments):
+    """Runs code in an interpreter of its own; its output."""
+    result = subprocess.run(
+        [sys.executable, "-B", "-c", code, *map(str, arguments)],
+        env={**os.environ, "PYTHONPATH": PACKAGE},
+        capture_output=True,
+        text=True,
+        timeout=240,
+        check=False,
+    )
+    assert result.returncode == 0, result.stderr
+    return result.stdout

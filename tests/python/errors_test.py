@@ -1,5 +1,8 @@
 """Failures are exceptions of the package, with the texts of the program."""
 
+import errno
+import gzip
+import os
 import pickle
 
 import numpy as np
@@ -18,6 +21,35 @@ def test_every_kind_is_a_class_of_its_own(name):
     assert kind.__module__ == "lamella" and kind.__doc__
     error = pickle.loads(pickle.dumps(kind("a text")))
     assert type(error) is kind and str(error) == "a text"
+
+
+@pytest.mark.parametrize("path, also", [("missing.stl", FileNotFoundError), (".", IsADirectoryError)])
+def test_errors_of_the_system_are_those_of_python_too(path, also, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for call in (lamella.slice, lamella.read, lambda path: lamella.scan([], path)):
+        with pytest.raises(also) as caught:
+            call(path)
+        for error in (caught.value, pickle.loads(pickle.dumps(caught.value))):
+            assert isinstance(error, lamella.InputError) and isinstance(error, also) and type(error).__name__ == "InputError"
+            assert str(error) == str(caught.value) and str(error).startswith(f"{path}: ")
+            assert os.strerror(error.errno) == error.strerror
+    with pytest.raises(lamella.OutputError) as caught:
+        lamella.write("missing/out.cli", lamella.slice(box_arrays(), 1))
+    assert isinstance(caught.value, FileNotFoundError) and caught.value.errno == errno.ENOENT
+
+
+def test_a_missing_file_is_described_in_one_sentence(tmp_path):
+    for call in (lamella.slice, lamella.compare, lambda path, *_: lamella.scan([], path)):
+        with pytest.raises(lamella.InputError) as caught:
+            call(tmp_path / "missing", *([tmp_path] if call is lamella.compare else []))
+        assert str(caught.value) == f"{tmp_path / 'missing'}: there is no such file"
+
+
+def test_other_errors_are_none_of_the_system(tmp_path):
+    (tmp_path / "part.stl").write_text("nothing")
+    with pytest.raises(lamella.InputError) as caught:
+        lamella.read(tmp_path / "part.stl")
+    assert not isinstance(caught.value, OSError)
 
 
 FLAT = """solid flat
@@ -111,7 +143,7 @@ def test_impossible_plans_are_errors_of_usage(program, rook, keywords, options):
         ({"z": [1], "first_layer_height": 1}, "z and first_layer_height contradict each other"),
         ({"cusp": 1}, "cusp goes with adaptive layers"),
         ({"at": "side"}, '"side" is none of "bottom", "middle" and "top"'),
-        ({"engine": "zigzag"}, "sweep"),
+        ({"engine": "zigzag"}, '"zigzag" is none of "sweep"'),
         ({"threads": -1}, "threads: -1 is not possible"),
         ({"z": [[1, 2]]}, r"z: expected a list of numbers, found an array of the shape \(1, 2\)"),
         ({"direction": (0, 0, 0)}, "direction"),
@@ -196,3 +228,30 @@ def test_output_errors_are_those_of_the_program(program, rook, tmp_path):
         lamella.write(target, stack)
     assert str(caught.value).replace("`format`", "--format") == program.error("slice", rook, "-o", target, "--layer-height", 10)
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("answer", [0, -1, 10**9, "all"])
+def test_a_file_object_that_writes_nothing_does_not_hang(answer):
+    class Full:
+        name = "full.cli"
+
+        def write(self, content):
+            return answer
+
+    with pytest.raises(lamella.OutputError, match=rf"full.cli: its write\(\) returned {answer}, for \d+ bytes"):
+        lamella.write(Full(), lamella.slice(box_arrays(), 1))
+
+
+def test_a_file_object_of_a_compressed_name_must_compress(tmp_path):
+    path = tmp_path / "a.cli.gz"
+    with open(path, "wb") as file, pytest.raises(lamella.UsageError, match="a.cli.gz would not be compressed; give its path"):
+        lamella.write(file, lamella.slice(box_arrays(), 1))
+    with gzip.open(path, "wb") as file:
+        lamella.write(file, lamella.slice(box_arrays(), 1), format="cli")
+    assert len(lamella.read_layers(path)) == 10
+
+
+def test_findings_are_true_or_false():
+    box = lamella.slice(box_arrays(), 1)
+    assert lamella.verify(box, box_arrays()) and not lamella.verify(box, box_arrays(x=25))
+    assert not lamella.inspect(box_arrays(), self_intersections=True).self_intersections

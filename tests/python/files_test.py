@@ -1,6 +1,7 @@
 """Files in and out: the bytes of the program, and what it finds."""
 
 import gzip
+import io
 import json
 import os
 import pickle
@@ -10,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import box_arrays, nested_boxes, open_box
+from conftest import box_arrays, joined, nested_boxes, open_box
 
 import lamella
 
@@ -146,6 +147,192 @@ def test_a_pipe_is_read_from_its_first_byte(tmp_path, name):
     assert len(read) == (12 if name == "part.stl" else 6)
 
 
+def contents_of(path):
+    """The content of a file in all forms that are read."""
+    content = path.read_bytes()
+    after = io.BytesIO(b"before" + content)
+    after.seek(len(b"before"))
+    yield "<bytes>", content
+    yield "<bytearray>", bytearray(content)
+    yield "<memoryview>", memoryview(content)
+    yield "<memoryview>", memoryview(np.repeat(np.frombuffer(content, dtype=np.uint8), 2))[::2]
+    yield "<BytesIO>", after
+    yield str(path), open(path, "rb")  # noqa: SIM115
+    yield str(path), open(os.fsencode(path), "rb", buffering=0)  # noqa: SIM115
+    yield "<GzipFile>", gzip.GzipFile(fileobj=io.BytesIO(gzip.compress(content)))
+
+
+@pytest.mark.filterwarnings("ignore::ResourceWarning")
+def test_files_are_read_from_memory(program, tmp_path, rook):
+    program.succeed("make", "calibration", "-o", tmp_path / "part.stl")
+    part = tmp_path / "part.stl"
+    lamella.write(tmp_path / "part.json", lamella.slice(part, 1))
+    lamella.write(tmp_path / "part.3mf", lamella.slice(part, 1))
+    stack = lamella.read_layers(tmp_path / "part.json")
+    vectors = tmp_path / "part.ovf"
+    lamella.write(vectors, lamella.scan(stack))
+    for number, (name, _) in enumerate(contents_of(part)):
+
+        def content(path=part, number=number):
+            return list(contents_of(path))[number][1]
+
+        mesh = lamella.read_mesh(content())
+        assert name in (mesh.path, "<GzipFile>") and len(mesh) == len(lamella.read_mesh(part))
+        sliced = lamella.slice(content(), 1)
+        assert sliced == stack and sliced.label == ("part" if name.startswith("<") else part.stem)
+        assert list(lamella.iter_layers(content(), 1)) == list(stack)
+        assert isinstance(lamella.read(content()), lamella.Mesh)
+        assert lamella.inspect(content()).triangles == len(mesh)
+        assert lamella.Slicer(content()).section(1.5).area == stack.at(1.5).area
+        for layers in ("part.json", "part.3mf"):
+            back = lamella.read_layers(content(tmp_path / layers))
+            assert back.path == name.replace("part.stl", layers) and back == lamella.read(content(tmp_path / layers))
+            assert lamella.verify(content(tmp_path / layers), content()).ok
+            assert lamella.compare(content(tmp_path / layers), stack) and lamella.compare(stack, content(tmp_path / layers))
+        lamella.convert(content(tmp_path / "part.json"), tmp_path / "back.json")
+        assert (tmp_path / "back.json").read_bytes() == (tmp_path / "part.json").read_bytes()
+        found = lamella.verify_vectors(content(vectors), content())
+        assert found == lamella.verify_vectors(vectors, part)
+
+
+def test_errors_name_objects(tmp_path):
+    for content in (b"nothing", io.BytesIO(b"nothing")):
+        for call in (lamella.read, lamella.read_mesh, lamella.read_layers, lamella.slice, lamella.verify):
+            if hasattr(content, "seek"):
+                content.seek(0)
+            with pytest.raises(lamella.InputError, match=f"^<{type(content).__name__}>: "):
+                call(content)
+    (tmp_path / "nothing").write_text("nothing")
+    with open(tmp_path / "nothing", "rb") as file:
+        with pytest.raises(lamella.InputError, match="nothing: line 1: is a text"):
+            lamella.read(file)
+        with pytest.raises(lamella.InputError, match="nothing: holds nothing at its position; seek"):
+            lamella.read(file)
+    with pytest.raises(lamella.InputError, match="<bytes>: is empty"):
+        lamella.read(b"")
+    with pytest.raises(TypeError, match='file: expected a binary file, found one of text; open it with the mode "rb"'):
+        lamella.read(open(tmp_path / "nothing"))  # noqa: SIM115
+
+
+def test_what_is_odd_about_content_in_memory_names_it(rook):
+    with pytest.warns(lamella.DefectWarning, match="^<bytes>: .*4 bytes"):
+        lamella.read(Path(rook).read_bytes() + b"more")
+
+
+class Slow(io.RawIOBase):
+    """Takes few bytes at a time."""
+
+    def __init__(self):
+        self.content = b""
+
+    def writable(self):
+        return True
+
+    def write(self, some):
+        self.content += bytes(some[:1000])
+        return min(len(some), 1000)
+
+
+FOLDERS = ("png", "svg-layers")
+
+
+@pytest.mark.parametrize("name", [name for name, _, _ in lamella.layer_formats() if name not in FOLDERS])
+@pytest.mark.filterwarnings("ignore::lamella.DefectWarning")
+def test_layers_are_written_to_memory(tmp_path, monkeypatch, name):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "missing"))  # nothing waits in a temporary file
+    stack = lamella.slice(nested_boxes(), 0.5)
+    lamella.write(tmp_path / "layers", stack, format=name)
+    expected = (tmp_path / "layers").read_bytes()
+    for threads in (1, 3):
+        for layers in (stack, lamella.iter_layers(nested_boxes(), 0.5)):
+            target = io.BytesIO(b"")
+            lamella.write(target, layers, format=name, threads=threads)
+            assert target.getvalue() == expected
+    slow = Slow()
+    lamella.write(slow, stack, format=name)
+    assert slow.content == expected
+    with open(tmp_path / "opened", "wb") as file:
+        lamella.convert(io.BytesIO(json_of(stack)), file, format=name)
+    if name not in ("ilt", "ovf", "3mf-toolpath"):  # these keep the label of the part
+        assert (tmp_path / "opened").read_bytes() == expected
+
+
+def json_of(stack):
+    target = io.BytesIO()
+    lamella.write(target, stack, format="json")
+    return target.getvalue()
+
+
+def test_the_name_of_a_file_object_selects_its_format(tmp_path):
+    stack = lamella.slice(nested_boxes(), 1)
+    with open(tmp_path / "out.json", "wb") as file:
+        lamella.write(file, stack)
+    assert (tmp_path / "out.json").read_bytes() == json_of(stack)
+    with gzip.open(tmp_path / "out.json.gz", "wb") as file:
+        lamella.write(file, stack)
+    assert gzip.decompress((tmp_path / "out.json.gz").read_bytes()) == json_of(stack), "compressed once"
+    with pytest.raises(lamella.UsageError, match="'<BytesIO>' names no format.* `format`"):
+        lamella.write(io.BytesIO(), stack)
+
+
+def test_nothing_is_written_to_memory_when_it_fails():
+    chain = lamella.Layer([], 1, bottom=0.5, top=1, chains=[[(0, 0), (1, 0), (1, 1)]])
+    target = io.BytesIO()
+    with pytest.raises(lamella.DefectError, match="^<BytesIO>: "):
+        lamella.write(target, chain, format="slc", strict=True)
+    with pytest.raises(lamella.OutputError, match="^<BytesIO>: .*write it as .ply or .obj"):
+        lamella.write(target, (box_arrays()[0] * 1e40, box_arrays()[1]), format="stl")
+    assert target.getvalue() == b""
+
+
+class Trimesh:
+    vertices, faces = box_arrays()
+
+
+class Open3d:
+    vertices, triangles = box_arrays()
+
+
+class Polydata:
+    points = box_arrays()[0]
+    regular_faces = box_arrays()[1]
+
+
+class OldPolydata:
+    points = box_arrays()[0]
+    faces = np.insert(box_arrays()[1], 0, 3, axis=1).ravel()
+
+    @property
+    def regular_faces(self):
+        raise ValueError("faces are not of one size")
+
+
+@pytest.mark.parametrize("name", ["stl", "ply", "obj"])
+def test_meshes_of_any_kind_are_written(tmp_path, name):
+    mesh = lamella.Mesh(*box_arrays())
+    lamella.write(tmp_path / f"part.{name}", mesh)
+    expected = (tmp_path / f"part.{name}").read_bytes()
+    for content in (mesh, box_arrays(), list(box_arrays()), Trimesh(), Open3d(), Polydata(), OldPolydata()):
+        target = io.BytesIO()
+        lamella.write(target, content, format=name)
+        assert target.getvalue() == expected
+        lamella.write(tmp_path / "out", content, format=name)
+        assert (tmp_path / "out").read_bytes() == expected
+        assert lamella.slice(content, 1) == lamella.slice(mesh, 1)
+    triangles = io.BytesIO()
+    lamella.write(triangles, box_arrays()[0][box_arrays()[1]], format=name)
+    assert lamella.slice(triangles.getvalue(), 1) == lamella.slice(mesh, 1)
+
+
+def test_polygons_of_more_corners_are_refused():
+    class Quads(OldPolydata):
+        faces = np.array([4, 0, 2, 3, 1, 3, 0, 1, 5])
+
+    with pytest.raises(lamella.UsageError, match="part: faces: expected 3 before .* must be cut into triangles first"):
+        lamella.slice(Quads())
+
+
 def test_parts_stay_apart_in_files(tmp_path):
     z = np.arange(0.5, 10)
     stacks = [lamella.slice(box_arrays(size, 5, 10, at=(20.0 * size, 0, 0)), z=z) for size in (1, 2)]
@@ -272,19 +459,19 @@ def test_layers_without_thickness_are_refused_where_files_need_one(tmp_path):
     assert list(tmp_path.iterdir()) == []
     for name in ("a.json", "a.npz"):
         lamella.write(tmp_path / name, flat)
-        assert lamella.read(tmp_path / name, kind="layers") == flat
+        assert lamella.read_layers(tmp_path / name) == flat
     lamella.write(tmp_path / "a.geojson", flat)
 
 
 def test_the_kind_of_a_file_can_be_asked_for(tmp_path, rook):
     stack = lamella.slice(rook, 5)
     lamella.write(tmp_path / "a.cli", stack)
-    assert isinstance(lamella.read(rook, kind="mesh"), lamella.Mesh)
-    assert len(lamella.read(tmp_path / "a.cli", kind="layers")) == len(stack)
-    with pytest.raises(lamella.InputError, match='a.cli: holds layers, and kind="mesh" was given'):
-        lamella.read(tmp_path / "a.cli", kind="mesh")
-    with pytest.raises(lamella.InputError, match='stl: holds a mesh, and kind="layers" was given'):
-        lamella.read(rook, kind="layers")
+    assert isinstance(lamella.read_mesh(rook), lamella.Mesh)
+    assert len(lamella.read_layers(tmp_path / "a.cli")) == len(stack)
+    with pytest.raises(lamella.InputError, match="a.cli: is a slice file .*: it holds layers already"):
+        lamella.read_mesh(tmp_path / "a.cli")
+    with pytest.raises(lamella.InputError, match="stl: found a mesh"):
+        lamella.read_layers(rook)
 
 
 def test_scan_layers_of_any_kind_are_written(jobs):
@@ -604,12 +791,12 @@ def test_negative_volumes_are_subtracted_however_a_mesh_is_sliced(tmp_path):
 
 
 def test_names_that_are_no_text_work(rook, tmp_path):
-    name = os.fsencode(tmp_path) + b"/odd \xff name"
-    os.link(rook, name + b".stl")
-    stack = lamella.slice(name + b".stl", 5)
-    assert lamella.slice(os.fsdecode(name + b".stl"), 5) == stack
-    lamella.write(name + b".json", stack)
-    assert os.fsencode(lamella.read(name + b".json").path) == name + b".json"
+    name = f"{tmp_path}/odd \udcff name"
+    os.link(rook, name + ".stl")
+    stack = lamella.slice(Path(name + ".stl"), 5)
+    assert lamella.slice(name + ".stl", 5) == stack
+    lamella.write(name + ".json", stack)
+    assert lamella.read(name + ".json").path == name + ".json"
 
 
 def test_nothing_is_left_of_a_file_that_fails(tmp_path, rook):
@@ -632,6 +819,50 @@ def test_mesh_formats_are_those_that_the_program_takes(program):
 
 def test_formats_are_those_of_the_program(program):
     names = [name for name, _, _ in lamella.layer_formats()]
-    assert {"cli", "svg", "3mf", "npz", "png"} <= set(names) and "html" not in names
+    assert {"cli", "svg", "3mf", "npz", "png", "html"} <= set(names)
     text = program.succeed("help", "slice").decode()
     assert all(name in text for name in names)
+
+
+@pytest.mark.parametrize("rule", ["nonzero", "evenodd", "positive"])
+def test_conversion_fills_as_the_program_does(program, tmp_path, rule):
+    lamella.write(tmp_path / "nested.json", [lamella.slice(nested_boxes(), 1), lamella.slice(box_arrays(), z=np.arange(0.5, 10))])
+    options = ["--fill", rule]
+    program.succeed("convert", tmp_path / "nested.json", tmp_path / "program.3mf", *options)
+    lamella.convert(tmp_path / "nested.json", tmp_path / "python.3mf", fill=rule)
+    assert (tmp_path / "python.3mf").read_bytes() == (tmp_path / "program.3mf").read_bytes()
+    with pytest.raises(lamella.UsageError, match='^fill: "odd" is none of'):
+        lamella.convert(tmp_path / "nested.json", tmp_path / "x.3mf", fill="odd")
+
+
+def test_filling_says_what_it_leaves_out(tmp_path, jobs):
+    lamella.write(tmp_path / "inward.json", lamella.Stack([lamella.Layer([[(0, 0), (0, 4), (4, 4), (4, 0)]], 1, 0, 2)]))
+    with pytest.warns(lamella.DefectWarning, match="no contour is left in any of 1 layers"):
+        lamella.convert(tmp_path / "inward.json", tmp_path / "x.json", fill="positive")
+    with pytest.raises(lamella.UsageError, match="holds scan vectors .*, and fill is for contours: fill before scan$"):
+        lamella.convert(jobs / "program.ilt", tmp_path / "x.ovf", fill="nonzero")
+
+
+def test_filled_layers_agree_with_the_filled_sections_of_the_mesh():
+    mesh = joined(box_arrays(4, 4, 4), box_arrays(4, 4, 4, at=(2, 2, 0)))
+    stack = lamella.slice(mesh, 1, fill="nonzero")
+    assert stack.repairs["fill"] == {
+        "layers": 4, "groups_united": 4, "rings_united": 8, "rings_reversed": 0, "rings_dropped": 0,
+        "area_before_mm2": 128, "area_after_mm2": 112,
+    }  # fmt: skip
+    assert not lamella.verify(stack, mesh).areas_agree
+    assert lamella.verify(stack, mesh, fill="nonzero").ok
+    with pytest.raises(lamella.UsageError, match="^fill goes with a mesh, and none is given$"):
+        lamella.verify(stack, fill="nonzero")
+
+
+@pytest.mark.parametrize("name", ["part.svg", "part.cli", "part.json"])
+def test_slice_files_may_be_compressed(rook, tmp_path, name):
+    stack = lamella.slice(rook, 2)
+    lamella.write(tmp_path / name, stack)
+    for threads in (1, 7):
+        lamella.write(tmp_path / (name + ".gz"), stack, threads=threads)
+        assert gzip.decompress((tmp_path / (name + ".gz")).read_bytes()) == (tmp_path / name).read_bytes()
+    assert lamella.read(tmp_path / (name + ".gz")) == lamella.read(tmp_path / name)
+    with pytest.raises(lamella.UsageError, match="npz is not written compressed with gzip"):
+        lamella.write(tmp_path / "part.npz.gz", stack)

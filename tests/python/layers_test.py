@@ -202,7 +202,7 @@ def test_what_can_be_made_of_a_layer():
     assert np.isclose(square.offset(-1).area, 4)
     assert np.isclose(square.offset(1, "bevel").area, 34)
     assert np.isclose(square.offset(1, corners="round").area, 32 + np.pi, atol=0.01)
-    with pytest.raises(lamella.UsageError, match="there are mitre, bevel and round"):
+    with pytest.raises(lamella.UsageError, match='"sharp" is none of "mitre", "bevel" and "round"'):
         square.offset(1, "sharp")
     assert len(square.simplified(0.01).points) == 4
     other = lamella.Layer([[(3, 1), (9, 1), (9, 2), (3, 2)]], z=5)
@@ -210,7 +210,7 @@ def test_what_can_be_made_of_a_layer():
         made = getattr(square, name)(other)
         assert np.isclose(made.area, area) and made.z == 0
     assert square.intersection(square) == square
-    with pytest.raises(lamella.UsageError, match="there are nonzero, evenodd and positive"):
+    with pytest.raises(lamella.UsageError, match='"zigzag" is none of "nonzero", "evenodd" and "positive"'):
         square.filled("zigzag")
 
 
@@ -231,12 +231,57 @@ def test_stacks_are_sequences():
         lamella.Stack([stack[1], stack[0]])
 
 
+def test_stacks_are_indexed_as_arrays():
+    stack = lamella.slice(nested_boxes(), 1)
+    layers = np.array([layer.index for layer in stack])
+    chosen = [1, 4, 5], [0, -1], [], np.array([2, 3], dtype=np.uint8), stack.z > 4, (stack.z > 4).tolist(), np.arange(10)
+    for index in chosen:
+        some = stack[index]
+        expected = layers[index] if len(index) else []
+        assert isinstance(some, lamella.Stack) and [layer.index for layer in some] == list(expected)
+        assert (some.bounds == stack.bounds).all() and some.matrix.tolist() == stack.matrix.tolist()
+    for index in ([10], [-11], np.ones(9, dtype=bool)):
+        with pytest.raises(IndexError):
+            stack[index]
+    for index in ([3, 3], [2, 1], [0, -10], [0.5], [[1, 2]], ["a"]):
+        with pytest.raises(lamella.UsageError, match="^index: expected whole numbers that ascend"):
+            stack[index]
+
+
+def test_parts_are_indexed_with_their_stack(tmp_path):
+    stack = lamella.slice(nested_boxes(), 1)
+    lamella.write(tmp_path / "two.json", [stack, stack])
+    both = lamella.read_layers(tmp_path / "two.json")[[1, 7]]
+    assert [part.z.tolist() for part in both.parts] == [[1.5, 7.5]] * 2
+
+
+def test_the_layer_at_a_height_is_found():
+    stack = lamella.slice(nested_boxes(), 1)[1:]
+    for z, index in [(1, 1), (1.2, 1), (2, 2), (9.999, 9), (10, 9)]:
+        assert stack.at(z).index == index
+    for z in (0.99, 10.01, -1):
+        with pytest.raises(lamella.UsageError, match="they reach from 1 to 10 mm"):
+            stack.at(z)
+    with pytest.raises(lamella.UsageError, match="the stack is empty"):
+        stack[:0].at(1)
+    flat = lamella.slice(nested_boxes(), z=[1, 2])
+    assert flat.at(2) == flat[1]
+
+
+def test_operators_combine_layers():
+    one, other = lamella.slice(nested_boxes(), 1)[4], lamella.Layer([[(0, 0), (5, 0), (5, 5), (0, 5)]], 4.5)
+    assert one | other == one.union(other) and one & other == one.intersection(other)
+    assert one - other == one.difference(other) and one ^ other == one.symmetric_difference(other)
+    with pytest.raises(TypeError):
+        one | 5
+
+
 def test_stacks_have_arrays_over_their_layers():
     stack = lamella.slice(nested_boxes(), 1)
     for name in ("z", "bottom", "top", "area", "perimeter", "open_chains"):
         assert getattr(stack, name).tolist() == [getattr(layer, name) for layer in stack]
     assert stack.contours.tolist() == [len(layer) for layer in stack]
-    assert stack.points == sum(len(layer.points) for layer in stack)
+    assert stack.point_counts.tolist() == [len(layer.points) for layer in stack]
     assert np.isclose(stack.volume, (stack.area * (stack.top - stack.bottom)).sum())
 
 
@@ -326,7 +371,7 @@ def test_layers_travel_between_processes():
 
 def test_they_say_what_they_are(rook):
     stack = lamella.slice(rook, 10)
-    assert repr(stack) == "<lamella.Stack of 5 layers from z = 0 to 50 mm: 5 contours, " + str(stack.points) + " points>"
+    assert repr(stack) == "<lamella.Stack of 5 layers from z = 0 to 50 mm: 5 contours, " + str(stack.point_counts.sum()) + " points>"
     assert repr(stack[0]).startswith("<lamella.Layer 0 at z = 5 mm: 1 contours, ")
     assert repr(lamella.read(rook)) == f"<lamella.Mesh of 94080 triangles, 31.75 x 31.75 x 53.15 mm, from {rook}>"
     assert repr(lamella.iter_layers(rook, 10)) == "<lamella.LayerStream: 5 of 5 layers left>"

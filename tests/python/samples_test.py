@@ -46,4 +46,4 @@ def test_the_sample_of_the_package_runs(folder):
     code = "\n".join(line[4:] for line in text.splitlines() if line.startswith("    "))
     with contextlib.redirect_stdout(io.StringIO()):
         exec(code, {})
-    assert lamella.read("part.cli").points > 0
+    assert lamella.read_layers("part.cli").point_counts.sum() > 0

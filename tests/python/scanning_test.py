@@ -2,6 +2,7 @@
 
 import copy
 import dataclasses
+import io
 import pickle
 
 import numpy as np
@@ -59,7 +60,7 @@ def test_what_no_vectors_are_made_of_is_reported(tmp_path):
     with pytest.warns(lamella.DefectWarning, match="^the mesh: 10 rings bound no material in 10 of 10 layers, first at z = 0.5 mm") as told:
         stack = lamella.slice(inward, 1)
     assert len(told) == 1
-    assert "lamella slice --orient turns" in str(told[0].message)
+    assert "orient=True turns" in str(told[0].message)
     inside_out = "^layers: 10 rings bound no material in 10 of 10 layers, first at z = 0.5 mm .* filled\\(\"nonzero\"\\) turns"
     with pytest.warns(lamella.DefectWarning, match=inside_out):
         lamella.scan(stack)
@@ -270,7 +271,7 @@ def test_strategies_that_are_wrong_say_where(tables, text):
 @pytest.mark.parametrize(
     "strategy, text",
     [
-        (5, "strategy: expected a ScanStrategy, a path, or a dict of tables, found 5"),
+        (5, "strategy: expected a ScanStrategy, a TOML file, or a dict of tables, found 5"),
         ({"hatch": 3}, "strategy: hatch: expected a table, found 3"),
         ({"hatch": {"distance": "wide"}}, "strategy: hatch.distance: expected a finite number, found 'wide'"),
         ({"hatch": {"distance": {}}}, "strategy: hatch.distance: expected a finite number, found an object of type dict"),
@@ -400,3 +401,56 @@ def test_strategies_may_be_derived():
     assert copy.deepcopy(fine) == fine
     (scanned,) = lamella.scan([square(10)], fine)
     assert scanned == next(lamella.scan([square(10)], {"hatch": {"distance": 0.05}}))
+
+
+def changed_strategy():
+    strategy = lamella.ScanStrategy()
+    strategy.seed = 2**63 - 1
+    strategy.hatch.pattern, strategy.hatch.distance = "chessboard", 1 / 3
+    strategy.upskin.layers = 3
+    strategy.upskin.hatch.parameters.name = 'fine "lines" \\ of\n\x7f\u00e4'
+    strategy.contours.parameters.power_w = 123.456
+    strategy.contours.before_hatch = not strategy.contours.before_hatch
+    return strategy
+
+
+def test_strategies_are_written_as_the_program_reads_them(program, tmp_path):
+    layers = [square(10, 0.05 + 0.1 * i, i) for i in range(3)]
+    for strategy in (lamella.ScanStrategy(), changed_strategy()):
+        path = tmp_path / "strategy.toml"
+        path.write_text(strategy.to_toml(), encoding="utf-8")
+        assert program.succeed("strategy", "show", path).decode() == strategy.to_toml()
+        # Whatever is taken as a file.
+        for file in (path, path.read_bytes(), io.BytesIO(path.read_bytes())):
+            assert list(lamella.scan(layers, file)) == list(lamella.scan(layers, strategy))
+    assert lamella.ScanStrategy().to_toml() == program.succeed("strategy", "show").decode()
+
+
+def test_a_strategy_that_a_file_cannot_hold_is_refused():
+    strategy = lamella.ScanStrategy()
+    strategy.hatch.parameters.name = strategy.contours.parameters.name
+    with pytest.raises(lamella.UsageError, match='several sets of parameters with the name "contour"'):
+        strategy.to_toml()
+    strategy.hatch.parameters.name = ""
+    with pytest.raises(lamella.UsageError, match="no name"):
+        strategy.to_toml()
+    strategy = lamella.ScanStrategy()
+    strategy.seed = 2**63
+    with pytest.raises(lamella.UsageError, match="the seed is 9223372036854775808, and TOML"):
+        strategy.to_toml()
+    strategy.hatch.distance = -1
+    with pytest.raises(lamella.UsageError, match="distance"):
+        strategy.to_toml()
+
+
+def test_strategies_show_their_values():
+    strategy = changed_strategy()
+    text = repr(strategy)
+    assert text.startswith("ScanStrategy(") and "object at" not in text
+    for shown in ("pattern='chessboard'", f"distance={1 / 3!r}", "layers=3", "power_w=123.456", repr(strategy.support)):
+        assert shown in text
+    (layer,) = lamella.scan([square(10)])
+    assert repr(layer.figures[1]).startswith("ScanFigures(vectors=4, marked_mm=39.")
+    for make in (changed_strategy, lamella.ScanStrategy):
+        assert make() == make() and make().hatch == make().hatch and make().upskin.hatch == make().upskin.hatch
+    assert changed_strategy() != lamella.ScanStrategy()

@@ -1,10 +1,12 @@
 """Meshes of any kind in, layers out: the same as the program's."""
 
+import csv
 import json
+import pickle
 
 import numpy as np
 import pytest
-from conftest import box_arrays, nested_boxes, open_box, shoelace
+from conftest import ROOT, box_arrays, nested_boxes, open_box, shoelace
 
 import lamella
 
@@ -44,10 +46,29 @@ def test_layers_are_those_of_the_program(program, rook, options, keywords):
     assert stack.perimeter.tolist() == [layer["perimeter_mm"] for layer in expected]
 
 
-def test_paths_may_be_text_bytes_or_path_objects(rook):
+def test_layers_of_the_bodies_have_the_hashes_of_the_table(program, bodies):
+    with open(ROOT / "tests/fixtures/layer_hashes.tsv", encoding="utf-8", newline="") as table:
+        rows = list(csv.DictReader((line for line in table if not line.startswith("#")), delimiter="\t"))
+    rows = [row for row in rows if not row["mesh"].startswith("meshes/")]
+    assert rows
+    for row in rows:
+        part = bodies(row["mesh"], *row["options"].split())
+        options = ["--layer-height", row["height_mm"], "--rotate", row["rotated"]]
+        # The program knows the hash of a whole stack, and this module those of its layers.
+        expected = json.loads(program.succeed("slice", part, *options, "--stats", "-"))
+        assert (len(expected["layers"]), expected["hash"]) == (int(row["layers"]), row["hash"])
+        for threads in (1, 7):
+            stack = lamella.slice(part, float(row["height_mm"]), transform=expected["options"].get("matrix"), threads=threads)
+            assert stack.hashes == [layer["hash"] for layer in expected["layers"]], row
+
+
+def test_paths_may_be_text_or_path_objects(rook):
+    class OfBytes:
+        def __fspath__(self):
+            return bytes(rook)
+
     stack = lamella.slice(rook, 2)
-    assert lamella.slice(str(rook), 2) == stack
-    assert lamella.slice(bytes(rook), 2) == stack
+    assert lamella.slice(str(rook), 2) == lamella.slice(OfBytes(), 2) == stack
 
 
 class LikeTrimesh:
@@ -183,9 +204,10 @@ def test_streamed_layers_are_the_same(rook):
     with lamella.iter_layers(rook, 0.5) as layers:
         assert layers.z.tolist() == stack.z.tolist()
         assert (layers.bounds == stack.bounds).all()
-        assert layers.__length_hint__() == len(stack)
-        assert list(layers) == list(stack)
-        assert layers.__length_hint__() == 0
+        assert len(layers) == len(stack)
+        assert next(layers) == stack[0] and len(layers) == len(stack) - 1
+        assert list(layers) == list(stack[1:])
+        assert len(layers) == 0
         assert list(layers) == []
 
 
@@ -194,3 +216,96 @@ def test_areas_come_from_the_rings():
     for layer in stack:
         assert np.isclose(layer.area, sum(shoelace(ring) for ring in layer))
     assert stack.area.tolist() == [100.0, 36.0, 36.0, 52.0, 52.0, 52.0, 52.0, 36.0, 36.0, 100.0]
+
+
+def damaged(path):
+    """Writes a box without its last triangle, with a triangle twice, one flipped, and a crack at a corner."""
+    vertices, faces = box_arrays()
+    corners = vertices[faces].copy()
+    corners[0] = corners[0, ::-1]
+    corners = np.concatenate([corners[:-1], corners[3:4]])
+    corners[5, 0] += 1e-3
+    rows = [f"facet normal 0 0 0 outer loop {' '.join(f'vertex {x} {y} {z}' for x, y, z in triangle.tolist())} endloop endfacet" for triangle in corners]
+    path.write_text("solid damaged\n" + "\n".join(rows) + "\nendsolid damaged\n", encoding="utf-8")
+    return path
+
+
+@pytest.mark.filterwarnings("ignore::lamella.DefectWarning")
+@pytest.mark.parametrize(
+    "options, keywords",
+    [
+        ([], {}),
+        (["--weld-tolerance", "0.01"], {"weld_tolerance": 0.01}),
+        (["--drop-duplicates"], {"drop_duplicates": True}),
+        (["--orient"], {"orient": True}),
+        (["--close-gaps", "30"], {"close_gaps": 30}),
+        (["--orient", "--direction", "1,2,3"], {"orient": True, "direction": (1, 2, 3)}),
+        (
+            ["--weld-tolerance", "0.01", "--drop-duplicates", "--orient", "--close-gaps", "50"],
+            {"weld_tolerance": 0.01, "drop_duplicates": True, "orient": True, "close_gaps": 50},
+        ),
+    ],
+)
+def test_meshes_and_layers_are_mended_as_by_the_program(program, tmp_path, options, keywords):
+    part = damaged(tmp_path / "damaged.stl")
+    expected = json.loads(program.succeed("slice", part, "--layer-height", "0.7", *options, "--stats", "-"))
+    counts = {
+        repair: {name: value for name, value in found.items() if name != "places"}
+        for repair, found in expected.get("repairs", [{}])[0].items()
+        if isinstance(found, dict)
+    }
+    if "gaps" in expected:
+        counts["close_gaps"] = {name: pytest.approx(value) for name, value in expected["gaps"].items()}
+        assert expected["gaps"]["closed"] > 0
+    hashes = [layer["hash"] for layer in expected["layers"]]
+    for threads in (1, 7):
+        stack = lamella.slice(part, 0.7, threads=threads, **keywords)
+        assert stack.hashes == hashes
+        assert stack.repairs == counts
+        assert pickle.loads(pickle.dumps(stack)).repairs == counts
+        with lamella.iter_layers(part, 0.7, threads=threads, **keywords) as stream:
+            assert [layer.hash for layer in stream] == hashes
+            assert stream.repairs == counts
+
+
+def test_mending_leaves_the_mesh_of_the_caller_as_it_is(tmp_path):
+    mesh = lamella.read(damaged(tmp_path / "damaged.stl"))
+    faces = mesh.faces.tolist()
+    with pytest.warns(lamella.DefectWarning):
+        assert lamella.slice(mesh, 1, orient=True).repairs["orient"]["flipped_triangles"] > 0
+    assert mesh.faces.tolist() == faces
+
+
+def test_a_mesh_of_which_mending_leaves_nothing_is_an_error():
+    vertices, faces = box_arrays()
+    both = (vertices, np.concatenate([faces, faces[:, ::-1]]))
+    with pytest.raises(lamella.InputError, match="^the mesh: nothing of the mesh is left after its repair$"):
+        lamella.slice(both, 1, drop_duplicates=True)
+
+
+@pytest.mark.parametrize(
+    "keywords, error, text",
+    [
+        ({"close_gaps": 0}, lamella.UsageError, "close_gaps: 0 is not possible; expected a number above 0"),
+        ({"weld_tolerance": -1}, lamella.UsageError, "weld_tolerance: -1 is not possible; expected a number above 0"),
+        ({"orient": 1}, TypeError, "orient: expected True or False, found 1"),
+        ({"drop_duplicates": None}, TypeError, "drop_duplicates: expected True or False, found None"),
+    ],
+)
+def test_what_is_to_be_mended_is_checked(rook, keywords, error, text):
+    for function in (lamella.slice, lamella.iter_layers):
+        with pytest.raises(error) as raised:
+            function(rook, 1, **keywords)
+        assert str(raised.value) == text
+
+
+def test_one_height_needs_no_list():
+    assert lamella.slice(box_arrays(), z=5) == lamella.slice(box_arrays(), z=[5])
+    assert lamella.slice(box_arrays(), offsets=np.float64(5)) == lamella.slice(box_arrays(), offsets=[5])
+
+
+def test_a_range_of_layers_may_have_no_end(program, rook):
+    stack = lamella.slice(rook, 2, layers=(2, None))
+    assert stack.hashes == [layer["hash"] for layer in statistics(program, rook, "--layer-height", "2", "--layers", "2:")]
+    with pytest.raises(TypeError, match="^layers: expected a whole number, 0 or more, found None$"):
+        lamella.slice(rook, 2, layers=(None, 2))

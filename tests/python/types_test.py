@@ -33,9 +33,14 @@ def test_stubs_are_what_the_extension_is(tmp_path):
 
 
 GOOD = """
+import io
 import numpy as np
 import numpy.typing as npt
 import lamella
+
+class Polydata:
+    points: npt.NDArray[np.float64] = np.zeros((3, 3))
+    faces: npt.NDArray[np.int64] = np.array([3, 0, 1, 2])
 
 class Scan:
     vertices: npt.NDArray[np.float64] = np.zeros((3, 3))
@@ -45,6 +50,13 @@ def listen(stage: str, done: int, total: int) -> None: ...
 
 stack: lamella.Stack = lamella.slice("part.stl", 0.1, progress=listen)
 lamella.slice(Scan(), z=[1, 2, 3])
+lamella.slice(Polydata())
+lamella.slice(b"solid")
+with open("part.stl", "rb") as file:
+    lamella.write(io.BytesIO(), lamella.slice(file), format="cli")
+some: lamella.Stack = stack[[1, 2]]
+many: lamella.Stack = stack[stack.area > 3]
+both: lamella.Layer = stack.at(1) | stack[0] - stack[1]
 lamella.slice((Scan.vertices, Scan.faces), offsets=np.arange(3))
 layer: lamella.Layer = stack[0]
 part: lamella.Stack = stack[1:2]
@@ -70,7 +82,10 @@ BAD = {
     "key: Hashable = lamella.slice('part.stl')": "assignment",
     "lamella.slice('part.stl', at='centre')": "arg-type",
     "lamella.slice('part.stl')[0].offset(1, 'sharp')": "arg-type",
-    "stack: lamella.Stack = lamella.read('part.stl', kind='mesh')": "assignment",
+    "stack: lamella.Stack = lamella.read_mesh('part.stl')": "assignment",
+    "lamella.read(io.StringIO())": "arg-type",
+    "lamella.write(open('part.cli', 'w'), lamella.read_layers('part.cli'))": "arg-type",
+    "text: str = lamella.slice('part.stl')[[1, 2]]": "assignment",
 }
 
 
@@ -83,8 +98,8 @@ def test_users_get_types(tmp_path):
 
 def test_mistakes_of_users_are_explained(tmp_path):
     program = tmp_path / "bad.py"
-    program.write_text("from typing import Hashable\nimport lamella\n" + "\n".join(BAD) + "\n")
+    program.write_text("import io\nfrom typing import Hashable\nimport lamella\n" + "\n".join(BAD) + "\n")
     code, text = mypy(tmp_path, str(program))
     assert code == 1
-    for line, (mistake, kind) in enumerate(BAD.items(), start=3):
+    for line, (mistake, kind) in enumerate(BAD.items(), start=4):
         assert f"bad.py:{line}: error" in text and f"[{kind}]" in text, mistake + "\n" + text

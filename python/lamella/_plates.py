@@ -1,0 +1,138 @@
+"""Plates: meshes at their positions, which are sliced together."""
+
+from __future__ import annotations
+
+import decimal
+import numbers
+from dataclasses import dataclass
+from typing import Any, List, Literal, Optional, Sequence, Tuple, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _arguments as check
+from . import _lamella
+from ._arguments import Progress
+from ._errors import DefectError, UsageError
+from ._lamella import Mesh
+from ._meshes import UPWARDS, MeshLike, Placing, as_mesh, placed
+
+COORDINATES = "three numbers (x, y, z)"
+
+# The weld tolerance, whether duplicates are dropped, and whether triangles are oriented.
+Mending = Tuple[Optional[float], bool, bool]
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A mesh on a plate, with its position and its role. In this order it is transformed by the matrix, scaled, rotated
+    and moved.
+
+    mesh: a mesh as for `slice`. Each object of a 3MF or AMF file is a part of its own.
+    matrix: a (4, 4) matrix in millimetres.
+    scale: a factor, or one for each axis.
+    rotation: degrees about the x axis, then y, then z.
+    position: by how much it is moved along x, y and z, in millimetres.
+    copies: this many copies, side by side in rows; `spacing` is the gap between them in millimetres.
+    label: its name in slice files; by default that of the object in its file, or of the file.
+    role: "solid"; "support", for which scan vectors are made by a rule of their own; or "negative", which is no part, and is
+        subtracted from all others.
+    unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.
+    """
+
+    mesh: MeshLike
+    matrix: Optional[npt.ArrayLike] = None
+    scale: Union[float, Sequence[float]] = 1
+    rotation: Sequence[float] = (0, 0, 0)
+    position: Sequence[float] = (0, 0, 0)
+    copies: int = 1
+    spacing: float = 5
+    label: str = ""
+    role: Literal["solid", "support", "negative"] = "solid"
+    unit_mm: Optional[float] = None
+
+    def __post_init__(self) -> None:
+        check.optional(check.positive, "unit_mm", self.unit_mm)
+        self._checked()
+
+    def _checked(self) -> Tuple[Any, ...]:
+        """Returns the arguments after `mesh`, as the extension takes them."""
+        matrix = np.eye(4)
+        if self.matrix is not None:
+            matrix = check.shaped("matrix", self.matrix, (4, 4), "a matrix of the shape (4, 4)")
+        scale = self.scale
+        if isinstance(scale, (numbers.Real, decimal.Decimal)) or check.is_array_of_one(scale):
+            scale = (scale,) * 3  # type: ignore[assignment]
+        pose = (
+            check.several("scale", scale, 3, "a number, or three (x, y, z)", check.positive),
+            check.several("rotation", self.rotation, 3, COORDINATES, check.number),
+            check.several("position", self.position, 3, COORDINATES, check.number),
+        )
+        role = check.choice("role", self.role, ("solid", "support", "negative"))
+        return (
+            pose,
+            check.finite("matrix", matrix),
+            check.whole("copies", self.copies, 1),
+            check.distance("spacing", self.spacing),
+            check.label("label", self.label),
+            role == "support",
+            role == "negative",
+        )
+
+
+setattr(Part, "__init__", check.suggesting(Part.__init__))
+
+Sliceable = Union[MeshLike, Part, Sequence[Part]]
+
+
+def _parts(name: str, part: Any) -> List[Part]:
+    """Returns the parts of a plate; none for a mesh."""
+    if isinstance(part, Part):
+        return [part]
+    if not (isinstance(part, (list, tuple)) and any(isinstance(one, Part) for one in part)):
+        return []
+    for one in part:
+        if not isinstance(one, Part):
+            check.refuse_type(name, "a lamella.Part, as the others of the plate are", one)
+    return list(part)
+
+
+def plate_of(
+    name: str,
+    part: Sliceable,
+    unit_mm: Optional[float],
+    whole: Placing,
+    mending: Mending = (None, False, False),
+    *,
+    strict: bool = False,
+    max_memory: int = 0,
+    threads: int,
+    progress: Optional[Progress],
+) -> _lamella.Plate:
+    """Returns the plate of a mesh or of parts. `whole` places all of it."""
+
+    def mesh_of(thing: MeshLike, unit_mm: Optional[float]) -> Mesh:
+        mesh = as_mesh(
+            name, thing, unit_mm=unit_mm, strict=strict, max_memory=max_memory, threads=threads, progress=progress
+        )
+        if strict:
+            defects = mesh._defects(threads, progress)
+            if defects:
+                raise DefectError(f"{mesh.path or 'the mesh'}: the mesh has defects: {defects}")
+        return mesh
+
+    parts = _parts(name, part)
+    if not parts:
+        mesh = placed(mesh_of(part, unit_mm), whole, threads)  # type: ignore[arg-type]
+        return _lamella.plate_of_mesh(mesh, mending, threads, progress)
+    if unit_mm is not None:
+        raise UsageError("unit_mm: each part of a plate has its own, such as lamella.Part(..., unit_mm=25.4)")
+    on_plate = []
+    for one in parts:
+        mesh = mesh_of(one.mesh, one.unit_mm)
+        pose, matrix, copies, spacing, label, *role = one._checked()
+        on_plate.append((mesh, pose, matrix, copies, spacing, label or (b"" if mesh.path else b"part"), *role))
+    direction, transform = whole
+    return _lamella.plate_of_parts(
+        on_plate, transform, None if direction == UPWARDS else direction, mending, max_memory, threads, progress
+    )
