@@ -1,6 +1,6 @@
 // The program in WebAssembly: `main`, the command `read` for JavaScript, and what the program needs of an
-// operating system where there is none. JavaScript ends a run by ending its worker (web/jobs.js), so nothing
-// waits for signals.
+// operating system where there is none. JavaScript ends a run by ending its worker (web/package/api.js), so
+// nothing waits for signals.
 
 #include "program.hpp"
 
@@ -20,22 +20,33 @@
 
 #include <emscripten/emscripten.h>
 
+#include <chrono>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <variant>
 #include <vector>
+
+/// Calls `Module.ended`, whose caller ends all threads if some may be at work (web/library.js).
+extern "C" void lamella_ended(int exit_code, int at_work);
 
 namespace lamella::app {
 
 Interrupt::Interrupt(const Messages& messages, Interrupts kind) : messages_(messages), watch_(kind) {}
 Interrupt::~Interrupt() = default;
 
-void leave_at_once(std::string_view /*last_words*/, int exit_code) noexcept {
-    std::_Exit(exit_code);
+/// Only threads that watch others call this (--timeout).
+void leave_at_once(std::string_view last_words, int exit_code) noexcept {
+    std::fwrite(last_words.data(), 1, last_words.size(), stderr);
+    std::fflush(stderr);
+    lamella_ended(exit_code, 1);
+    for (;;)
+        std::this_thread::sleep_for(std::chrono::hours(1));
 }
 
 void report_crashes(ProgressStyle /*style*/) noexcept {}
@@ -135,13 +146,34 @@ Command read_command() {
 
 } // namespace lamella::app
 
-/// Runs the program with `count` words, each of which ends with a zero, and returns its exit code. May be
-/// called any number of times in one instance.
-extern "C" EMSCRIPTEN_KEEPALIVE int lamella_run(const char* words, int count) {
-    std::vector<std::string> given;
-    for (int i = 0; i < count; ++i)
-        words += given.emplace_back(words).size() + 1;
+namespace {
+
+int run(const std::vector<std::string>& words) {
     std::vector<lamella::app::Command> commands = lamella::app::all_commands();
     commands.push_back(lamella::app::read_command());
-    return lamella::app::run_program(std::move(commands), given);
+    return lamella::app::run_program(std::move(commands), words);
+}
+
+/// `text` has `count` words, each of which ends with a zero.
+std::vector<std::string> words_of(const char* text, int count) {
+    std::vector<std::string> words;
+    for (int i = 0; i < count; ++i)
+        text += words.emplace_back(text).size() + 1;
+    return words;
+}
+
+} // namespace
+
+// Each may be called any number of times in one instance, one after the other.
+
+/// Runs the program on the calling thread alone and returns its exit code.
+extern "C" EMSCRIPTEN_KEEPALIVE int lamella_run(const char* text, int count) {
+    return run(words_of(text, count));
+}
+
+/// Starts the program on threads of its own, `Module.processors` unless --threads gives their number. At the
+/// end, `Module.ended` is called on the calling thread, which has to return to its event loop, because it
+/// starts threads and serves the file system.
+extern "C" EMSCRIPTEN_KEEPALIVE void lamella_start(const char* text, int count) {
+    std::thread([words = words_of(text, count)] { lamella_ended(run(words), 0); }).detach();
 }

@@ -9,6 +9,7 @@ import { join, normalize } from 'node:path';
 import { after, before, test } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { chromium } from 'playwright-core';
+import { compare, scaleOf } from './drawing.mjs';
 
 const program = process.env.LAMELLA_PROGRAM;
 const packageFolder = process.env.LAMELLA_PACKAGE;
@@ -113,6 +114,115 @@ test('a broken file gives the error of the program, and the page goes on', async
     await sliced(page);
     assert.equal(await page.locator('#error').textContent(), '');
   }
+  await close();
+});
+
+test('a million triangles are shown, layer by layer while they come', async () => {
+  native('make', 'lattice', '--cells', '13', '-o', 'million.stl');
+  const { page, complaints, close } = await open('#layerHeight=0.1');
+  // The preview may be there for a moment only.
+  await page.evaluate(() => {
+    const preview = document.getElementById('preview');
+    new MutationObserver(() => {
+      if (!preview.hidden) window.statusOfPreview ??= document.getElementById('status').textContent;
+    }).observe(preview, { attributes: true, attributeFilter: ['hidden'] });
+  });
+  await page.locator('#file').setInputFiles(join(folder, 'million.stl'));
+  await sliced(page);
+  assert.match(await page.evaluate(() => window.statusOfPreview), / …$/);
+  const drawn = await page.locator('#preview').evaluate((canvas) => {
+    const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    return data.some((value) => value > 0);
+  });
+  assert.ok(drawn);
+  await layersOf(page);
+  assert.match(await page.locator('#input').textContent(), /^million\.stl: 1,\d{3},\d{3} triangles, /);
+  assert.ok(await page.locator('#preview').isHidden());
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('what is drawn while layers come has the outline of the part', async () => {
+  native('make', 'box', '--size', '20,30,40', '-o', 'coming.stl');
+  const { page, close } = await open('#layerHeight=0.002');
+  // The viewer would take its place.
+  await page.evaluate(() => new MutationObserver(() => (document.getElementById('preview').hidden = false)).observe(document.getElementById('preview'), { attributes: true }));
+  await page.locator('#file').setInputFiles(join(folder, 'coming.stl'));
+  await sliced(page);
+  const { width, height, ...box } = await page.locator('#preview').evaluate((canvas) => {
+    const { data, width, height } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+    let [left, right, top, bottom] = [width, 0, height, 0];
+    for (let i = 0; i < width * height; ++i)
+      if (data[4 * i + 3] > 0) {
+        left = Math.min(left, i % width);
+        right = Math.max(right, (i % width) + 1);
+        top = Math.min(top, Math.floor(i / width));
+        bottom = Math.max(bottom, Math.floor(i / width) + 1);
+      }
+    return { width, height, left, right, top, bottom };
+  });
+  // From a corner, a box of 20 x 30 x 40 mm is 43.5 wide and 55.1 high.
+  const ratio = (box.right - box.left) / (box.bottom - box.top);
+  assert.ok(Math.abs(ratio - 43.5 / 55.1) < 0.02, `${ratio}`);
+  assert.ok(Math.abs((box.bottom - box.top) / height - 0.86) < 0.02);
+  assert.ok(Math.abs((box.left + box.right - width) / width) < 0.01);
+  await close();
+});
+
+test('a layer looks as the raster of the program sees it', async () => {
+  native('make', 'rook', '-o', 'drawn.stl');
+  native('slice', 'drawn.stl', '--layer-height', '0.5', '-o', 'drawn', '--format', 'png', '--pixel-size', '0.02', '--antialias', '1');
+  for (const colorScheme of ['light', 'dark']) {
+    const { page, close } = await open('#layerHeight=0.5', { colorScheme });
+    await page.locator('#file').setInputFiles(join(folder, 'drawn.stl'));
+    await sliced(page);
+    const shown = await layersOf(page);
+    const frame = page.frames().find((each) => each !== page.mainFrame());
+    for (const name of ['Contours', 'Direction']) await shown.getByRole('button', { name, exact: true }).click();
+    const tools = await shown.locator('.pane:has(canvas[data-layer]) .tools').evaluate((node) => node.offsetTop + node.offsetHeight);
+    for (const layer of [0, 50, 105]) {
+      await shown.locator('#layer').fill(String(layer));
+      await shown.locator(`canvas[data-layer="${layer}"]`).waitFor();
+      await frame.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+      const picture = join(folder, 'drawn', `${String(layer).padStart(5, '0')}.png`);
+      const { filled, different, wrong } = await compare(frame, picture, 0.02, await scaleOf(frame), tools / 2);
+      const where = `layer ${layer}, ${colorScheme}: ${different} of ${filled} pixels`;
+      assert.ok(filled > 5000, where);
+      assert.equal(wrong, 0, where);
+      assert.ok(different < 0.02 * filled, where);
+    }
+    await close();
+  }
+});
+
+test('several files make a plate, and overlapping boxes are reported', async () => {
+  native('make', 'box', '-o', 'one.stl');
+  native('make', 'rook', '-o', 'two.stl');
+  native('make', 'torus', '--translate', '100,0,0', '-o', 'three.ply');
+  native('slice', 'one.stl', 'two.stl', 'three.ply', '-o', 'plate.cli', '--layer-height', '1');
+  const { page, complaints, close } = await open('#layerHeight=1');
+  await page.locator('#file').setInputFiles(['one.stl', 'two.stl', 'three.ply'].map((name) => join(folder, name)));
+  await sliced(page);
+  assert.match(await page.locator('#input').textContent(), /^one.stl, two.stl, three.ply: /);
+  assert.match(await page.locator('#warnings').textContent(), /boxes of one and two overlap/);
+  const coming = page.waitForEvent('download');
+  await page.locator('#format').selectOption('cli');
+  await page.getByRole('button', { name: 'Download' }).click();
+  assert.ok(Buffer.compare(readFileSync(await (await coming).path()), readFileSync(join(folder, 'plate.cli'))) === 0);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('every control has a name for a screen reader', async () => {
+  const { page, close } = await open('#body=box');
+  await sliced(page);
+  await page.evaluate(() => document.querySelectorAll('details').forEach((each) => (each.open = true)));
+  const nameless = await page.evaluate(() =>
+    [...document.querySelectorAll('input, select, button, iframe, canvas, progress')]
+      .filter((each) => !(each.ariaLabel || each.title || each.textContent.trim() || each.labels?.[0]?.textContent.trim()))
+      .map((each) => each.outerHTML),
+  );
+  assert.deepEqual(nameless, []);
   await close();
 });
 

@@ -7,7 +7,7 @@ build=$(cd "$1" && pwd)
 here=$(cd "$(dirname "$0")" && pwd)
 work=$build/web/tests
 mkdir -p "$work"
-cp "$here"/*.mjs "$here"/*.ts "$here"/package.json "$here"/package-lock.json "$work"
+cp "$here"/*.mjs "$here"/*.ts "$here"/package.json "$here"/package-lock.json "$here"/../viewer/drawing.mjs "$work"
 cd "$work"
 npm ci --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null
 
@@ -18,9 +18,12 @@ mkdir user
     npm install --offline --no-audit --no-fund --loglevel=error ./lamella-*.tgz >/dev/null)
 
 export LAMELLA_PROGRAM="$build/lamella" LAMELLA_PACKAGE="$work/user/node_modules/lamella" \
-    LAMELLA_PLAYGROUND="$build/web/playground.html" LAMELLA_PAGE="$here/../../docs/javascript.md"
+    LAMELLA_PLAYGROUND="$build/web/playground.html" LAMELLA_PAGE="$here/../../docs/javascript.md" \
+    LAMELLA_LAYER_HASHES="$here/../fixtures/layer_hashes.tsv" LAMELLA_SHARED="${LAMELLA_SHARED:-$here/../../../shared}"
 cp types_test.ts user/
 (cd user && "$work/node_modules/.bin/tsc" --noEmit --strict --module nodenext --target es2022 --lib es2022,dom \
     --typeRoots "$work/node_modules/@types" --types node types_test.ts)
 node --expose-gc --test package_test.mjs
 node --test browser_test.mjs
+node --test layer_hashes_test.mjs
+node --test sample_test.mjs

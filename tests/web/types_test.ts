@@ -1,6 +1,6 @@
 // Compiled by tsc: the types of the package fit the way in which it is used.
 
-import { LamellaError, Mesh, Stack, diagnose, makeBody, readFile, readMesh, run, slice, sliceToFile, view, writeLayers } from 'lamella';
+import { LamellaError, Mesh, Stack, diagnose, makeBody, readFile, readMesh, run, slice, sliceLayers, sliceToFile, view, writeLayers } from 'lamella';
 
 const mesh: Mesh = await readMesh(new Uint8Array(), 'part.stl', { unit: 'inch' });
 const stack: Stack = await slice([mesh, { mesh, translate: [1, 2, 3] }], {
@@ -10,6 +10,7 @@ const stack: Stack = await slice([mesh, { mesh, translate: [1, 2, 3] }], {
   onProgress: ({ stage, done, total }) => console.log(stage, done / total),
   signal: AbortSignal.timeout(1000),
 });
+for await (const layer of sliceLayers(mesh, { layerHeight: 0.1, threads: 2 })) console.log(layer.z, layer.points.length);
 const points: Float64Array = stack.layers[0].points;
 const cli: Uint8Array = await writeLayers(stack, 'cli', { short: true });
 const images: Record<string, Uint8Array> = await writeLayers(stack, 'png');

@@ -183,6 +183,7 @@ export interface SliceOptions extends WriteOptions, Placement {
   include?: string | string[];
   maxTriangles?: number;
   maxMemory?: number | string;
+  /** Where threads can share memory: in Node.js and in isolated pages. The layers are the same for any number. */
   threads?: number;
 }
 
@@ -240,6 +241,16 @@ export type PlacedMesh = Mesh | ({ mesh: Mesh } & Placement);
 /** Slices one mesh, or several on one plate. */
 export function slice(meshes: Mesh | readonly PlacedMesh[], options?: SliceOptions): Promise<Stack>;
 
+/** Layers in ascending z, each as soon as it is there. Breaking off the loop ends the computation. */
+export interface LayerStream extends AsyncGenerator<Layer, void, void> {
+  /** Of the parts; complete before the first layer. */
+  readonly labels: string[];
+  /** Complete behind the last layer. */
+  readonly warnings: string[];
+}
+/** Slices like `slice`, and gives the layers one by one while they come. They have no hash and no other statistics. */
+export function sliceLayers(meshes: Mesh | readonly PlacedMesh[], options?: SliceOptions): LayerStream;
+
 export type FileFormat =
   | 'cli' | 'cli-ascii' | 'svg' | 'slc' | '3mf' | 'dxf' | 'geojson' | 'json' | 'npz' | 'ilt' | 'ovf' | '3mf-toolpath' | 'html'
   | 'svg-layers' | 'png-zip' | 'sl1' | 'sl1s';
@@ -259,6 +270,10 @@ export function writeLayers(stack: Stack, format: 'png', options?: WriteOptions)
 /** A page that shows the layers, as `lamella view` writes it: HTML. */
 export function view(meshOrStack: Mesh | Stack, options?: SliceOptions): Promise<Uint8Array>;
 
+export interface RunOptions extends CallOptions {
+  /** Called with the bytes of standard output as they come; `RunResult.text` is then empty. */
+  onOutput?: (bytes: Uint8Array) => void;
+}
 export interface RunResult {
   /** Exit code of the program. */
   code: number;
@@ -271,7 +286,7 @@ export interface RunResult {
   files: Record<string, Uint8Array>;
 }
 /** Runs the program with the words of a command line, on files given by name. Throws LamellaError if it fails. */
-export function run(words: string[], files?: Record<string, Bytes>, options?: CallOptions): Promise<RunResult>;
+export function run(words: string[], files?: Record<string, Bytes>, options?: RunOptions): Promise<RunResult>;
 
 /** Ends all workers that compute nothing. The next call starts new ones. */
 export function releaseWorkers(): void;

@@ -1,6 +1,8 @@
 // The interface for JavaScript: meshes and stacks of layers are bytes in the caller's memory, and each call runs the
 // program on them in a worker. So nothing has to be freed, and a call can be ended at any time.
 
+import { lines } from './lines.js';
+
 const kinds = { 1: 'internal', 2: 'usage', 3: 'input', 4: 'defect', 5: 'limit', 6: 'output', 130: 'cancelled' };
 
 /** A failure that the program reports; its message is the text of the program. */
@@ -13,6 +15,8 @@ export class LamellaError extends Error {
     this.kind = kinds[exitCode] ?? 'internal';
   }
 }
+
+const smallBytes = 1 << 20; // of inputs for which starting threads takes longer than they save
 
 let platform;
 let module; // of WebAssembly, compiled once
@@ -30,12 +34,13 @@ function startWorker(compiled) {
   const fail = (error) => {
     worker.handle.end();
     drop(worker);
-    worker.job?.reject(error);
+    worker.job?.reject(new LamellaError(trapText(error?.message ?? error), 5));
   };
   worker.handle = platform.startWorker(
     compiled,
     (message) => {
       if (message.line !== undefined) worker.job?.onLine(message.line);
+      else if (message.output) worker.job?.onOutput(message.output);
       else worker.job?.finish(message);
     },
     fail,
@@ -47,7 +52,7 @@ async function takeWorker() {
   module ??= platform.loadModule();
   const compiled = await module;
   if (idle.length > 0) return idle.pop();
-  if (started < platform.workers) {
+  if (started < platform.processors) {
     started += 1;
     return startWorker(compiled);
   }
@@ -76,8 +81,17 @@ export function releaseWorkers() {
   }
 }
 
-/** Runs in a worker. @returns {Promise<{code: number, output: Uint8Array, files: object[]}>} */
-async function runInWorker(words, inputs, signal, onLine) {
+/** Number of processors for a call; 0: the thread of its worker. Calls at the same time share the processors. */
+function processorsFor(words, inputs) {
+  if (!platform.shared) return 0;
+  if (words.some((word) => /^--(threads|timeout)\b/.test(word))) return platform.processors;
+  if (inputs.reduce((sum, { bytes }) => sum + bytes.length, 0) < smallBytes) return 0;
+  const busy = started - idle.length;
+  return Math.max(1, Math.floor(platform.processors / busy));
+}
+
+/** Runs in a worker. @returns {Promise<{code: number, files: object[]}>} */
+async function runInWorker(words, inputs, signal, onLine, onOutput) {
   signal?.throwIfAborted();
   const worker = await takeWorker();
   if (signal?.aborted) {
@@ -95,6 +109,7 @@ async function runInWorker(words, inputs, signal, onLine) {
       };
       worker.job = {
         onLine,
+        onOutput,
         reject,
         finish({ result, trap }) {
           worker.handle.hold(false);
@@ -104,7 +119,7 @@ async function runInWorker(words, inputs, signal, onLine) {
         },
       };
       signal?.addEventListener('abort', abort, { once: true });
-      worker.handle.post({ words, inputs });
+      worker.handle.post({ words, inputs, processors: processorsFor(words, inputs) });
     });
   } finally {
     worker.job = null;
@@ -122,9 +137,10 @@ const limitText = (text, code) => (code === 5 && /\bmemory\b/.test(text) ? `${te
  * Runs the program with a command line, on files given by name.
  * @param {string[]} words such as ['slice', 'part.stl', '-o', 'part.cli']
  * @param {Record<string, Uint8Array>} files
- * @param {{signal?: AbortSignal, onProgress?: Function}} options
+ * @param {{signal?: AbortSignal, onProgress?: Function, onOutput?: Function}} options `onOutput` gets the bytes of standard
+ *     output as they come
  */
-export async function run(words, files = {}, { signal, onProgress } = {}) {
+export async function run(words, files = {}, { signal, onProgress, onOutput } = {}) {
   const warnings = [];
   const texts = [];
   let failure;
@@ -138,10 +154,13 @@ export async function run(words, files = {}, { signal, onProgress } = {}) {
     else texts.push(line);
   };
   const inputs = Object.entries(files).map(([name, bytes]) => ({ name, bytes: bytesOf(bytes) }));
-  const { code, output, files: written } = await runInWorker(words, inputs, signal, onLine);
+  const decoder = new TextDecoder();
+  let text = '';
+  onOutput ??= (bytes) => (text += decoder.decode(bytes, { stream: true }));
+  const { code, files: written } = await runInWorker(words, inputs, signal, onLine, onOutput);
   const result = {
     code,
-    text: new TextDecoder().decode(output),
+    text,
     warnings,
     notes: texts,
     files: Object.fromEntries(written.map(({ name, bytes }) => [name, bytes])),
@@ -163,7 +182,7 @@ function bytesOf(data) {
 const ranges = new Set(['layers', 'zRange', 'adaptive']);
 /** Options that are files for the program, and the name of the file. */
 const texts = { zList: 'heights.json', strategy: 'strategy.toml' };
-const ofCall = new Set(['signal', 'onProgress']);
+const ofCall = new Set(['signal', 'onProgress', 'onOutput']);
 
 const kebab = (name) => name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
 
@@ -178,6 +197,7 @@ function valueText(name, value) {
 function wordsOf(options, files) {
   return Object.entries(options).flatMap(([name, value]) => {
     if (value === undefined || value === null || value === false || ofCall.has(name)) return [];
+    if (name === 'threads' && !platform.shared) return [];
     const option = `--${kebab(name)}`;
     if (value === true) return [option];
     if (texts[name] !== undefined) {
@@ -429,6 +449,82 @@ export async function slice(meshes, options = {}) {
   const { files: written, warnings } = await run([...words, '-o', 'layers.npz', '--stats', 'layers.stats'], files, options);
   const statistics = JSON.parse(new TextDecoder().decode(written['layers.stats']));
   return new Stack(written['layers.npz'], { statistics, warnings, source: statistics.scan ? { meshes, options } : null });
+}
+
+/** A layer of a JSON file of layers. */
+function layerOf({ index, z, bottom, top, parts }) {
+  const contours = parts.flatMap(({ rings, chains = [] }, part) => [
+    ...rings.map((points) => ({ points, closed: 1, part })),
+    ...chains.map((points) => ({ points, closed: 0, part })),
+  ]);
+  const offsets = new BigInt64Array(contours.length + 1);
+  contours.forEach(({ points }, i) => (offsets[i + 1] = offsets[i] + BigInt(points.length / 2)));
+  const points = new Float64Array(2 * Number(offsets.at(-1)));
+  contours.forEach((contour, i) => points.set(contour.points, 2 * Number(offsets[i])));
+  const hatchParts = parts.flatMap(({ hatches = [] }, part) => Array(hatches.length / 4).fill(BigInt(part)));
+  const arrays = {
+    index: [index],
+    z: [z],
+    bottom: [bottom],
+    top: [top],
+    points,
+    offsets,
+    closed: Uint8Array.from(contours, ({ closed }) => closed),
+    layer: new BigInt64Array(contours.length),
+    part: BigInt64Array.from(contours, ({ part }) => BigInt(part)),
+    hatches: Float64Array.from(parts.flatMap(({ hatches = [] }) => hatches)),
+    hatch_layer: new BigInt64Array(hatchParts.length),
+    hatch_part: BigInt64Array.from(hatchParts),
+  };
+  return new Layer(arrays, 0, {});
+}
+
+/** The layers of a run that writes them as JSON, one on each line, to standard output. */
+async function* comingLayers(words, files, { signal, onProgress }, facts) {
+  const ready = []; // lines
+  let wake = () => {};
+  let over = false;
+  let failure;
+  const takeLine = (line) => {
+    if (line.startsWith('{"format"')) facts.labels.push(...JSON.parse(`${line}]}`).parts.map(({ label }) => label));
+    else if (line.startsWith('{"index"')) ready.push(line.replace(/,$/, ''));
+    wake();
+  };
+  const stop = new AbortController();
+  const abort = () => stop.abort(signal.reason);
+  signal?.addEventListener('abort', abort, { once: true });
+  if (signal?.aborted) abort();
+  run(words, files, { signal: stop.signal, onProgress, onOutput: lines(takeLine) })
+    .then(
+      ({ warnings }) => facts.warnings.push(...warnings.map((text) => text.replace(/^standard output: /, 'layers: '))),
+      (error) => (failure = error),
+    )
+    .finally(() => {
+      over = true;
+      wake();
+    });
+  try {
+    while (!over || ready.length > 0) {
+      stop.signal.throwIfAborted();
+      if (ready.length > 0) yield layerOf(JSON.parse(ready.shift()));
+      else await new Promise((resolve) => (wake = resolve));
+    }
+    if (failure) throw failure;
+  } finally {
+    signal?.removeEventListener('abort', abort);
+    stop.abort(); // nobody wants the rest
+  }
+}
+
+/**
+ * Slices like `slice`, and gives the layers one by one while they come.
+ * @returns {AsyncGenerator<Layer> & {labels: string[], warnings: string[]}} `warnings` are complete behind the last layer
+ */
+export function sliceLayers(meshes, options = {}) {
+  const files = {};
+  const words = [...sliceWords(meshes, options, files), '-o', '-', '--format', 'json'];
+  const facts = { labels: [], warnings: [] };
+  return Object.assign(comingLayers(words, files, options, facts), facts);
 }
 
 /** The files of a run, or the bytes of the only one. */

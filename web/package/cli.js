@@ -4,49 +4,56 @@
 
 import { readFileSync, readdirSync, readSync, rmSync, statSync, writeSync } from 'node:fs';
 import { createRequire } from 'node:module';
+import { availableParallelism, cpus } from 'node:os';
 import { isatty } from 'node:tty';
-import { fileURLToPath } from 'node:url';
 import { Worker, isMainThread, parentPort, workerData } from 'node:worker_threads';
 
 import createLamellaIn from './lamella.js';
+import { canShare, compile, newMemory } from './memory.js';
+import { runProgram } from './program.js';
 
 const cancelled = 130; // exit code of the program
 const outOfMemory = 5;
-const file = (name) => fileURLToPath(new URL(name, import.meta.url));
+
+class Thread extends Worker {
+  constructor() {
+    super(new URL('./node_thread.js', import.meta.url));
+  }
+}
 
 if (isMainThread) {
   const unfinished = new Set(); // paths
   const worker = new Worker(new URL(import.meta.url), { workerData: process.argv.slice(2) });
+  const end = async (code, text = '') => {
+    await worker.terminate();
+    unfinished.forEach(remove);
+    if (text) writeSync(2, `lamella: error: ${text}\n`);
+    process.exit(code);
+  };
   worker.on('message', ({ made, gone, code }) => {
     if (made) unfinished.add(made);
     if (gone) unfinished.delete(gone);
-    if (code !== undefined) process.exitCode = code;
+    if (code !== undefined) end(code);
   });
-  worker.on('error', (error) => {
-    writeSync(2, `lamella: error: stopped by WebAssembly (${error.message}): most likely the 4 GB that it can use were not enough\n`);
-    process.exitCode = outOfMemory;
-    unfinished.forEach(remove);
-  });
-  for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP'])
-    process.once(signal, async () => {
-      await worker.terminate();
-      unfinished.forEach(remove);
-      writeSync(2, 'lamella: error: cancelled\n');
-      process.exit(cancelled);
-    });
+  worker.on('error', (error) =>
+    end(outOfMemory, `stopped by WebAssembly (${error.message}): most likely the 4 GB that it can use were not enough`),
+  );
+  for (const signal of ['SIGINT', 'SIGTERM', 'SIGHUP']) process.once(signal, () => end(cancelled, 'cancelled'));
 } else {
-  parentPort.postMessage({ code: await runProgram(workerData) });
+  parentPort.postMessage({ code: await runOnFiles(workerData) });
 }
 
 function remove(path) {
   rmSync(path, { recursive: true, force: true });
 }
 
-async function runProgram(words) {
-  const module = new WebAssembly.Module(readFileSync(file('./lamella.wasm')));
-  const createLamella = createLamellaIn(createRequire(import.meta.url), file('.'), file('./lamella.js'));
+async function runOnFiles(words) {
+  const shared = canShare();
+  const module = await compile(readFileSync(new URL('./lamella.wasm', import.meta.url)), shared);
+  const createLamella = createLamellaIn({ require: createRequire(import.meta.url), Worker: Thread });
   const instance = await createLamella({
     preRun: [({ ENV }) => Object.assign(ENV, process.env)],
+    wasmMemory: newMemory(shared),
     instantiateWasm(imports, done) {
       done(new WebAssembly.Instance(module, imports), module);
       return {};
@@ -54,8 +61,8 @@ async function runProgram(words) {
   });
   useStreams(instance.FS);
   useFolders(instance.FS, instance.NODEFS);
-  const text = new TextEncoder().encode(words.map((word) => `${word}\0`).join(''));
-  return instance.ccall('lamella_run', 'number', ['array', 'number'], [text, words.length]);
+  const processors = availableParallelism?.() ?? cpus().length;
+  return (await runProgram(instance, words, shared ? processors : 0)).code;
 }
 
 /** The standard streams of the program are those of this process. */

@@ -5,12 +5,16 @@ import { availableParallelism, cpus } from 'node:os';
 import { Worker } from 'node:worker_threads';
 
 import { usePlatform } from './api.js';
+import { canShare, compile } from './memory.js';
+
+const shared = canShare();
 
 usePlatform({
-  workers: availableParallelism?.() ?? cpus().length,
-  loadModule: async () => WebAssembly.compile(await readFile(new URL('./lamella.wasm', import.meta.url))),
+  processors: availableParallelism?.() ?? cpus().length,
+  shared,
+  loadModule: async () => compile(await readFile(new URL('./lamella.wasm', import.meta.url)), shared),
   startWorker(module, onMessage, onFailure) {
-    const worker = new Worker(new URL('./node_worker.js', import.meta.url), { workerData: module });
+    const worker = new Worker(new URL('./node_worker.js', import.meta.url), { workerData: { module, shared } });
     worker.on('message', onMessage);
     worker.on('error', onFailure);
     worker.unref();

@@ -1,5 +1,8 @@
 // Runs the program of Lamella in WebAssembly, on files in memory. Used inside a worker.
 
+import { lines } from './lines.js';
+import { newMemory } from './memory.js';
+
 /** @typedef {{name: string, bytes: Uint8Array}} NamedBytes */
 
 const mostKept = 256 << 20; // bytes: WebAssembly gives no memory back, so larger instances are dropped after a run
@@ -19,65 +22,80 @@ function growFile(node, bytes) {
   if (usedBytes > 0) node.contents.set(contents.subarray(0, usedBytes));
 }
 
-function joined(chunks) {
-  const all = new Uint8Array(chunks.reduce((sum, chunk) => sum + chunk.length, 0));
-  let at = 0;
-  for (const chunk of chunks) {
-    all.set(chunk, at);
-    at += chunk.length;
-  }
-  return all;
-}
-
-/** Calls `act` with each whole line of text. */
-function lines(act) {
-  const decoder = new TextDecoder();
-  let rest = '';
-  return (bytes) => {
-    const parts = (rest + decoder.decode(bytes, { stream: true })).split('\n');
-    rest = parts.pop();
-    parts.forEach(act);
+/**
+ * Runs the program of an instance of lamella.wasm.
+ * @param {number} processors 0: only this thread; otherwise threads that share memory, meanwhile this one serves files
+ * @returns {Promise<{code: number, early: boolean}>} its exit code, and whether it ended while threads were at work
+ */
+export async function runProgram(instance, words, processors) {
+  const call = (name) => {
+    const text = new TextEncoder().encode(words.map((word) => `${word}\0`).join(''));
+    return instance.ccall(name, 'number', ['array', 'number'], [text, words.length]);
   };
+  instance.processors = Math.max(1, processors);
+  if (processors === 0) return { code: call('lamella_run'), early: false };
+  return new Promise((resolve) => {
+    instance.ended = (code, early) => resolve({ code, early });
+    call('lamella_start');
+  });
 }
 
 export class Program {
   #create;
-  #module;
+  #compiled;
   #environment;
   #instance = null;
+  #memory;
 
-  /** @param create the function of lamella.js @param {WebAssembly.Module} module lamella.wasm @param environment variables */
-  constructor(create, module, environment) {
+  /**
+   * @param create the function of lamella.js
+   * @param {{module: WebAssembly.Module, shared: boolean}} compiled lamella.wasm, and whether threads share its memory
+   * @param environment variables
+   */
+  constructor(create, compiled, environment) {
     this.#create = create;
-    this.#module = module;
+    this.#compiled = compiled;
     this.#environment = environment;
   }
 
   async #ready() {
+    const { module, shared } = this.#compiled;
     const instantiateWasm = (imports, done) => {
       // The promise reports a failure, as a lack of memory is.
-      WebAssembly.instantiate(this.#module, imports).then((instance) => done(instance, this.#module));
+      WebAssembly.instantiate(module, imports).then((instance) => done(instance, module));
       return {};
     };
     if (!this.#instance) {
-      this.#instance = await this.#create({ instantiateWasm, preRun: [({ ENV }) => Object.assign(ENV, this.#environment)] });
+      this.#memory = newMemory(shared);
+      this.#instance = await this.#create({
+        instantiateWasm,
+        wasmMemory: this.#memory,
+        preRun: [({ ENV }) => Object.assign(ENV, this.#environment)],
+      });
       this.#instance.MEMFS.expandFileStorage = growFile;
+      if (!shared) this.#instance.PThread.getNewWorker = () => null; // there are then no threads
     }
     return this.#instance;
   }
 
+  /** Ends all threads of an instance that is not used any more. */
+  #drop() {
+    this.#instance.PThread.runningWorkers.concat(this.#instance.PThread.unusedWorkers).forEach((worker) => worker.terminate());
+    this.#instance = null;
+  }
+
   /**
    * Runs the program on files of a folder of its own.
-   * @param {string[]} words of its command line
-   * @param {NamedBytes[]} inputs
+   * @param {{words: string[], inputs: NamedBytes[], processors: number}} request its command line, and how many processors
+   *     it may use; 0: only this thread
    * @param {(line: string) => void} onLine of standard error
-   * @returns {Promise<{code: number, output: Uint8Array, files: NamedBytes[]}>} what it printed and the files that it wrote
+   * @param {(bytes: Uint8Array) => void} onOutput bytes of standard output
+   * @returns {Promise<{code: number, files: NamedBytes[]}>} the files that it wrote
    */
-  async run(words, inputs, onLine) {
+  async run({ words, inputs, processors }, onLine, onOutput) {
     const instance = await this.#ready();
     const { FS } = instance;
-    const output = [];
-    onWrite(FS, 1, (bytes) => output.push(bytes));
+    onWrite(FS, 1, onOutput);
     onWrite(FS, 2, lines(onLine));
     FS.mkdir('/job');
     FS.chdir('/job');
@@ -86,14 +104,14 @@ export class Program {
       if (folder) FS.mkdirTree(folder);
       FS.writeFile(name, bytes, { canOwn: true });
     }
-    let failed = true;
+    let spoiled = true;
     try {
-      const code = instance.ccall('lamella_run', 'number', ['array', 'number'], [new TextEncoder().encode(words.join('\0') + '\0'), words.length]);
-      failed = false;
+      const { code, early } = await runProgram(instance, words, this.#compiled.shared ? processors : 0);
+      spoiled = early;
       const known = new Set(inputs.map(({ name }) => `/job/${name}`));
-      return { code, output: joined(output), files: this.#collect('/job', known) };
+      return { code, files: this.#collect('/job', known) };
     } finally {
-      if (failed || instance.HEAPU8.length > mostKept) this.#instance = null;
+      if (spoiled || this.#memory.buffer.byteLength > mostKept) this.#drop();
       else this.#empty('/job');
     }
   }
@@ -129,17 +147,22 @@ export class Program {
 }
 
 /**
- * Answers the messages of `api.js`: {words, inputs} gives {line} for each line and {result} or {trap} at the end.
+ * Answers the messages of `api.js`: {words, inputs, processors} gives {line} for each line of standard error, {output} for
+ * bytes of standard output, and {result} or {trap} at the end.
  * @param {(message: object, transfer?: ArrayBuffer[]) => void} post
  * The other parameters are those of Program.
  * @returns {(request: object) => Promise<void>}
  */
-export function answering(post, create, module, environment = {}) {
-  const program = new Program(create, module, environment);
-  return async ({ words, inputs }) => {
+export function answering(post, create, compiled, environment = {}) {
+  const program = new Program(create, compiled, environment);
+  return async (request) => {
     try {
-      const result = await program.run(words, inputs, (line) => post({ line }));
-      post({ result }, [result.output.buffer, ...result.files.map(({ bytes }) => bytes.buffer)]);
+      const result = await program.run(
+        request,
+        (line) => post({ line }),
+        (output) => post({ output }, [output.buffer]),
+      );
+      post({ result }, result.files.map(({ bytes }) => bytes.buffer));
     } catch (error) {
       post({ trap: String(error?.message ?? error) });
     }
