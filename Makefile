@@ -6,11 +6,9 @@ JOBS := $(shell nproc)
 # One more than the number of processors: some tests mostly wait.
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
 VERSION := $(shell sed -n 's/^\#define LAMELLA_VERSION "\(.*\)"/\1/p' include/lamella/core/version.hpp)
-MODULES := core mesh parts contour slicing polygon scan system container read raster write pipeline
-# The suites that compile for Windows. The others may follow.
-WINDOWS_SUITES := core contour system
+MODULES := core mesh parts contour slicing polygon scan system container read raster write pipeline c
 blank := $(subst ,, )
-SOURCES = $(shell find app bench examples include parts python src tests web -name '*.[ch]pp' 2>/dev/null)
+SOURCES = $(shell find app bench examples include parts python src tests viewer web -name '*.[ch]pp' 2>/dev/null)
 
 # The first build of a tree compiles the sources of a module together, which takes two thirds of the time.
 ifeq ($(wildcard build/CMakeCache.txt),)
@@ -54,7 +52,7 @@ test: packages  ## build everything and run the tests: a few minutes
 	$(CTEST) --test-dir build $(TESTS)
 	$(if $(TESTS),,@touch build/tests/passed)
 
-test-all: test-large test-asan test-tsan test-arm64 test-shared test-web fresh  ## run the long suites: large programs, sanitizers, ARM64, web, fresh
+test-all: test-large test-asan test-tsan test-arm64 test-windows test-macos test-shared test-web fresh  ## run the long suites: large programs, sanitizers, ARM64, Windows, macOS, web, fresh
 
 # The targets from here to `fresh` are parts of test-all.
 packages-all: packages packages-viewer
@@ -95,12 +93,51 @@ windows: packages-windows  ## build the program and the libraries for Windows: a
 	cd build-windows/package && cmake -E tar cf ../lamella-$(VERSION)-windows-x86_64.zip --format=zip .
 	@ls -l build-windows/lamella.exe build-windows/lamella-$(VERSION)-windows-x86_64.zip
 
-# The program's output is compared with that of the program for this system. Not a part of test-all: where several
-# programs run under Wine at once, one sometimes never ends.
-test-windows: packages-windows build  ## run the tests for Windows under Wine
+# Built here, not run: the workflow runs the tests on macOS. The program for this system prints the man page and the
+# completions.
+macos: packages-viewer build  ## build the program and the libraries for macOS: archives in build-macos-*/
+	@tools/install_packages.sh tools/packages-zig.txt
+	cmake --build build --target lamella_app_files
+	@tools/install_zig.sh
+	@test ! -x .cache/zig/zig || $(MAKE) --no-print-directory macos-arm64 macos-x86_64
+
+macos-arm64 macos-x86_64:
+	@tools/build_libraries.sh $@
+	cmake --preset $@
+	cmake --build build-$@ --target lamella lamella-io lamella_app
+	cp build/app/lamella.1 build/app/lamella.bash build/app/_lamella build/app/lamella.fish build-$@/app/
+	@rm -rf build-$@/package
+	cmake --install build-$@ --prefix build-$@/package >/dev/null
+	cd build-$@/package && cmake -E tar czf ../lamella-$(VERSION)-$@.tar.gz --format=gnutar .
+	@ls -l build-$@/lamella build-$@/lamella-$(VERSION)-$@.tar.gz
+	python3 -B tests/project/macos_test.py build-$@/lamella-$(VERSION)-$@.tar.gz
+
+# Compiles the sources of the module `system`, of which some are for macOS only. The whole program takes too long here.
+test-macos: packages-viewer
+	@tools/install_packages.sh tools/packages-zig.txt
+	@tools/install_zig.sh
+	@test ! -x .cache/zig/zig || $(MAKE) --no-print-directory compile-macos
+
+compile-macos:
+	@tools/build_libraries.sh macos-arm64
+	cmake --preset macos-arm64
+	cmake --build build-macos-arm64 --target src/CMakeFiles/lamella-io.dir/Unity/unity_system_cxx.cxx.o \
+	    src/CMakeFiles/lamella_system_of_programs.dir/Unity/unity_0_cxx.cxx.o
+
+# For Debian's version of Python, or that of PYTHON. The tests run the wheel for ARM64 in an emulator.
+PYTHON := /usr/bin/python3
+wheels: packages-viewer build  ## build wheels of the Python package for Linux with glibc 2.28 and test them: build/wheels/
+	@tools/install_packages.sh tools/packages-zig.txt tools/packages-dist.txt tools/packages-wheels.txt
+	@tools/install_zig.sh
+	@rm -rf build/wheels
+	@test ! -x .cache/zig/zig || PYTHON='$(PYTHON)' tools/wheels.sh build/wheels
+	@test ! -x .cache/zig/zig || $(PYTHON) -B tests/project/wheels_test.py build build/wheels
+
+# The program's output is compared with that of the program for this system.
+test-windows: packages-windows build
 	cmake --preset windows -D LAMELLA_TESTS=ON
-	cmake --build build-windows --target lamella_app $(WINDOWS_SUITES:%=lamella_%_test)
-	$(CTEST) --test-dir build-windows --label-regex '^($(subst $(blank),|,$(WINDOWS_SUITES) app))$$'
+	cmake --build build-windows
+	$(CTEST) --test-dir build-windows
 
 # The shared library reuses the objects of the static one; only installation and linking differ. Two compilers are
 # tested, since they apply visibility to different entities.
@@ -115,8 +152,11 @@ test-shared: packages-all
 fresh:  ## run `make demo` and `make test` in a fresh Debian 12 with git, make and nothing else (root only)
 	@tools/fresh.sh
 
-# Debian's Emscripten looks for the modules of its JavaScript optimiser here.
+# Debian's Emscripten looks for the modules of its JavaScript optimiser here, and would use clang 14, whose exceptions are
+# not safe for threads: data between a throw and its catch is shared by all threads.
 web: export NODE_PATH := /usr/share/nodejs
+web: export EM_LLVM_ADD_VERSION := 15
+web: export EM_CLANG_ADD_VERSION := 15
 web: packages packages-viewer  ## build the npm package and the playground: build/web/package, build/web/playground.html
 	@tools/install_packages.sh tools/packages-web.txt
 	tools/build_libraries.sh wasm
@@ -183,17 +223,27 @@ python-bench: build packages-rivals  ## compare with other slicers in Python: ou
 	cmake --build build-bench --target lamella_library_slicer lamella_cgal_slicer
 	python3 -B -m bench.python $(OPTIONS)
 
+cores: packages  ## measure jobs with one thread and with all: out/cores/ (bench/README.md)
+	@tools/install_packages.sh tools/packages-bench.txt
+	cmake --preset bench
+	cmake --build build-bench --target lamella_bench_cores
+	python3 -B -m bench.cores $(OPTIONS)
+
 page-bench: packages-viewer build  ## measure the time until pages show something in a browser: out/pages/ (bench/README.md)
 	@tools/install_packages.sh tools/packages-all.txt
 	python3 -B -m bench.pages $(OPTIONS)
+
+web-bench: web build  ## compare the npm package with the program and manifold-3d: out/web/ (bench/README.md)
+	@tools/install_packages.sh tools/packages-all.txt
+	python3 -B -m bench.web $(OPTIONS)
 
 paper: build packages-rivals  ## measure every table of the EECC paper again: out/paper/ (bench/README.md)
 	python3 -B -m bench.paper $(OPTIONS)
 
 # Debian's packages work only with Debian's interpreter, which need not be the first in the path.
-docs: build  ## build the documentation site: out/site/
+docs: build web  ## build the documentation site: out/site/
 	@tools/install_packages.sh tools/packages-docs.txt
-	/usr/bin/python3 -B tools/site/build_site.py build out/site
+	/usr/bin/python3 -B tools/site/build_site.py build out/site build/web/playground.html
 
 format:  ## format the sources by .clang-format
 	@tools/install_packages.sh tools/packages-lint.txt
@@ -221,6 +271,7 @@ clean:  ## remove all build and output folders
 	rm -rf build build-* dist out
 
 .NOTPARALLEL:
-.PHONY: help packages packages-viewer packages-windows windows test-windows build demo test test-all packages-all test-large test-asan \
-        test-tsan test-arm64 test-shared web test-web fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin \
-        out-of-core python-bench page-bench paper format format-check lint install dist clean
+.PHONY: help packages packages-viewer packages-windows windows test-windows macos macos-arm64 macos-x86_64 test-macos \
+        compile-macos wheels build demo test test-all packages-all test-large test-asan test-tsan test-arm64 test-shared \
+        web test-web fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin out-of-core \
+        python-bench cores page-bench web-bench paper format format-check lint install dist clean

@@ -24,9 +24,8 @@ if(LAMELLA_VIEWER_HTML)
 endif()
 
 # A system without packages of its own gets the libraries that ours need, too.
-if(WIN32)
-    get_filename_component(expat_folder ${EXPAT_LIBRARY} DIRECTORY)
-    install(DIRECTORY ${expat_folder}/../include ${expat_folder}/../lib ${expat_folder}/../share DESTINATION .)
+if(LAMELLA_LIBRARIES)
+    install(DIRECTORY ${LAMELLA_LIBRARIES}/include ${LAMELLA_LIBRARIES}/lib ${LAMELLA_LIBRARIES}/share DESTINATION .)
 endif()
 
 set(LAMELLA_IS_STATIC FALSE)

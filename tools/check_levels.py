@@ -18,6 +18,7 @@ LEVELS = [
     ["slicing", "polygon", "raster", "container"],
     ["scan", "read", "write"],
     ["pipeline"],
+    ["c"],
 ]
 
 # The modules of the engine. They may include no other module.
@@ -36,16 +37,17 @@ MODULES = {
     "raster": ["core", "contour"],  # not container: pixels, not files
     "scan": ["core", "contour", "polygon"],  # not mesh: layers of any source
     "write": ["core", "system", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
+    "c": ["core", "mesh", "contour", "read", "slicing", "write", "pipeline"],  # only what it passes on
     "pipeline": ["core", "system", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "scan", "write"],
 }
 
 # Third-party headers of the library. Each may be included by one source (zlib by those that compress and decompress,
-# the hash by one for layers and one for files). Text formatting is allowed everywhere.
+# the hash by one for layers, one for files and one for chunks of files). Text formatting is allowed everywhere.
 THIRD_PARTY = {
     "expat.h": "src/container/xml.cpp",
     "fast_float": "src/container/parse_number.cpp",
     "libdeflate.h": "src/container/inflate.cpp",
-    "xxhash.h": "src/container/file_hash.cpp src/contour/normal_form.cpp",
+    "xxhash.h": "src/container/file_hash.cpp src/read/stl_binary.cpp src/contour/normal_form.cpp",
     "zlib.h": "src/container/deflate.cpp src/container/gzip.cpp",
 }
 THIRD_PARTY_ANYWHERE = {"fmt"}
@@ -59,9 +61,10 @@ THIRD_PARTY_OF_CONSUMERS = {
 # Private headers that the programs may include: what they need of the operating system apart from the library.
 SYSTEM_OF_PROGRAMS = re.compile(r"^src/system/program_[a-z_]+\.hpp$")
 
-# The only other consumer that may include private headers: it measures the kernels alone.
-KERNEL_BENCHMARK = "bench/kernels.cpp"
+# The only other consumers that may include private headers: one measures the kernels alone, one makes a mesh as 3MF file.
+BENCHMARKS_OF_PRIVATE = ["bench/cores.cpp", "bench/kernels.cpp"]
 
+STANDARD_OF_C = {"stddef.h", "stdint.h"}
 STANDARD = set(
     """algorithm any array atomic barrier bit bitset cassert cctype cerrno cfenv cfloat charconv chrono
     cinttypes climits clocale cmath codecvt compare complex concepts condition_variable coroutine csetjmp
@@ -93,7 +96,7 @@ class Architecture:
 
     def check(self):
         self.check_table()
-        for folder in ["include", "src", "parts", "app", "bench", "examples", "python", "tests"]:
+        for folder in ["include", "src", "parts", "viewer", "app", "bench", "examples", "python", "tests"]:
             for path in sorted((self.root / folder).rglob("*")):
                 if path.suffix in (".hpp", ".cpp", ".h", ".inc"):
                     self.check_file(path)
@@ -165,6 +168,8 @@ class Architecture:
             return f"<{header}> may be visible in {THIRD_PARTY_OF_CONSUMERS[header]} only"
         if header in STANDARD or not name.startswith(("include/", "src/")):
             return None
+        if name.endswith(".h") and header in STANDARD_OF_C:
+            return None
         if name.startswith("include/"):
             return f"public headers need only the standard library, not <{header}>"
         if SYSTEM.match(header):
@@ -198,7 +203,7 @@ class Architecture:
             if used != user and used not in MODULES[user]:
                 return f"{user} may not include {target}: {used} is not below it"
             return self.judge_folder(name, target)
-        if public or not target.startswith("src/") or name == KERNEL_BENCHMARK:
+        if public or not target.startswith("src/") or name in BENCHMARKS_OF_PRIVATE:
             return None
         if parts[0] == "app" and SYSTEM_OF_PROGRAMS.match(target):
             return None

@@ -135,6 +135,12 @@ class Documentation(unittest.TestCase):
         self.assertEqual(len(printed.splitlines()), 20)
         self.assertIn(" 0.25 mm   47.531 mm2\n", printed)
 
+    def test_the_example_cuts_sections(self):
+        level, _, *corners = self.run_here(EXAMPLES / "lamella_example_cut_sections").splitlines()
+        self.assertEqual(level, "z = 2.5 mm: 28.125 mm2")
+        for corner in corners:
+            self.assertAlmostEqual(sum(map(float, corner.strip("()").split(","))), 6)
+
     def test_the_tour_prints_what_its_page_shows(self):
         page = (ROOT / "docs/howto/embedding.md").read_text(encoding="utf-8")
         self.assertIn(f"```\n{self.run_here(EXAMPLES / 'lamella_example_tour')}```\n", page)

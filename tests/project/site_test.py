@@ -20,13 +20,18 @@ class Site(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         cls.addClassCleanup(folder.cleanup)
         cls.site = Path(folder.name, "site")
-        subprocess.run([sys.executable, "-B", ROOT / "tools/site/build_site.py", BUILD, cls.site], check=True)
+        cls.playground = Path(folder.name, "made.html")
+        cls.playground.write_text("<!doctype html><title>Playground</title>", encoding="utf-8")
+        subprocess.run([sys.executable, "-B", ROOT / "tools/site/build_site.py", BUILD, cls.site, cls.playground], check=True)
         cls.pages = {path.relative_to(cls.site).as_posix(): path.read_text(encoding="utf-8")
                      for path in cls.site.glob("**/*.html")}
 
     def test_every_page_of_docs_is_there(self):
         for page in (ROOT / "docs").glob("**/*.md"):
             self.assertIn(page.relative_to(ROOT / "docs").with_suffix(".html").as_posix(), self.pages)
+
+    def test_the_playground_is_carried_as_it_is(self):
+        self.assertEqual(self.pages["playground.html"], self.playground.read_text(encoding="utf-8"))
 
     def test_every_page_is_in_the_navigation(self):
         home = self.pages["index.html"]
@@ -35,11 +40,19 @@ class Site(unittest.TestCase):
                 self.assertIn(f'href="{page}"', home)
 
     def test_every_public_header_is_in_the_reference(self):
-        headers = list((ROOT / "include/lamella").glob("*/*.hpp"))
+        headers = list((ROOT / "include/lamella").glob("*/*.h*"))
         self.assertGreater(len(headers), 20)
         for header in headers:
             module = header.parent.name
             self.assertIn(f"lamella/{module}/{header.name}", self.pages[f"reference/cpp/{module}.html"])
+
+    def test_functions_in_c_are_in_the_reference(self):
+        page = self.pages["reference/cpp/c.html"]
+        header = (ROOT / "include/lamella/c/lamella.h").read_text(encoding="utf-8")
+        functions = re.findall(r"^LAMELLA_C_API .*?(\w+)\(", header, re.MULTILINE)
+        self.assertGreater(len(functions), 20)
+        for function in [*functions, "lamella_settings", "lamella_layer", "lamella_status"]:
+            self.assertRegex(page, rf'<h3 id="{function}">{function}<')
 
     def test_python_names_are_in_the_reference(self):
         page = self.pages["reference/python.html"]

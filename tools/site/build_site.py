@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Builds the documentation site from docs/, the public headers and the docstrings of the Python module.
 
-usage: tools/site/build_site.py BUILD_FOLDER SITE_FOLDER
+usage: tools/site/build_site.py BUILD_FOLDER SITE_FOLDER PLAYGROUND
 
-BUILD_FOLDER is the build tree of Lamella; the Python reference is made from the module in its folder python/. MkDocs
-builds the pages and reports every broken link.
+BUILD_FOLDER is the build tree of Lamella; the Python reference is made from the module in its folder python/. PLAYGROUND
+is the page that `make web` builds. MkDocs builds the pages and reports every broken link.
 """
 
 import re
@@ -23,10 +23,11 @@ ADOPTED = {"bench/README.md": "measuring.md", "CHANGELOG.md": "changelog.md", "C
 LINK = re.compile(r"(\]\()([^)#\s]+)((?:#[^)]*)?\))")
 
 
-def main(build, site):
+def main(build, site, playground):
     with tempfile.TemporaryDirectory() as folder:
         pages = Path(folder, "docs")
         shutil.copytree(ROOT / "docs", pages)
+        shutil.copy(playground, pages / "playground.html")
         for source, name in ADOPTED.items():
             (pages / name).write_text(relinked(ROOT / source), encoding="utf-8")
         for page in (ROOT / "docs").glob("**/*.md"):
@@ -84,6 +85,6 @@ def relative(path, start):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 3:
+    if len(sys.argv) != 4:
         sys.exit(__doc__.strip())
-    main(Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve())
+    main(*(Path(argument).resolve() for argument in sys.argv[1:]))

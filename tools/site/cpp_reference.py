@@ -1,12 +1,14 @@
 """Pages of the public headers, one for each module: every declaration with the comment that is its contract.
 
 Headers are regular enough to be read line by line: an introduction in `//` behind `#pragma once`, then, within the
-namespace, declarations with `///` before them. The test of levels checks the content of headers.
+namespace, declarations with `///` before them. The header in C has comments in `/* */` in the same places. The test of
+levels checks the content of headers.
 """
 
 import re
 from dataclasses import dataclass, field
 from pathlib import Path
+from textwrap import dedent
 
 TITLES = {
     "core": "Points, errors and execution",
@@ -21,6 +23,7 @@ TITLES = {
     "raster": "Images",
     "write": "Writing",
     "pipeline": "Whole jobs",
+    "c": "From C and other languages",
 }
 
 
@@ -34,7 +37,7 @@ class Declaration:
         """Name of the declared type, function or constant."""
         text = " ".join(line.split("//")[0] for line in self.code)
         text = re.sub(r"\[\[.*?\]\]", "", text)
-        found = (re.search(r"^\s*(?:template\s*<.*?>\s*)?(?:enum\s+class|class|struct|union)\s+(\w+)", text)
+        found = (re.search(r"^\s*(?:template\s*<.*?>\s*)?(?:typedef\s+)?(?:enum|enum\s+class|class|struct|union)\s+(\w+)", text)
                  or re.search(r"^\s*using\s+(\w+)", text)
                  or re.search(r"(operator\s*\S+?)\s*\(", text)
                  or re.search(r"(\w+)\s*\(", text)
@@ -63,6 +66,15 @@ def read_header(path):
     begin = "LAMELLA_API_BEGIN"  # the namespace follows
     found = list(declarations(lines[lines.index(begin) + 2:], path)) if begin in lines else []
     return Header(path, "\n".join(introduction), found)
+
+
+def read_c_header(path):
+    introduction, interface = path.read_text(encoding="utf-8").split('extern "C" {', 1)
+    introduction = re.match(r"/\*(.*?)\*/", introduction, re.DOTALL)[1]
+    interface = re.sub(r"^/\*(.*?)\*/$", lambda block: re.sub(r"^[ *]*", "/// ", block[1].rstrip(), flags=re.MULTILINE),
+                       interface, flags=re.DOTALL | re.MULTILINE).replace("LAMELLA_C_API ", "")
+    found = declarations(interface.replace("\n}\n#endif", "\n} // namespace").splitlines(), path)
+    return Header(path, dedent("  " + introduction).rstrip(), list(found))
 
 
 def declarations(lines, path):
@@ -108,10 +120,11 @@ def write_pages(include, folder):
     folder.mkdir(parents=True, exist_ok=True)
     index = ["# C++ reference", "",
              "The public headers, by module. `lamella/lamella.hpp` includes those of the engine, `lamella/io.hpp` all. Everything is in the "
-             "namespace `lamella`. Lengths are millimetres.", ""]
+             "namespace `lamella`, except for the interface in C. Lengths are millimetres.", ""]
     pages = []
     for module, title in TITLES.items():
-        headers = [read_header(path) for path in sorted((include / module).glob("*.hpp"))]
+        headers = [read_c_header(path) if path.suffix == ".h" else read_header(path)
+                   for path in sorted((include / module).iterdir())]
         (folder / f"{module}.md").write_text(module_page(module, headers), encoding="utf-8")
         pages.append(f"{module}.md")
         index += [f"## [{title}]({module}.md)", "", "| | |", "|---|---|"]
