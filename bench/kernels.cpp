@@ -87,6 +87,32 @@ void link_triangles(benchmark::State& state) {
 }
 BENCHMARK(link_triangles)->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
 
+void prepare_sections(benchmark::State& state) {
+    for ([[maybe_unused]] const auto _ : state)
+        benchmark::DoNotOptimize(
+            Slicer(torus(), PlaneRule::section_above, on(state)).section(0).points.data());
+    state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(torus().size()));
+}
+BENCHMARK(prepare_sections)->Arg(1)->Arg(2)->ArgName("threads")->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// Planes that climb through the part, and turn if `tilted`.
+void cut_sections(benchmark::State& state, bool tilted) {
+    static const Slicer slicer(torus());
+    const Box3 box = bounding_box(torus());
+    std::int64_t points = 0;
+    double share = 0;
+    for ([[maybe_unused]] const auto _ : state) {
+        share = std::fmod(share + 0.381966, 1.0);
+        const double z = box.min.z + share * (box.max.z - box.min.z);
+        const Layer layer =
+            tilted ? slicer.section({0, 0, z}, {share, 1 - share, 0.5}).layer : slicer.section(z);
+        points += static_cast<std::int64_t>(layer.points.size());
+    }
+    state.SetItemsProcessed(points);
+}
+BENCHMARK_CAPTURE(cut_sections, level, false)->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(cut_sections, tilted, true)->Unit(benchmark::kMicrosecond);
+
 /// Time of the sweep without linking.
 void sweep(benchmark::State& state, const TriangleSoup& soup, double planes) {
     const Plan plan = planes_of(soup, planes);

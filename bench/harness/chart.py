@@ -71,12 +71,13 @@ class Series:
     name: str
     points: list  # (x, y)
     fit: Optional[tuple] = None  # y = factor * x ** exponent
+    limit: tuple = ()  # points of a line that no value is below
 
 
 def scatter(series, title, x_axis, y_axis):
-    """Draws points on two logarithmic axes, each series with its fitted power law."""
+    """Draws points on two logarithmic axes, each series with its fitted power law or its limit."""
     low_x, high_x = decades([x for one in series for x, _ in one.points])
-    low_y, high_y = decades([y for one in series for _, y in one.points])
+    low_y, high_y = decades([y for one in series for _, y in [*one.points, *one.limit]])
     left, right, top, bottom, width, height = 84, 290, 56, 396, 900, 446
 
     def place(px, py):
@@ -103,6 +104,8 @@ def scatter(series, title, x_axis, y_axis):
             parts.append(line(*place(ends[0], factor * ends[0]**exponent), *place(ends[1], factor * ends[1]**exponent),
                               colour(i), 1.5))
             label += f": power {exponent:.2f}".replace("-0.00", "0.00")
+        for start, end in zip(one.limit, one.limit[1:]):
+            parts.append(line(*place(*start), *place(*end), colour(i), 1.5))
         parts += [f'<circle cx="{width - right + 20}" cy="{top + 10 + 22 * i}" r="{radius}" fill="{colour(i)}"/>',
                   text(width - right + 32, top + 14 + 22 * i, label)]
     return svg(width, height, title, parts)

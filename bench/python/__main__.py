@@ -25,9 +25,11 @@ def slicers(options):
         ("lamella", "lamella, from the file", [PYTHON, "-B", HERE / "lamella_slicer.py", "file"]),
         ("library", "the library in C++", [Path(options.programs) / "python" / "library_slicer"]),
         ("arrays", "lamella, from arrays", [PYTHON, "-B", HERE / "lamella_slicer.py", "arrays"]),
+        ("planes", "lamella.Slicer, plane by plane", [PYTHON, "-B", HERE / "lamella_slicer.py", "planes"]),
         ("numpy-bulk", "NumPy, all planes at once", [PYTHON, "-B", HERE / "numpy_slicer.py", "bulk"]),
         ("numpy-planes", "NumPy, plane by plane, as trimesh", [PYTHON, "-B", HERE / "numpy_slicer.py", "planes"]),
         ("vtk", "VTK vtkCutter", [PYTHON, "-B", rivals / "vtk_slicer.py"]),
+        ("vtk-planes", "VTK vtkPlaneCutter, plane by plane", [PYTHON, "-B", HERE / "vtk_planes.py"]),
         ("cgal", "CGAL Polygon_mesh_slicer", [Path(options.programs) / "rivals" / "cgal_slicer"]),
     ]
 
@@ -60,7 +62,7 @@ def main(arguments):
     page_of(cells, chosen, here, options).write(folder, "python")
     (folder / "report.json").write_text(json.dumps({"machine": here, "cells": cells}, indent=1) + "\n", encoding="utf-8")
     print(f"The report is in {folder}/python.html")
-    if any(cell["slicer"] in ("lamella", "arrays", "library") and not cell["agrees"] for cell in cells):
+    if any(cell["slicer"] in ("lamella", "arrays", "planes", "library") and not cell["agrees"] for cell in cells):
         raise SystemExit("Lamella's layers differ among themselves")
 
 

@@ -1,8 +1,9 @@
 """Cuts a mesh with the Python package.
 
-usage: lamella_slicer.py file|arrays MESH HEIGHTS RESULT
+usage: lamella_slicer.py file|arrays|planes MESH HEIGHTS RESULT
 
-`file` reads the file by the package; `arrays` passes vertices and faces, as from a mesh in NumPy.
+`file` reads the file by the package; `arrays` passes vertices and faces, as from a mesh in NumPy; `planes` cuts one plane
+after the other with a Slicer, which "read" includes.
 """
 
 import json
@@ -20,10 +21,11 @@ def main(way, mesh, heights, result):
         read = lamella.read(mesh)
         arrays = np.array(read.vertices), np.array(read.faces)
     started = time.perf_counter()
-    part = lamella.read(mesh) if way == "file" else arrays
+    part = arrays if way == "arrays" else lamella.read(mesh)
+    slicer = lamella.Slicer(part) if way == "planes" else None
     was_read = time.perf_counter()
     before = time.process_time()
-    stack = lamella.slice(part, z=planes)
+    stack = [slicer.section(z) for z in planes] if slicer else lamella.slice(part, z=planes)
     processor = time.process_time() - before
     sliced = time.perf_counter()
     with open(result, "w", encoding="utf-8") as file:
