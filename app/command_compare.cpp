@@ -1,7 +1,5 @@
-#include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/compare_files.hpp"
-#include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/compare.hpp"
 #include "lamella/read/layer_file.hpp"
 
@@ -152,20 +150,11 @@ struct AreaDifference {
 };
 
 /// Returns the area differences of all planes where they are not 0.
-std::vector<AreaDifference> area_differences(const StackComparison& found, const LayerStack& first,
-                                             const LayerStack& second) {
+std::vector<AreaDifference> area_differences(const FileComparison& files) {
     std::vector<AreaDifference> differences;
-    for (const ComparedPlane& plane : found.planes) {
-        const Layer nothing;
-        const double mm2 =
-            plane.difference.same
-                ? 0
-                : measure(combine(plane.first ? first[*plane.first] : nothing,
-                                  plane.second ? second[*plane.second] : nothing, BooleanOperation::exclude))
-                      .area_mm2;
-        if (mm2 != 0)
-            differences.push_back({plane.z, mm2});
-    }
+    for (std::size_t i = 0; i < files.details.size(); ++i)
+        if (const double mm2 = files.details[i].area_difference_mm2; mm2 != 0)
+            differences.push_back({files.layers.planes[i].z, mm2});
     return differences;
 }
 
@@ -185,8 +174,8 @@ std::string area_text(const std::vector<AreaDifference>& differences) {
 }
 
 std::string cut_apart_text(const LayerFile& first, const LayerFile& second) {
-    const Layer& one = first.parts.front().layers.front();
-    const Layer& other = second.parts.front().layers.front();
+    const Layer& one = first.planes().front();
+    const Layer& other = second.planes().front();
     return fmt::format(
         "{} and {} are cut at different heights: the layer from z = {} to {} mm at {} mm in the first "
         "and at {} mm in the second; formats that do not keep the cut, such as CLI, are read as if it "
@@ -194,30 +183,19 @@ std::string cut_apart_text(const LayerFile& first, const LayerFile& second) {
         first.path, second.path, height(one.bottom), height(one.top), height(one.z), height(other.z));
 }
 
-/// Returns the bytes that a file takes while it is compared: several parts are put together, too.
-std::uint64_t memory_to_compare(const LayerFile& file) {
-    return memory_of(file) * (file.parts.size() > 1 ? 2 : 1);
-}
-
-void check_memory(const LayerFile& first, const LayerFile& second, std::optional<std::uint64_t> most) {
-    const std::uint64_t bytes = memory_to_compare(first) + memory_to_compare(second);
-    if (most && bytes > *most)
-        throw Error(ErrorKind::limit,
-                    fmt::format("{} and {}: to compare them takes {} bytes, above the {} of --max-memory",
-                                input_name(first.path), input_name(second.path), bytes, *most));
-}
-
 int run_compare(const CompareArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
-    const LayerFile first = read_layers(arguments.inputs[0], arguments.limits.of_layers(), execution);
+    const LayerFile first =
+        read_layers(arguments.inputs[0], arguments.limits.of_passing_layers(), execution);
     const LayerFile second =
-        read_layers(arguments.inputs[1], arguments.limits.of_layers(memory_to_compare(first)), execution);
-    check_memory(first, second, arguments.limits.max_memory);
+        read_layers(arguments.inputs[1], arguments.limits.of_passing_layers(memory_of(first)), execution);
     for (const LayerFile* file : {&first, &second})
         context.messages.warn_of(input_name(file->path), file->warnings);
 
-    const FileComparison files = compare_files(first, second, arguments.tolerance, execution);
+    const FileComparison files = compare_files(
+        first, second,
+        {.tolerance_mm = arguments.tolerance, .area_difference = arguments.area_difference}, execution);
     const StackComparison& found = files.layers;
     if (found.cut_apart)
         context.messages.warn(cut_apart_text(first, second));
@@ -235,7 +213,7 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
 
     std::vector<AreaDifference> areas;
     if (arguments.area_difference)
-        areas = area_differences(found, first.merged(), second.merged());
+        areas = area_differences(files);
 
     if (arguments.json) {
         Json layers = Json::array();

@@ -1,10 +1,14 @@
 #include "lamella/pipeline/compare_files.hpp"
 
+#include "lamella/contour/measure.hpp"
+#include "lamella/polygon/boolean.hpp"
 #include "lamella/scan/strategy_fields.hpp"
 
 #include "contour/distance.hpp"
 #include "contour/same_height.hpp"
 #include "core/executor.hpp"
+#include "core/progress.hpp"
+#include "polygon/compared_planes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -25,48 +29,68 @@ namespace lamella {
 
 namespace {
 
+bool is_drawn(const Layer& layer) {
+    return layer.contours() > 0;
+}
+
 std::vector<std::string> hatched_labels(const LayerFile& file) {
     std::vector<std::string> labels;
-    for (const LayerPart& part : file.parts)
-        if (part.hatch_lines() > 0)
-            labels.push_back(part.label);
+    for (std::size_t i = 0; i < file.parts.size(); ++i)
+        if (file.hatch_lines(i) > 0)
+            labels.push_back(file.parts[i].label);
     std::sort(labels.begin(), labels.end());
     labels.erase(std::unique(labels.begin(), labels.end()), labels.end());
     return labels;
 }
 
-/// Lists of parts whose hatches are compared together: one list for each label, or one of all parts.
-using HatchedParts = std::vector<std::vector<const LayerPart*>>;
+/// Lists of indices of parts whose hatches are compared together: one list for each label, or one of all
+/// parts.
+using HatchedParts = std::vector<std::vector<std::size_t>>;
 
 HatchedParts hatched_parts(const LayerFile& file, const std::vector<std::string>& labels, bool by_label) {
     HatchedParts result(by_label ? labels.size() : 1);
-    for (const LayerPart& part : file.parts) {
+    for (std::size_t i = 0; i < file.parts.size(); ++i) {
         if (!by_label)
-            result.front().push_back(&part);
-        else if (const auto found = std::lower_bound(labels.begin(), labels.end(), part.label);
-                 found != labels.end() && *found == part.label)
-            result[static_cast<std::size_t>(found - labels.begin())].push_back(&part);
+            result.front().push_back(i);
+        else if (const auto found = std::lower_bound(labels.begin(), labels.end(), file.parts[i].label);
+                 found != labels.end() && *found == file.parts[i].label)
+            result[static_cast<std::size_t>(found - labels.begin())].push_back(i);
     }
     return result;
 }
 
-std::vector<Point2> ends_of(const std::vector<const LayerPart*>& parts, std::size_t plane) {
+std::vector<Point2> ends_of(const std::vector<std::size_t>& parts, const ScanVectors& vectors) {
     std::vector<Point2> ends;
-    for (const LayerPart* const part : parts) {
-        const std::span<const Point2> hatches = part->hatches_of(plane);
+    for (const std::size_t part : parts) {
+        const std::span<const Point2> hatches = vectors.hatches[part].span();
         ends.insert(ends.end(), hatches.begin(), hatches.end());
     }
     return ends;
 }
 
-/// Returns the largest distance by which a format may have moved the ends of lines.
-double moved_ends(const LayerFile& file, Executor& executor) {
-    std::vector<double> most(executor.workers());
-    for (const LayerPart& part : file.parts)
-        executor.for_chunks(part.hatches.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
-            most[worker] = std::max(most[worker], moved_point(part.hatches[i].span(), file.rounding));
-        });
-    return *std::max_element(most.begin(), most.end());
+/// Largest distances by which a format may have moved points of contours, and ends of hatch lines.
+struct MovedPoints {
+    double contours = 0;
+    double hatches = 0;
+};
+
+MovedPoints moved_points(const LayerFile& file, Executor& executor) {
+    if (file.stream)
+        return {moved_point(file.stream->largest_coordinate, file.rounding),
+                moved_point(file.stream->largest_hatch_coordinate, file.rounding)};
+    std::vector<MovedPoints> most(executor.workers());
+    executor.for_chunks(file.planes().size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
+        MovedPoints& moved = most[worker];
+        for (const LayerPart& part : file.parts) {
+            moved.contours =
+                std::max(moved.contours, moved_point(part.layers[i].points.span(), file.rounding));
+            moved.hatches = std::max(moved.hatches, moved_point(part.hatches_of(i), file.rounding));
+        }
+    });
+    for (const MovedPoints& moved : most)
+        most.front() = {std::max(most.front().contours, moved.contours),
+                        std::max(most.front().hatches, moved.hatches)};
+    return most.front();
 }
 
 void compare_ends(const std::vector<Point2>& first, const std::vector<Point2>& second,
@@ -103,11 +127,13 @@ void compare_parameters(const LayerPart& first, const LayerPart& second, bool on
 /// Returns the parts that have vectors. Some formats list no other parts.
 std::vector<const LayerPart*> exposed_parts(const LayerFile& file) {
     std::vector<const LayerPart*> parts;
-    for (const LayerPart& part : file.parts)
-        if (part.exposure &&
-            (part.hatch_lines() > 0 || std::any_of(part.layers.begin(), part.layers.end(),
-                                                   [](const Layer& layer) { return layer.contours() > 0; })))
+    for (std::size_t i = 0; i < file.parts.size(); ++i) {
+        const LayerPart& part = file.parts[i];
+        if (part.exposure && (file.hatch_lines(i) > 0 ||
+                              (file.stream ? !file.stream->boxes[i].empty()
+                                           : std::any_of(part.layers.begin(), part.layers.end(), is_drawn))))
             parts.push_back(&part);
+    }
     return parts;
 }
 
@@ -131,11 +157,12 @@ void take_pairs(std::vector<const LayerPart*>& first, std::vector<const LayerPar
     std::erase_if(second, [&](const LayerPart* part) { return taken.count(part) != 0; });
 }
 
-using PartPair = std::pair<const LayerPart*, const LayerPart*>;
+/// Indices of parts in both files.
+using PartPair = std::pair<std::size_t, std::size_t>;
 
 /// Returns whether the partners of the parts of one file are in the order of the parts.
 bool in_order(std::vector<PartPair> pairs) {
-    std::sort(pairs.begin(), pairs.end()); // the parts of a file are in one array
+    std::sort(pairs.begin(), pairs.end());
     return std::is_sorted(pairs.begin(), pairs.end(),
                           [](const PartPair& a, const PartPair& b) { return a.second < b.second; });
 }
@@ -149,7 +176,7 @@ std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile&
     std::vector<PartPair> pairs;
     const auto compare = [&](const LayerPart& one, const LayerPart& other) {
         compare_parameters(one, other, one_format, result.parameters);
-        pairs.emplace_back(&one, &other);
+        pairs.emplace_back(&one - first.parts.data(), &other - second.parts.data());
     };
     take_pairs(
         ones, others, [](const LayerPart& part) { return std::string_view(part.label); }, compare);
@@ -172,37 +199,28 @@ std::vector<PartPair> compare_exposures(const LayerFile& first, const LayerFile&
     return pairs;
 }
 
-/// Returns the number of hatch lines of all parts on each plane; empty if there are none.
-std::vector<std::uint64_t> hatch_lines_of(const LayerFile& file) {
-    std::vector<std::uint64_t> lines;
-    for (const LayerPart& part : file.parts) {
-        lines.resize(std::max(lines.size(), part.hatches.size()));
-        for (std::size_t plane = 0; plane < part.hatches.size(); ++plane)
-            lines[plane] += part.hatches[plane].size() / 2;
-    }
-    return lines;
-}
-
 bool has_other_hatches(const LayerFile& file) {
-    return std::any_of(file.parts.begin(), file.parts.end(),
-                       [](const LayerPart& part) { return !part.exposure && part.hatch_lines() > 0; });
+    for (std::size_t i = 0; i < file.parts.size(); ++i)
+        if (!file.parts[i].exposure && file.hatch_lines(i) > 0)
+            return true;
+    return false;
 }
 
 /// Returns whether each exposure of a plane has the contours of its partner.
-bool exposed_alike(std::span<const PartPair> pairs, std::size_t first, std::size_t second,
+bool exposed_alike(std::span<const PartPair> pairs, const ScanVectors& first, const ScanVectors& second,
                    double tolerance_mm) {
     return std::all_of(pairs.begin(), pairs.end(), [&](const PartPair& pair) {
-        return compare(pair.first->layers[first], pair.second->layers[second]).within(tolerance_mm);
+        return compare(first.polylines[pair.first], second.polylines[pair.second]).within(tolerance_mm);
     });
 }
 
 /// Returns whether the contours of each exposure of a plane have the order and the start points of its
 /// partner. Requires that the contours agree.
-bool followed_alike(std::span<const PartPair> pairs, std::size_t first, std::size_t second,
+bool followed_alike(std::span<const PartPair> pairs, const ScanVectors& first, const ScanVectors& second,
                     double tolerance_mm) {
     return std::all_of(pairs.begin(), pairs.end(), [&](const PartPair& pair) {
-        const Layer& one = pair.first->layers[first];
-        const Layer& other = pair.second->layers[second];
+        const Layer& one = first.polylines[pair.first];
+        const Layer& other = second.polylines[pair.second];
         if (one.contours() != other.contours())
             return true; // some contours are too small to be matched
         for (std::size_t i = 0; i < one.contours(); ++i)
@@ -211,6 +229,28 @@ bool followed_alike(std::span<const PartPair> pairs, std::size_t first, std::siz
                 return false;
         return true;
     });
+}
+
+StackPlanes planes_of(const LayerFile& file, std::span<const PlaneContent> contents) {
+    StackPlanes planes{file.planes(), file.rounding, {}};
+    for (const PlaneContent& content : contents)
+        planes.drawn.push_back(content.contours || content.hatch_lines > 0);
+    return planes;
+}
+
+/// The vectors of a plane, and the contours of all parts together.
+struct PlaneOfFile {
+    ScanVectors vectors;
+    Layer contours;
+};
+
+PlaneOfFile plane_of(const LayerFile& file, std::optional<std::size_t> position) {
+    if (!position)
+        return {};
+    PlaneOfFile plane{file.plane(*position), {}};
+    const std::vector<Layer>& lines = plane.vectors.polylines;
+    plane.contours = lines.size() == 1 ? lines.front() : merged(lines);
+    return plane;
 }
 
 } // namespace
@@ -222,22 +262,13 @@ bool FileComparison::agree() const noexcept {
 }
 
 FileComparison compare_files(const LayerFile& first, const LayerFile& second,
-                             std::optional<double> tolerance_mm, const Execution& execution) {
-    const LayerStack stacks[2] = {first.merged(execution), second.merged(execution)};
-    const std::vector<std::uint64_t> lines[2] = {hatch_lines_of(first), hatch_lines_of(second)};
-    FileComparison result{.layers = compare(RoundedLayers{stacks[0], first.rounding, lines[0]},
-                                            {stacks[1], second.rounding, lines[1]}, tolerance_mm, execution),
-                          .details = {},
-                          .parameters = {},
-                          .only_first = {},
-                          .only_second = {},
-                          .exposures_in_order = true};
+                             const FileComparisonOptions& options, const Execution& execution) {
+    check_tolerance(options.tolerance_mm);
+    check(first);
+    check(second);
+    FileComparison result{
+        .layers = {}, .details = {}, .parameters = {}, .only_first = {}, .only_second = {}};
     const std::vector<PartPair> pairs = compare_exposures(first, second, result);
-    const double of_contours = result.layers.tolerance_mm;
-    Executor executor(execution);
-    const double of_ends =
-        tolerance_mm ? *tolerance_mm : moved_ends(first, executor) + moved_ends(second, executor);
-    result.layers.tolerance_mm = std::max(result.layers.tolerance_mm, of_ends);
     const std::vector<std::string> labels = hatched_labels(first);
     const bool by_label = labels == hatched_labels(second);
     HatchedParts ones = hatched_parts(first, labels, by_label);
@@ -250,46 +281,61 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
             others.push_back({other});
         }
     }
-    // Differences of all contours together are reported anyway.
-    std::vector<char> alike(result.layers.planes.size(), 1);
-    std::vector<char> followed(result.layers.planes.size(), 1);
-    executor.for_chunks(alike.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i)
-            if (const ComparedPlane& plane = result.layers.planes[i];
-                plane.first && plane.second && plane.agree) {
-                alike[i] = exposed_alike(pairs, *plane.first, *plane.second, of_contours) ? 1 : 0;
-                followed[i] =
-                    alike[i] == 0 || followed_alike(pairs, *plane.first, *plane.second, of_contours) ? 1 : 0;
-            }
-    });
-    executor.check_cancelled();
+    Executor executor(execution);
+    MovedPoints tolerance{options.tolerance_mm.value_or(0), options.tolerance_mm.value_or(0)};
+    if (!options.tolerance_mm) {
+        const MovedPoints moved[2] = {moved_points(first, executor), moved_points(second, executor)};
+        tolerance = {moved[0].contours + moved[1].contours, moved[0].hatches + moved[1].hatches};
+    }
+    const std::vector<PlaneContent> contents[2] = {first.contents(), second.contents()};
+    const StackPlanes planes[2] = {planes_of(first, contents[0]), planes_of(second, contents[1])};
+    result.layers.tolerance_mm = std::max(tolerance.contours, tolerance.hatches);
+    result.layers.planes = paired(planes[0], planes[1], options.tolerance_mm);
+    result.layers.cut_apart = are_cut_apart(planes[0], planes[1], result.layers.planes);
     result.details.resize(result.layers.planes.size());
+
+    ProgressMeter progress(execution, Stage::polygon, result.details.size());
     executor.for_chunks(result.details.size(), 1, [&](std::uint64_t k, std::uint64_t, unsigned) {
         ComparedPlane& plane = result.layers.planes[k];
         PlaneDetails& details = result.details[k];
+        const PlaneOfFile of_first = plane_of(first, plane.first);
+        const PlaneOfFile of_second = plane_of(second, plane.second);
+        compare_layers(plane, of_first.contours, of_second.contours, tolerance.contours);
+        if (options.area_difference && !plane.difference.same)
+            details.area_difference_mm2 =
+                measure(combine(of_first.contours, of_second.contours, BooleanOperation::exclude)).area_mm2;
         if (plane.first && plane.second) {
+            // Differences of all contours together are reported anyway.
+            if (plane.agree) {
+                details.exposed_alike =
+                    exposed_alike(pairs, of_first.vectors, of_second.vectors, tolerance.contours);
+                details.followed_alike =
+                    !details.exposed_alike ||
+                    followed_alike(pairs, of_first.vectors, of_second.vectors, tolerance.contours);
+            }
             for (std::size_t i = 0; i < ones.size(); ++i)
-                compare_ends(ends_of(ones[i], *plane.first), ends_of(others[i], *plane.second), details);
-            const Layer& one = stacks[0][*plane.first];
-            const Layer& other = stacks[1][*plane.second];
+                compare_ends(ends_of(ones[i], of_first.vectors), ends_of(others[i], of_second.vectors),
+                             details);
+            const Layer& one = first.planes()[*plane.first];
+            const Layer& other = second.planes()[*plane.second];
             details.height_distance_mm =
                 std::max(std::abs(one.bottom - other.bottom), std::abs(one.top - other.top));
             details.heights_agree = details.height_distance_mm <= moved_cut(one, first.rounding) +
                                                                       moved_cut(other, second.rounding) +
                                                                       same_height_mm;
-            plane.agree = plane.agree && details.heights_agree && details.hatch_distance_mm <= of_ends;
-            details.exposed_alike = alike[k] != 0;
-            details.followed_alike = followed[k] != 0;
-            plane.agree = plane.agree && details.exposed_alike && details.followed_alike;
+            plane.agree = plane.agree && details.heights_agree &&
+                          details.hatch_distance_mm <= tolerance.hatches && details.exposed_alike &&
+                          details.followed_alike;
             details.same = plane.difference.same && details.height_distance_mm == 0 &&
                            details.hatch_distance_mm == 0 && details.exposed_alike &&
                            details.followed_alike && result.exposures_in_order;
         } else {
-            details.first_hatches = plane.first && !lines[0].empty() ? lines[0][*plane.first] : 0;
-            details.second_hatches = plane.second && !lines[1].empty() ? lines[1][*plane.second] : 0;
+            details.first_hatches = plane.first ? contents[0][*plane.first].hatch_lines : 0;
+            details.second_hatches = plane.second ? contents[1][*plane.second].hatch_lines : 0;
         }
+        progress.add(1);
     });
-    executor.check_cancelled();
+    progress.finish();
     return result;
 }
 

@@ -8,6 +8,7 @@
 #include "contour/same_height.hpp"
 #include "core/executor.hpp"
 #include "polygon/box2.hpp"
+#include "polygon/compared_planes.hpp"
 #include "polygon/edge_tree.hpp"
 
 #include <fmt/format.h>
@@ -32,42 +33,6 @@ double moved_points(const RoundedLayers& stack) {
     for (const Layer& layer : stack.layers)
         most = std::max(most, moved_point(layer.points.span(), stack.rounding));
     return most;
-}
-
-/// Pairs the layers of two stacks in ascending z. `tolerance_mm` is added to the rounding of heights.
-std::vector<ComparedPlane> paired(const RoundedLayers& first, const RoundedLayers& second,
-                                  double tolerance_mm) {
-    const auto z = [](const RoundedLayers& stack, std::size_t i) {
-        return i < stack.layers.size() ? stack.layers[i].z : infinity;
-    };
-    const auto belong_together = [&](std::size_t i, std::size_t j) {
-        if (i == first.layers.size() || j == second.layers.size())
-            return false;
-        const double apart = std::abs(z(first, i) - z(second, j));
-        return apart <= moved_cut(first.layers[i], first.rounding) +
-                            moved_cut(second.layers[j], second.rounding) + tolerance_mm &&
-               apart <= std::abs(z(first, i + 1) - z(second, j)) &&
-               apart <= std::abs(z(first, i) - z(second, j + 1));
-    };
-    std::vector<ComparedPlane> planes;
-    for (std::size_t i = 0, j = 0; i < first.layers.size() || j < second.layers.size();) {
-        ComparedPlane plane;
-        const bool together = belong_together(i, j);
-        const bool of_second = together || !(z(first, i) < z(second, j));
-        const bool of_first = together || !of_second;
-        const Layer& layer = of_first ? first.layers[i] : second.layers[j];
-        plane.z = layer.z;
-        if (of_first)
-            plane.first = i++;
-        if (of_second)
-            plane.second = j++;
-        const RoundedLayers& stack = of_first ? first : second;
-        const std::size_t position = of_first ? *plane.first : *plane.second;
-        const bool hatched = !stack.hatch_lines.empty() && stack.hatch_lines[position] > 0;
-        if (together || layer.contours() > 0 || hatched)
-            planes.push_back(plane);
-    }
-    return planes;
 }
 
 /// Raises `largest` to the largest squared distance from a corner of `from` to the contours of the other
@@ -151,15 +116,11 @@ LayerDifference compare_beyond(const Layer& first, const Layer& second, double t
     return difference;
 }
 
-/// Returns whether the lowest layers have the same bottom and top but are cut at different heights.
-bool lowest_cut_apart(const RoundedLayers& first, const RoundedLayers& second) {
-    if (first.layers.empty() || second.layers.empty())
-        return false;
-    const Layer& one = first.layers.front();
-    const Layer& other = second.layers.front();
-    const double rounding = moved_cut(one, first.rounding) + moved_cut(other, second.rounding);
-    return one.z != other.z && std::abs(one.bottom - other.bottom) <= rounding &&
-           std::abs(one.top - other.top) <= rounding;
+StackPlanes planes_of(const RoundedLayers& stack) {
+    StackPlanes planes{stack.layers, stack.rounding, {}};
+    for (const Layer& layer : stack.layers)
+        planes.drawn.push_back(layer.contours() > 0);
+    return planes;
 }
 
 } // namespace
@@ -177,37 +138,92 @@ LayerDifference compare(const Layer& first, const Layer& second) {
     return compare_beyond(first, second, 0);
 }
 
-StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
-                        std::optional<double> tolerance_mm, const Execution& execution) {
+void check_tolerance(std::optional<double> tolerance_mm) {
     if (tolerance_mm && !(*tolerance_mm >= 0))
         throw Error(
             ErrorKind::usage,
             fmt::format("layers cannot be compared within {} mm; it must be 0 or more", *tolerance_mm));
-    StackComparison result{
-        .tolerance_mm = tolerance_mm ? *tolerance_mm : moved_points(first) + moved_points(second),
-        .planes = paired(first, second, std::max(same_height_mm, tolerance_mm.value_or(0)))};
+}
+
+std::vector<ComparedPlane> paired(const StackPlanes& first, const StackPlanes& second,
+                                  std::optional<double> tolerance_mm) {
+    const double allowed = std::max(same_height_mm, tolerance_mm.value_or(0));
+    const auto z = [](const StackPlanes& stack, std::size_t i) {
+        return i < stack.planes.size() ? stack.planes[i].z : infinity;
+    };
+    const auto belong_together = [&](std::size_t i, std::size_t j) {
+        if (i == first.planes.size() || j == second.planes.size())
+            return false;
+        const double apart = std::abs(z(first, i) - z(second, j));
+        return apart <= moved_cut(first.planes[i], first.rounding) +
+                            moved_cut(second.planes[j], second.rounding) + allowed &&
+               apart <= std::abs(z(first, i + 1) - z(second, j)) &&
+               apart <= std::abs(z(first, i) - z(second, j + 1));
+    };
+    std::vector<ComparedPlane> pairs;
+    for (std::size_t i = 0, j = 0; i < first.planes.size() || j < second.planes.size();) {
+        ComparedPlane plane;
+        const bool together = belong_together(i, j);
+        const bool of_second = together || !(z(first, i) < z(second, j));
+        const bool of_first = together || !of_second;
+        plane.z = of_first ? z(first, i) : z(second, j);
+        const bool drawn = of_first ? first.drawn[i] : second.drawn[j];
+        if (of_first)
+            plane.first = i++;
+        if (of_second)
+            plane.second = j++;
+        if (together || drawn)
+            pairs.push_back(plane);
+    }
+    return pairs;
+}
+
+void compare_layers(ComparedPlane& plane, const Layer& first, const Layer& second, double tolerance_mm) {
+    LayerDifference& difference = plane.difference;
+    if (plane.first && plane.second) {
+        difference = compare_beyond(first, second, tolerance_mm);
+        plane.agree = difference.within(tolerance_mm);
+    } else if (plane.first) {
+        difference.first = measure(first);
+    } else {
+        difference.second = measure(second);
+    }
+}
+
+bool are_cut_apart(const StackPlanes& first, const StackPlanes& second,
+                   std::span<const ComparedPlane> pairs) {
+    if (first.planes.empty() || second.planes.empty() ||
+        std::any_of(pairs.begin(), pairs.end(),
+                    [](const ComparedPlane& plane) { return plane.first && plane.second; }))
+        return false;
+    const Layer& one = first.planes.front();
+    const Layer& other = second.planes.front();
+    const double rounding = moved_cut(one, first.rounding) + moved_cut(other, second.rounding);
+    return one.z != other.z && std::abs(one.bottom - other.bottom) <= rounding &&
+           std::abs(one.top - other.top) <= rounding;
+}
+
+StackComparison compare(const RoundedLayers& first, const RoundedLayers& second,
+                        std::optional<double> tolerance_mm, const Execution& execution) {
+    check_tolerance(tolerance_mm);
+    const StackPlanes planes[2] = {planes_of(first), planes_of(second)};
+    StackComparison result{.tolerance_mm =
+                               tolerance_mm ? *tolerance_mm : moved_points(first) + moved_points(second),
+                           .planes = paired(planes[0], planes[1], tolerance_mm)};
+    const auto layer_of = [](const RoundedLayers& stack, std::optional<std::size_t> i) -> const Layer& {
+        static const Layer none;
+        return i ? stack.layers[*i] : none;
+    };
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::polygon, result.planes.size());
-    executor.for_chunks(result.planes.size(), 1, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        for (std::uint64_t i = begin; i < end; ++i) {
-            ComparedPlane& plane = result.planes[i];
-            LayerDifference& difference = plane.difference;
-            if (plane.first && plane.second) {
-                difference = compare_beyond(first.layers[*plane.first], second.layers[*plane.second],
-                                            result.tolerance_mm);
-                plane.agree = difference.within(result.tolerance_mm);
-            } else if (plane.first) {
-                difference.first = measure(first.layers[*plane.first]);
-            } else {
-                difference.second = measure(second.layers[*plane.second]);
-            }
-            progress.add(1);
-        }
+    executor.for_chunks(result.planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        ComparedPlane& plane = result.planes[i];
+        compare_layers(plane, layer_of(first, plane.first), layer_of(second, plane.second),
+                       result.tolerance_mm);
+        progress.add(1);
     });
     progress.finish();
-    const bool any_pair = std::any_of(result.planes.begin(), result.planes.end(),
-                                      [](const ComparedPlane& plane) { return plane.first && plane.second; });
-    result.cut_apart = !any_pair && lowest_cut_apart(first, second);
+    result.cut_apart = are_cut_apart(planes[0], planes[1], result.planes);
     return result;
 }
 

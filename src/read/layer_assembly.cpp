@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cassert>
 #include <tuple>
 
@@ -159,10 +160,19 @@ LayerStream stream_of(const LayerFile& file, std::span<const PlacedLayer> planes
             {.index = plane.index, .z = plane.z, .bottom = plane.bottom, .top = plane.top});
         begins.emplace_back().push_back(plane.raw->begin);
         begins.back().insert(begins.back().end(), plane.raw->joined.begin(), plane.raw->joined.end());
+        PlaneContent& content = stream.contents.emplace_back();
         for (const RawLayer::Run& run : plane.raw->runs()) {
             stream.boxes[run.part].add(run.box);
-            if (run.kind == RawLayer::Run::Kind::hatch)
+            const bool hatches = run.kind == RawLayer::Run::Kind::hatch;
+            double& largest = hatches ? stream.largest_hatch_coordinate : stream.largest_coordinate;
+            for (const Point3& corner : {run.box.min, run.box.max})
+                largest = std::max({largest, std::abs(corner.x), std::abs(corner.y)});
+            if (hatches) {
                 stream.hatch_lines[run.part] += (run.end - run.begin) / 2;
+                content.hatch_lines += (run.end - run.begin) / 2;
+            } else {
+                content.contours = true;
+            }
         }
     }
     stream.bytes = limits.bytes();
@@ -298,7 +308,7 @@ void add_layers(LayerFile& file, std::span<const PlacedLayer> planes, ReadLimits
         };
     };
     if (parse && !limits.in_memory()) {
-        limits.add_bytes(2 * planes.size() * (sizeof(Layer) + of_empty_layer));
+        limits.add_bytes(2 * planes.size() * (sizeof(Layer) + of_empty_layer + sizeof(PlaneContent)));
         file.stream = std::make_shared<const LayerStream>(stream_of(file, planes, limits, std::move(parse)));
         return;
     }

@@ -128,6 +128,22 @@ std::uint64_t memory_of(const LayerFile& file) noexcept {
     return bytes;
 }
 
+void check(const LayerFile& file) {
+    for (const LayerPart& part : file.parts) {
+        const std::size_t planes = file.parts.front().layers.size();
+        if (part.layers.size() != planes)
+            throw Error(
+                ErrorKind::usage,
+                fmt::format("{}: the part \"{}\" has {} layers and the first one has {}; parts can be "
+                            "put together where all have the same planes",
+                            file.path, excerpt(part.label), part.layers.size(), planes));
+        if (!part.hatches.empty() && part.hatches.size() != planes)
+            throw Error(ErrorKind::usage, fmt::format("{}: the part \"{}\" has {} layers and hatch lines of {}",
+                                                      file.path, excerpt(part.label), planes,
+                                                      part.hatches.size()));
+    }
+}
+
 std::uint64_t LayerPart::hatch_lines() const noexcept {
     std::uint64_t points = 0;
     for (const PointArray& of_layer : hatches)
@@ -141,6 +157,18 @@ const LayerStack& LayerFile::planes() const noexcept {
 
 std::uint64_t LayerFile::hatch_lines(std::size_t part) const {
     return stream ? stream->hatch_lines[part] : parts[part].hatch_lines();
+}
+
+std::vector<PlaneContent> LayerFile::contents() const {
+    if (stream)
+        return stream->contents;
+    std::vector<PlaneContent> contents(parts.empty() ? 0 : planes().size());
+    for (const LayerPart& part : parts)
+        for (std::size_t i = 0; i < contents.size(); ++i) {
+            contents[i].contours = contents[i].contours || part.layers[i].contours() > 0;
+            contents[i].hatch_lines += part.hatches_of(i).size() / 2;
+        }
+    return contents;
 }
 
 void LayerFile::keep_layers(const LayerReadOptions& options, const Execution& execution) {
@@ -192,19 +220,12 @@ LayerStack LayerFile::merged(const Execution& execution) const {
         held.keep_layers({}, execution);
         return held.merged(execution);
     }
+    check(*this);
     if (parts.size() == 1)
         return parts.front().layers;
-    const std::size_t planes = parts.empty() ? 0 : parts.front().layers.size();
-    for (const LayerPart& part : parts)
-        if (part.layers.size() != planes)
-            throw Error(
-                ErrorKind::usage,
-                fmt::format("{}: the part \"{}\" has {} layers and the first one has {}; parts can be "
-                            "put together where all have the same planes",
-                            path, excerpt(part.label), part.layers.size(), planes));
-    LayerStack all(planes);
+    LayerStack all(parts.empty() ? 0 : parts.front().layers.size());
     Executor executor(execution);
-    executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+    executor.for_chunks(all.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
         std::vector<Layer> plane;
         for (const LayerPart& part : parts)
             plane.push_back(part.layers[i]);

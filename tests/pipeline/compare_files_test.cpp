@@ -1,10 +1,13 @@
 #include "lamella/pipeline/compare_files.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -67,7 +70,7 @@ TEST(CompareFiles, SeesHatchLinesThatAreMissingMovedOrInAnotherOrder) {
     }
     LayerFile moved = job();
     moved.parts[1].hatches[1] = PointArray(others[2]);
-    const FileComparison found = compare_files(job(), moved, 0.02);
+    const FileComparison found = compare_files(job(), moved, {.tolerance_mm = 0.02});
     EXPECT_TRUE(found.agree());
     EXPECT_EQ(same_of(found), 2U) << "they agree, but are not the same";
 }
@@ -77,7 +80,57 @@ TEST(CompareFiles, SeesLayersOfLinesThatOneFileHasNot) {
     lines.parts.erase(lines.parts.begin());
     LayerFile fewer = lines;
     fewer.parts[0].layers.pop_back();
+    fewer.parts[0].hatches.pop_back();
     EXPECT_FALSE(compare_files(lines, fewer).agree());
+}
+
+TEST(CompareFiles, RefusesPartsWithDifferentNumbersOfLayers) {
+    LayerFile uneven = job();
+    uneven.parts[1].layers.pop_back();
+    test::expect_error(ErrorKind::usage, {"has 2 layers", "first one has 3"},
+                       [&] { static_cast<void>(compare_files(job(), uneven)); });
+    uneven = job();
+    uneven.parts[1].hatches.pop_back();
+    test::expect_error(ErrorKind::usage, {"has 3 layers and hatch lines of 2"},
+                       [&] { static_cast<void>(compare_files(job(), uneven)); });
+}
+
+TEST(CompareFiles, FindsTheSameIfLayersAreNotInMemory) {
+    const auto text_of = [](int shifted) {
+        std::string text = "$$HEADERSTART\n$$ASCII\n$$UNITS/0.01\n$$VERSION/200\n$$LABEL/1,a\n$$LABEL/2,b\n"
+                           "$$HEADEREND\n$$GEOMETRYSTART\n";
+        for (int z = 1; z <= 20; ++z) {
+            const int x = z == shifted ? 5 : 0;
+            text += fmt::format("$$LAYER/{}\n$$POLYLINE/1,1,5,{},0,9,0,9,9,{},9,{},0\n", z, x, x, x);
+            text += fmt::format("$$POLYLINE/2,1,4,20,0,29,0,29,9,20,0\n$$HATCHES/2,1,21,{},28,1\n", 1 + x);
+        }
+        return text + "$$GEOMETRYEND\n";
+    };
+    const auto read = [&](int shifted, LayersKept kept) {
+        const std::string text = text_of(shifted);
+        return read_layers(std::as_bytes(std::span(text)), "a.cli", {.layers = kept}, {.threads = 1});
+    };
+    const LayerFile held[2] = {read(0, LayersKept::all), read(7, LayersKept::all)};
+    const FileComparisonOptions options{.area_difference = true};
+    const FileComparison expected = compare_files(held[0], held[1], options);
+    ASSERT_EQ(expected.details.size(), 20U);
+    EXPECT_FALSE(expected.agree());
+    EXPECT_NEAR(expected.details[6].area_difference_mm2, 0.0045, 1e-12);
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        const LayerFile streams[2] = {read(0, LayersKept::none), read(7, LayersKept::none)};
+        ASSERT_TRUE(streams[0].stream && streams[1].stream);
+        const FileComparison found = compare_files(streams[0], streams[1], options, {.threads = threads});
+        EXPECT_EQ(found.layers.tolerance_mm, expected.layers.tolerance_mm);
+        ASSERT_EQ(found.details.size(), expected.details.size());
+        for (std::size_t i = 0; i < found.details.size(); ++i) {
+            EXPECT_EQ(found.layers.planes[i].agree, expected.layers.planes[i].agree) << i;
+            EXPECT_EQ(found.layers.planes[i].difference.distance_mm,
+                      expected.layers.planes[i].difference.distance_mm);
+            EXPECT_EQ(found.details[i].hatch_distance_mm, expected.details[i].hatch_distance_mm);
+            EXPECT_EQ(found.details[i].area_difference_mm2, expected.details[i].area_difference_mm2);
+            EXPECT_EQ(found.details[i].same, expected.details[i].same);
+        }
+    }
 }
 
 TEST(CompareFiles, SeesTheOrderOfExposuresOfContoursAndWhereTheseBegin) {

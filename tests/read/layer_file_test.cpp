@@ -1,4 +1,5 @@
 #include "lamella/contour/exposure.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
 
@@ -10,10 +11,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -132,6 +135,21 @@ TEST(LayerFile, WhoseLayersAreNotInMemoryHasTheSamePlanes) {
                 EXPECT_TRUE(file.parts[i].layers.empty());
                 EXPECT_EQ(file.parts[i].label, held.parts[i].label);
                 EXPECT_EQ(file.hatch_lines(i), held.hatch_lines(i));
+            }
+            double largest = 0;
+            double largest_of_hatches = 0;
+            for (const LayerPart& part : held.parts)
+                for (std::size_t i = 0; i < held.planes().size(); ++i) {
+                    largest = std::max(largest, largest_coordinate(part.layers[i].points.span()));
+                    largest_of_hatches = std::max(largest_of_hatches, largest_coordinate(part.hatches_of(i)));
+                }
+            EXPECT_EQ(file.stream->largest_coordinate, largest);
+            EXPECT_EQ(file.stream->largest_hatch_coordinate, largest_of_hatches);
+            const std::vector<PlaneContent> contents[2] = {file.contents(), held.contents()};
+            ASSERT_EQ(contents[0].size(), contents[1].size());
+            for (std::size_t i = 0; i < contents[0].size(); ++i) {
+                ASSERT_EQ(contents[0][i].contours, contents[1][i].contours);
+                ASSERT_EQ(contents[0][i].hatch_lines, contents[1][i].hatch_lines);
             }
             ASSERT_EQ(file.planes().size(), held.planes().size());
             for (std::size_t i = 0; i < file.planes().size(); ++i)

@@ -39,14 +39,18 @@ struct Rounding {
     return largest;
 }
 
-/// Returns the largest distance by which a format may have moved one of these points, in mm, including the
-/// rounding errors of double precision. O(points) if the format rounds.
-[[nodiscard]] inline double moved_point(std::span<const Point2> points, const Rounding& rounding) noexcept {
+/// Returns the largest distance by which a format may have moved a point whose coordinates have at most this
+/// absolute value, in mm, including the rounding errors of double precision.
+[[nodiscard]] inline double moved_point(double largest_coordinate, const Rounding& rounding) noexcept {
     if (rounding == Rounding{})
         return 0;
-    const double largest = largest_coordinate(points);
     constexpr double last_digits = 0x1p-50;
-    return (rounding.step_at(largest) / 2 + last_digits * largest) * std::sqrt(2.0);
+    return (rounding.step_at(largest_coordinate) / 2 + last_digits * largest_coordinate) * std::sqrt(2.0);
+}
+
+/// Returns the same for one of these points. O(points) if the format rounds.
+[[nodiscard]] inline double moved_point(std::span<const Point2> points, const Rounding& rounding) noexcept {
+    return rounding == Rounding{} ? 0 : moved_point(largest_coordinate(points), rounding);
 }
 
 /// The rounding of text formats that define no unit of their own.

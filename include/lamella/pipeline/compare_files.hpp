@@ -27,7 +27,9 @@ struct PlaneDetails {
     bool heights_agree = true;
     bool exposed_alike = true;  ///< false if contours agree only in total, not exposure by exposure
     bool followed_alike = true; ///< false if they agree, but in another order or from other first points
-    bool same = false;          ///< all of this and the contours are equal, bit for bit
+    /// Area of the symmetric difference of the contours, if asked for.
+    double area_difference_mm2 = 0;
+    bool same = false; ///< all of this and the contours are equal, bit for bit
 };
 
 /// A parameter that differs between exposures of parts with the same label.
@@ -56,6 +58,12 @@ struct FileComparison {
     [[nodiscard]] bool agree() const noexcept;
 };
 
+struct FileComparisonOptions {
+    /// The largest distance that is no difference; by default the sum of the rounding errors of both formats.
+    std::optional<double> tolerance_mm = {};
+    bool area_difference = false; ///< compute the areas that only one of the files has
+};
+
 /// Compares the contours of two files as `compare` does, and the following details:
 ///
 /// - Hatch lines are compared one by one, in their order: exposure by exposure if each exposure has a
@@ -71,10 +79,12 @@ struct FileComparison {
 ///   cannot store it.
 /// - Between files of one format, an unmatched exposure is a difference.
 ///
-/// Expected O(n log n) for n points and ends of lines of both files. Takes memory for one copy of all
-/// contours.
+/// Expected O(n log n) for n points and ends of lines of both files, parallel over planes. Takes memory for
+/// the contours of a plane for each thread, also if the layers of a file are not in memory. Throws
+/// Error{usage} for a tolerance that is negative or NaN, and if parts of a file have different numbers of
+/// layers.
 [[nodiscard]] FileComparison compare_files(const LayerFile& first, const LayerFile& second,
-                                           std::optional<double> tolerance_mm = {},
+                                           const FileComparisonOptions& options = {},
                                            const Execution& execution = {});
 
 } // namespace lamella

@@ -42,16 +42,12 @@ struct LayerDifference {
 struct RoundedLayers {
     std::span<const Layer> layers;
     Rounding rounding = {};
-    /// Number of hatch lines of each layer, which make a layer without contours count; empty if there are
-    /// none.
-    std::span<const std::uint64_t> hatch_lines = {};
 };
 
 /// Two layers that belong together, or one without a partner in the other stack.
 struct ComparedPlane {
     double z = 0; ///< height of the cut, mm
-    /// Index of the layer in each stack; none if that stack has neither contours nor hatch lines at this
-    /// height.
+    /// Index of the layer in each stack; none if that stack has nothing at this height.
     std::optional<std::size_t> first;
     std::optional<std::size_t> second;
     /// If there is only one layer, only its measure is set.
@@ -70,8 +66,8 @@ struct StackComparison {
 
 /// Compares two stacks plane by plane. Two layers belong together if each is the nearest to the other, and if
 /// their cuts are no further apart than the rounding errors of both formats plus the larger of 1e-6 mm and
-/// `tolerance_mm`. A layer without contours and hatch lines needs no partner. Hatch lines and heights of
-/// layers that belong together are not compared; see `compare_files`. `tolerance_mm` is passed to
+/// `tolerance_mm`. A layer without contours needs no partner. Heights of layers that belong together are not
+/// compared; see `compare_files`. `tolerance_mm` is passed to
 /// LayerDifference::within; the default is the sum of the rounding errors of both formats. Distances below
 /// `tolerance_mm` are measured at corners only. Throws Error{usage} for a tolerance that is negative or NaN.
 /// Parallel over planes; costs as much as `compare` of all layers that belong together.

@@ -58,6 +58,12 @@ struct LayerPart {
     [[nodiscard]] std::uint64_t hatch_lines() const noexcept;
 };
 
+/// What a plane holds, all parts together.
+struct PlaneContent {
+    bool contours = false;
+    std::uint64_t hatch_lines = 0;
+};
+
 /// The layers of a file that is parsed twice: once for what is known of the whole file, and then plane by
 /// plane, when a plane is needed. So only a few layers are in memory at a time. The bytes of the file stay in
 /// memory, or in a temporary file if they are large.
@@ -66,6 +72,9 @@ struct LayerStream {
     LayerStack planes = {};
     std::vector<Box3> boxes = {};                ///< of each part, like `part_box`
     std::vector<std::uint64_t> hatch_lines = {}; ///< number of hatch lines of each part
+    std::vector<PlaneContent> contents = {};     ///< of each plane
+    double largest_coordinate = 0;               ///< of contours: largest absolute value
+    double largest_hatch_coordinate = 0;         ///< of hatch lines
     std::uint64_t bytes = 0;                     ///< memory that it takes
     /// Parses the contours and hatch lines of the plane at this position, without its heights. May be called
     /// by any number of threads at once.
@@ -94,20 +103,24 @@ struct LayerFile {
     [[nodiscard]] const LayerStack& planes() const noexcept;
     /// Returns the number of hatch lines of a part.
     [[nodiscard]] std::uint64_t hatch_lines(std::size_t part) const;
+    /// Returns what each plane holds. O(layers), without parsing.
+    [[nodiscard]] std::vector<PlaneContent> contents() const;
 
     /// Parses all layers of a stream, so that they are in memory. Parallel. Throws the errors of
     /// `read_layers` for these options.
     void keep_layers(const LayerReadOptions& options = {}, const Execution& execution = {});
 
     /// Returns all parts as one stack: the layers of the only part, or one layer per plane with the contours
-    /// of all parts. O(points), parallel. Throws Error{usage} if the caller changed the parts so that their
-    /// numbers of layers differ, and Error{cancelled}.
+    /// of all parts. O(points), parallel. Throws as `check(const LayerFile&)` does, and Error{cancelled}.
     [[nodiscard]] LayerStack merged(const Execution& execution = {.threads = 1}) const;
 
     /// Returns the layers of all parts on a plane, with their hatch lines. O(contours), or, if the layers are
     /// not in memory, the time for parsing them.
     [[nodiscard]] ScanVectors plane(std::size_t position) const;
 };
+
+/// Throws Error{usage} if the caller changed the parts so that their numbers of layers differ.
+void check(const LayerFile& file);
 
 /// Returns the bytes that the layers of a file take. O(layers).
 [[nodiscard]] std::uint64_t memory_of(const LayerFile& file) noexcept;
