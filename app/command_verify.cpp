@@ -183,8 +183,7 @@ std::string cut_hint(const LayerFile& file, const Agree& agree) {
 /// Moves the parts with scan vectors (or, if `vectors` is false, the others) out of the file.
 LayerFile taken_parts(LayerFile& file, bool vectors) {
     LayerFile some{.path = file.path, .format = file.format, .rounding = file.rounding, .rule = file.rule};
-    if (!vectors) // files with vectors have no stream
-        some.stream = file.stream;
+    some.stream = file.stream; // files with both kinds have none
     for (LayerPart& part : file.parts)
         if (part.exposure.has_value() == vectors)
             some.parts.push_back(std::move(part));
@@ -207,9 +206,10 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     arguments.limits.prepare_memory();
 
     LayerFile file = read_layers(arguments.input, arguments.limits.of_passing_layers(), execution);
-    const bool has_vectors = std::any_of(file.parts.begin(), file.parts.end(),
-                                         [](const LayerPart& part) { return part.exposure.has_value(); });
-    if (has_vectors)
+    const auto of_vectors = std::count_if(file.parts.begin(), file.parts.end(), [](const LayerPart& part) {
+        return part.exposure.has_value();
+    });
+    if (of_vectors != 0 && of_vectors != std::ssize(file.parts)) // their parts are checked apart
         file.keep_layers(arguments.limits.of_layers(), execution);
     for (std::string& warning : file.warnings)
         warning = with_options(std::move(warning));
@@ -277,7 +277,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
                               .rounding = file.rounding,
                               .tolerance_mm = arguments.tolerance,
                               .strategy = strategy};
-        const VectorVerification found = verify_vectors(vectors.parts, options, execution);
+        const VectorVerification found = verify_vectors(vectors, options, execution);
         ok = ok && found.ok();
         object["vectors"] = vectors_json(strategy.has_value(), found);
         const auto disagree = [](const VectorVerification& one) {
@@ -287,7 +287,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         if (cut_is_assumed && disagree(found))
             hint = cut_hint(vectors, [&](const LayerFile& moved, PlaneRule moved_rule) {
                 options.rule = moved_rule;
-                return !disagree(verify_vectors(moved.parts, options, execution));
+                return !disagree(verify_vectors(moved, options, execution));
             });
         if (!hint.empty())
             object["vectors"]["hint"] = hint;

@@ -384,7 +384,7 @@ std::pair<py::dict, py::list> vectors_verified(const py::object& source, const P
         if (!at.empty())
             options.rule = place_cuts(file, slice_at_named(at));
         warnings = std::move(file.warnings);
-        return verify_vectors(file.parts, options, execution);
+        return verify_vectors(file, options, execution);
     });
     py::dict fields;
     fields["ok"] = found.ok();

@@ -5,6 +5,7 @@
 #include "scan/hatch.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -12,37 +13,57 @@
 namespace lamella {
 namespace {
 
-double area_of(const LayerPart& part) {
-    double area = 0;
-    for (const Layer& layer : part.layers)
-        area += measure(layer).area_mm2;
-    return area;
-}
-
-/// Compares contours of one part by number or, since some files do not number them, by area.
-bool lies_outside(const LayerPart& part, const LayerPart& other) {
-    return part.exposure->contour != other.exposure->contour
-               ? part.exposure->contour < other.exposure->contour
-               : area_of(part) > area_of(other);
+/// Returns the area within the contours of each part.
+std::vector<double> areas_of(const LayerFile& file, Executor& executor) {
+    std::vector<std::vector<double>> of_planes(file.planes().size());
+    executor.for_chunks(of_planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        for (const Layer& polylines : file.plane(i).polylines)
+            of_planes[i].push_back(measure(polylines).area_mm2);
+    });
+    executor.check_cancelled();
+    std::vector<double> areas(file.parts.size());
+    for (const std::vector<double>& of_plane : of_planes)
+        for (std::size_t part = 0; part < areas.size(); ++part)
+            areas[part] += of_plane[part];
+    return areas;
 }
 
 } // namespace
 
-std::vector<ExposureGroup> groups_of(std::span<const LayerPart> parts, bool all_together) {
+std::vector<ExposureGroup> groups_of(const LayerFile& file, bool all_together, Executor& executor) {
+    std::vector<double> areas;
+    // Compares contours of one part by number or, since some files do not number them, by area.
+    const auto lies_outside = [&](std::size_t part, std::size_t other) {
+        const std::uint32_t numbers[2] = {file.parts[part].exposure->contour,
+                                          file.parts[other].exposure->contour};
+        if (numbers[0] != numbers[1])
+            return numbers[0] < numbers[1];
+        if (areas.empty())
+            areas = areas_of(file, executor);
+        return areas[part] > areas[other];
+    };
     std::map<std::string, ExposureGroup> groups;
-    for (const LayerPart& part : parts) {
-        if (!part.exposure)
+    for (std::size_t i = 0; i < file.parts.size(); ++i) {
+        const std::optional<Exposure>& exposure = file.parts[i].exposure;
+        if (!exposure)
             continue;
-        ExposureGroup& group = groups[all_together ? std::string() : part.exposure->part];
-        group.exposures.push_back(&part);
-        if (part.exposure->kind == VectorKind::contour &&
-            (group.outermost == nullptr || lies_outside(part, *group.outermost)))
-            group.outermost = &part;
+        ExposureGroup& group = groups[all_together ? std::string() : exposure->part];
+        group.exposures.push_back(i);
+        if (exposure->kind == VectorKind::contour && (!group.outermost || lies_outside(i, *group.outermost)))
+            group.outermost = i;
     }
     std::vector<ExposureGroup> result;
     for (auto& [name, group] : groups)
         result.push_back(std::move(group));
     return result;
+}
+
+PlaneGroup on_plane(const ExposureGroup& group, const LayerFile& file, const ScanVectors& vectors) {
+    PlaneGroup exposures;
+    for (const std::size_t i : group.exposures)
+        exposures.push_back({*file.parts[i].exposure, vectors.polylines[i], vectors.hatches[i].span(),
+                             i == group.outermost});
+    return exposures;
 }
 
 const ContourRule& contours_of(const ScanStrategy& strategy, ScanRegion region) noexcept {

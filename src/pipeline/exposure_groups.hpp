@@ -6,6 +6,10 @@
 #include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy.hpp"
 
+#include "core/executor.hpp"
+
+#include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,13 +17,29 @@ namespace lamella {
 
 /// Exposures whose vectors fill the same material.
 struct ExposureGroup {
-    std::vector<const LayerPart*> exposures;
-    const LayerPart* outermost = nullptr; ///< of its contours
+    std::vector<std::size_t> exposures;   ///< indices of parts of the file
+    std::optional<std::size_t> outermost; ///< of its contours
 };
 
 /// Returns the exposures of each part, or a single group of all parts. Parts of the file that are not scan
-/// vectors are left out.
-[[nodiscard]] std::vector<ExposureGroup> groups_of(std::span<const LayerPart> parts, bool all_together);
+/// vectors are left out. Parses the layers of a stream only if contours of a part are not numbered.
+[[nodiscard]] std::vector<ExposureGroup> groups_of(const LayerFile& file, bool all_together,
+                                                   Executor& executor);
+
+/// The vectors of an exposure on a plane.
+struct PlaneExposure {
+    const Exposure& exposure;
+    const Layer& polylines;
+    std::span<const Point2> hatches;
+    bool outermost = false; ///< of its group
+};
+
+/// The vectors of a group on a plane; at least one exposure.
+using PlaneGroup = std::vector<PlaneExposure>;
+
+/// `vectors` are those of the plane of the file; the result refers to them.
+[[nodiscard]] PlaneGroup on_plane(const ExposureGroup& group, const LayerFile& file,
+                                  const ScanVectors& vectors);
 
 [[nodiscard]] const ContourRule& contours_of(const ScanStrategy& strategy, ScanRegion region) noexcept;
 [[nodiscard]] const HatchRule& hatch_of(const ScanStrategy& strategy, ScanRegion region) noexcept;

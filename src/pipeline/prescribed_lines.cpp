@@ -4,6 +4,7 @@
 #include "scan/hatch.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -12,32 +13,33 @@ namespace lamella {
 namespace {
 
 struct HatchLine {
-    const Point2* ends = nullptr;
+    std::array<Point2, 2> ends = {};
     const HatchRule* rule = nullptr;
     std::uint64_t layer = 0;
 
-    [[nodiscard]] double length() const noexcept { return ends == nullptr ? 0 : distance(ends[0], ends[1]); }
+    [[nodiscard]] double length() const noexcept { return distance(ends[0], ends[1]); }
 };
 
 /// Returns the longest line for each plane and rule with lines. Begins with the lowest plane and stops when
 /// there are enough lines.
-std::vector<HatchLine> longest_lines(std::span<const ExposureGroup> groups, const ScanStrategy& strategy,
-                                     std::size_t planes) {
+std::vector<HatchLine> longest_lines(const LayerFile& file, std::span<const ExposureGroup> groups,
+                                     const ScanStrategy& strategy) {
     constexpr std::size_t enough = 32;
     std::vector<HatchLine> lines;
-    for (std::size_t plane = 0; plane < planes && lines.size() < enough; ++plane) {
+    for (std::size_t plane = 0; plane < file.planes().size() && lines.size() < enough; ++plane) {
         std::map<const HatchRule*, HatchLine> longest;
+        const ScanVectors vectors = file.plane(plane);
         for (const ExposureGroup& group : groups)
-            for (const LayerPart* const part : group.exposures) {
-                const std::span<const Point2> hatches = part->hatches_of(plane);
-                const HatchRule& rule = hatch_of(strategy, part->exposure->region);
-                for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
-                    if (const HatchLine line{&hatches[i], &rule, part->layers[plane].index};
+            for (const PlaneExposure& part : on_plane(group, file, vectors)) {
+                const HatchRule& rule = hatch_of(strategy, part.exposure.region);
+                for (std::size_t i = 0; i + 1 < part.hatches.size(); i += 2)
+                    if (const HatchLine line{
+                            {part.hatches[i], part.hatches[i + 1]}, &rule, part.polylines.index};
                         line.length() > longest[&rule].length())
                         longest[&rule] = line;
             }
         for (const auto& of_rule : longest)
-            if (of_rule.second.ends != nullptr)
+            if (of_rule.second.rule != nullptr)
                 lines.push_back(of_rule.second);
     }
     return lines;
@@ -59,9 +61,9 @@ bool PrescribedLines::have(const Point2& a, const Point2& b) const {
     });
 }
 
-std::uint64_t layers_below(std::span<const ExposureGroup> groups, const ScanStrategy& strategy,
-                           std::size_t planes, double tolerance, const Executor& executor) {
-    const std::vector<HatchLine> lines = longest_lines(groups, strategy, planes);
+std::uint64_t layers_below(const LayerFile& file, std::span<const ExposureGroup> groups,
+                           const ScanStrategy& strategy, double tolerance, const Executor& executor) {
+    const std::vector<HatchLine> lines = longest_lines(file, groups, strategy);
     constexpr std::uint64_t most = 1 << 17;
     std::uint64_t best = 0;
     std::ptrdiff_t most_fit = 0;

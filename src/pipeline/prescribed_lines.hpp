@@ -34,7 +34,8 @@ class PrescribedLines {
 
 /// Returns the number of layers of the plan below the first layer of the file. It is the number for which the
 /// most lines of the lowest planes are at their expected positions.
-[[nodiscard]] std::uint64_t layers_below(std::span<const ExposureGroup> groups, const ScanStrategy& strategy,
-                                         std::size_t planes, double tolerance, const Executor& executor);
+[[nodiscard]] std::uint64_t layers_below(const LayerFile& file, std::span<const ExposureGroup> groups,
+                                         const ScanStrategy& strategy, double tolerance,
+                                         const Executor& executor);
 
 } // namespace lamella

@@ -70,7 +70,7 @@ Layer moved_inwards(const Layer& section, double depth, const OffsetCorners& cor
                       : offset(section, -depth, {.corners = corners});
 }
 
-void check_cover(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,
+void check_cover(const PlaneGroup& group, const MaterialBounds& bounds,
                  const ScanStrategy& strategy, double tolerance, PlaneFindings& found) {
     Slack slack;
     double shallow = std::numeric_limits<double>::infinity();
@@ -83,7 +83,7 @@ void check_cover(const ExposureGroup& group, std::size_t plane, const MaterialBo
         deep = std::max(deep, depth);
     };
     // Files may list only regions that are not empty, and skins may cover all of the core.
-    if (group.exposures.front()->exposure->region == ScanRegion::support) {
+    if (group.front().exposure.region == ScanRegion::support) {
         expect(ScanRegion::support);
     } else {
         expect(ScanRegion::core);
@@ -95,16 +95,16 @@ void check_cover(const ExposureGroup& group, std::size_t plane, const MaterialBo
     double covered = 0;
     double around_skins = 0; // mm; skins overlap adjacent regions
     double over_others = 0;
-    for (const LayerPart* const part : group.exposures) {
-        const Exposure& exposure = *part->exposure;
+    for (const PlaneExposure& part : group) {
+        const Exposure& exposure = part.exposure;
         if (exposure.kind != VectorKind::hatch)
             continue;
         expect(exposure.region);
         const HatchRule& rule = hatch_of(strategy, exposure.region);
-        const double area = length_of(part->hatches_of(plane)) * rule.distance;
+        const double area = length_of(part.hatches) * rule.distance;
         covered += area;
         if (exposure.region == ScanRegion::upskin || exposure.region == ScanRegion::downskin) {
-            const double around = length_around(part->hatches_of(plane), rule.distance);
+            const double around = length_around(part.hatches, rule.distance);
             around_skins += around;
             over_others += around * (exposure.region == ScanRegion::upskin ? strategy.upskin.overlap
                                                                            : strategy.downskin.overlap);
@@ -131,15 +131,15 @@ void check_cover(const ExposureGroup& group, std::size_t plane, const MaterialBo
     least -= slack.less(edges) + moved_edges;
     const double greatest = largest.area_mm2 + slack.more(edges) + over_others + moved_edges;
     if (covered < least || covered > greatest)
-        found.miscovered.add(group.exposures.front()->layers[plane],
+        found.miscovered.add(group.front().polylines,
                              section->points.empty() ? Point2{} : section->points[0]);
     found.covered_mm2 += covered;
     found.filled_mm2 += to_fill.area_mm2;
 }
 
-void check_reach(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,
+void check_reach(const PlaneGroup& group, const MaterialBounds& bounds,
                  const ScanStrategy& strategy, double tolerance, PlaneFindings& found) {
-    const ScanRegion region = group.exposures.front()->exposure->region;
+    const ScanRegion region = group.front().exposure.region;
     const ContourRule& contours = contours_of(strategy, region);
     const HatchRule& hatch = region == ScanRegion::support ? strategy.support.hatch : strategy.hatch;
     std::vector<Stroke> strokes;
@@ -148,12 +148,12 @@ void check_reach(const ExposureGroup& group, std::size_t plane, const MaterialBo
     for (const Layer& section : bounds.sections) {
         const Layer positions = narrow_points(moved_inwards(section, 0), bounds.depth, contours, hatch);
         if (positions.rings > 0 && strokes.empty())
-            for (const LayerPart* const part : group.exposures)
-                add_strokes(part->layers[plane], part->hatches_of(plane),
+            for (const PlaneExposure& part : group)
+                add_strokes(part.polylines, part.hatches,
                             2 * tolerance +
-                                (part->exposure->kind == VectorKind::hatch
-                                     ? hatch_of(strategy, part->exposure->region).distance
-                                     : contour_reach(contours_of(strategy, part->exposure->region))),
+                                (part.exposure.kind == VectorKind::hatch
+                                     ? hatch_of(strategy, part.exposure.region).distance
+                                     : contour_reach(contours_of(strategy, part.exposure.region))),
                             strokes);
         if (const double left = unreached_area(positions, strokes); left < least) {
             least = left;
@@ -161,7 +161,7 @@ void check_reach(const ExposureGroup& group, std::size_t plane, const MaterialBo
         }
     }
     if (least > strategy.accepted_mm2)
-        found.unreached.add(group.exposures.front()->layers[plane], at);
+        found.unreached.add(group.front().polylines, at);
     found.unreached_mm2 += least;
 }
 

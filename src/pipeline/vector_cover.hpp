@@ -9,8 +9,6 @@
 #include "pipeline/exposure_groups.hpp"
 #include "pipeline/vector_findings.hpp"
 
-#include <cstddef>
-
 namespace lamella {
 
 /// Returns the material at this distance from its edges. Overlapping bodies are united even if the depth is
@@ -19,11 +17,11 @@ namespace lamella {
 
 /// Compares the area that hatch lines cover with the area that they must fill. `tolerance` is that of edges
 /// of the material.
-void check_cover(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,
+void check_cover(const PlaneGroup& group, const MaterialBounds& bounds,
                  const ScanStrategy& strategy, double tolerance, PlaneFindings& found);
 
 /// Measures the material of each possible section that no vector reaches, and keeps the smallest result.
-void check_reach(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,
+void check_reach(const PlaneGroup& group, const MaterialBounds& bounds,
                  const ScanStrategy& strategy, double tolerance, PlaneFindings& found);
 
 } // namespace lamella

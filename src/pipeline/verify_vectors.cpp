@@ -38,52 +38,52 @@ class VectorCheck {
         : options_(options), rounding_(rounding), tolerance_(rounding + options.steps.simplify_mm),
           before_(before) {}
 
-    void check(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,
+    void check(const PlaneGroup& group, const MaterialBounds& bounds,
                PlaneFindings& found) const {
         std::uint64_t all = 0;
-        for (const LayerPart* const part : group.exposures) {
-            const Layer& vectors = part->layers[plane];
-            if (part->exposure->kind == VectorKind::contour)
-                found.add(of_one_exposure(*part->exposure, vectors));
+        for (const PlaneExposure& part : group) {
+            const Layer& vectors = part.polylines;
+            if (part.exposure.kind == VectorKind::contour)
+                found.add(of_one_exposure(part.exposure, vectors));
             std::uint64_t of_contours = 0;
             for (std::size_t i = 0; i < vectors.contours(); ++i)
                 of_contours += vectors.contour(i).size() - (vectors.closed(i) ? 0 : 1);
             found.contour_vectors += of_contours;
-            const std::span<const Point2> hatches = part->hatches_of(plane);
+            const std::span<const Point2> hatches = part.hatches;
             found.hatch_vectors += hatches.size() / 2;
             all += of_contours + hatches.size() / 2;
             if (options_.strategy)
-                check_lines(*part->exposure, vectors, hatches, found);
+                check_lines(part.exposure, vectors, hatches, found);
         }
         if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0) {
             found.unbounded += all;
             return;
         }
-        find_outside(group, plane, bounds, found);
+        find_outside(group, bounds, found);
         if (options_.strategy) {
-            check_cover(group, plane, bounds, *options_.strategy, tolerance_, found);
-            check_reach(group, plane, bounds, *options_.strategy, tolerance_, found);
+            check_cover(group, bounds, *options_.strategy, tolerance_, found);
+            check_reach(group, bounds, *options_.strategy, tolerance_, found);
         }
     }
 
     /// Checks that each contour that the strategy prescribes for a part is present and encloses the area at
     /// its depth.
-    void check_rows(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,
+    void check_rows(const PlaneGroup& group, const MaterialBounds& bounds,
                     PlaneFindings& found) const {
         if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0)
             return;
-        const ContourRule& rule = contours_of(*options_.strategy, group.exposures.front()->exposure->region);
-        const Layer& header = group.exposures.front()->layers[plane];
+        const ContourRule& rule = contours_of(*options_.strategy, group.front().exposure.region);
+        const Layer& header = group.front().polylines;
         for (std::uint32_t number = 1; number <= rule.count; ++number) {
             LayerMeasure row;
             Point2 at;
-            for (const LayerPart* const part : group.exposures) {
-                const Exposure& exposure = *part->exposure;
+            for (const PlaneExposure& part : group) {
+                const Exposure& exposure = part.exposure;
                 if (exposure.kind != VectorKind::contour || std::max(1U, exposure.contour) != number)
                     continue;
-                row.add(measure(part->layers[plane]));
-                if (!part->layers[plane].points.empty())
-                    at = part->layers[plane].points[0];
+                row.add(measure(part.polylines));
+                if (!part.polylines.points.empty())
+                    at = part.polylines.points[0];
             }
             double least = std::numeric_limits<double>::infinity();
             double greatest = -least;
@@ -148,7 +148,7 @@ class VectorCheck {
         }
     }
 
-    void find_outside(const ExposureGroup& group, std::size_t plane, const MaterialBounds& bounds,
+    void find_outside(const PlaneGroup& group, const MaterialBounds& bounds,
                       PlaneFindings& found) const {
         // The material is grown a little, so that points on an edge are inside.
         Layer material = bounds.sections.front();
@@ -156,21 +156,21 @@ class VectorCheck {
             material = combine(material, bounds.sections[i], BooleanOperation::unite);
         const double grown = 2 * tolerance_;
         const EdgeTree edges(offset(material, grown));
-        for (const LayerPart* const part : group.exposures) {
+        for (const PlaneExposure& part : group) {
             const double depth =
-                options_.strategy ? depth_of(*part->exposure, *options_.strategy) - bounds.depth : 0;
+                options_.strategy ? depth_of(part.exposure, *options_.strategy) - bounds.depth : 0;
             // Lines of a contour run along the middle of walls that are too thin for the contour. Lines of
             // the innermost contour also run along the middle of areas that are too thin for a hatch.
-            const bool in_walls = part->exposure->kind == VectorKind::contour;
+            const bool in_walls = part.exposure.kind == VectorKind::contour;
             if (in_walls && options_.strategy)
                 find_in_thick(
                     edges,
-                    std::max(0.0, deepest_line(*part->exposure, *options_.strategy) - bounds.depth) + grown +
+                    std::max(0.0, deepest_line(part.exposure, *options_.strategy) - bounds.depth) + grown +
                         tolerance_,
-                    part->layers[plane], part->hatches_of(plane), found.misplaced);
-            if (part == group.outermost && !options_.mesh)
+                    part.polylines, part.hatches, found.misplaced);
+            if (part.outermost && !options_.mesh)
                 continue;
-            const Layer& vectors = part->layers[plane];
+            const Layer& vectors = part.polylines;
             const double nearest = std::max(0.0, depth) + grown - tolerance_;
             Followed followed(edges, nearest, vectors, found.outside);
             for (std::size_t i = 0; i < vectors.contours(); ++i) {
@@ -181,7 +181,7 @@ class VectorCheck {
                     followed.mark(contour.back(), contour.front());
             }
             Followed lines(edges, in_walls ? grown - tolerance_ : nearest, vectors, found.outside);
-            const std::span<const Point2> hatches = part->hatches_of(plane);
+            const std::span<const Point2> hatches = part.hatches;
             for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
                 lines.mark(hatches[i], hatches[i + 1]);
         }
@@ -284,15 +284,17 @@ void append_row(std::uint32_t number, const ContourRow& row, std::vector<std::st
 
 } // namespace
 
-VectorVerification verify_vectors(std::span<const LayerPart> parts, const VerifyOptions& options,
+VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& options,
                                   const Execution& execution) {
-    for (const LayerPart& part : parts)
+    check(file);
+    for (const LayerPart& part : file.parts)
         for (const Layer& layer : part.layers)
             check(layer);
-    const std::vector<ExposureGroup> groups = groups_of(parts, options.mesh.has_value());
+    Executor executor(execution);
+    const std::vector<ExposureGroup> groups = groups_of(file, options.mesh.has_value(), executor);
     // Requirements on contours apply to each part. A mesh does not distinguish parts.
     const std::vector<ExposureGroup> of_parts =
-        options.strategy ? groups_of(parts, false) : std::vector<ExposureGroup>();
+        options.strategy ? groups_of(file, false, executor) : std::vector<ExposureGroup>();
     VectorVerification result;
     const auto check_number = [&] {
         result.none = options.strategy && result.contour_vectors + result.hatch_vectors == 0;
@@ -303,7 +305,7 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
         check_number();
         return result;
     }
-    const LayerStack& planes = groups.front().exposures.front()->layers;
+    const LayerStack& planes = file.planes();
     result.layers = planes.size();
     std::vector<std::vector<Layer>> sections;
     if (options.mesh)
@@ -313,32 +315,37 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
             });
 
     double largest = 0;
+    if (file.stream)
+        largest = std::max(file.stream->largest_coordinate, file.stream->largest_hatch_coordinate);
     for (const ExposureGroup& group : groups)
-        for (const LayerPart* const part : group.exposures)
-            for (std::size_t i = 0; i < part->layers.size(); ++i)
-                largest = std::max({largest, largest_coordinate(part->layers[i].points.span()),
-                                    largest_coordinate(part->hatches_of(i))});
+        for (const std::size_t part : group.exposures)
+            for (std::size_t i = 0; i < file.parts[part].layers.size(); ++i)
+                largest = std::max({largest, largest_coordinate(file.parts[part].layers[i].points.span()),
+                                    largest_coordinate(file.parts[part].hatches_of(i))});
     // Tolerance of ends of lines and points of contours, each moved along both axes, and of arithmetic.
     const double rounding = std::sqrt(2.0) * options.granted().step_at(largest) + 0x1p-34 * largest;
 
-    Executor executor(execution);
-    const VectorCheck vectors(
+    const VectorCheck checked(
         options, rounding,
-        options.strategy ? layers_below(groups, *options.strategy, planes.size(), rounding, executor) : 0);
+        options.strategy ? layers_below(file, groups, *options.strategy, rounding, executor) : 0);
     std::vector<PlaneFindings> checks(planes.size());
     ProgressMeter progress(execution, Stage::polygon, planes.size());
     executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+        const ScanVectors vectors = file.plane(i);
         const auto bounds_of = [&](const ExposureGroup& group, bool by_mesh) {
             MaterialBounds bounds;
             if (by_mesh)
                 bounds.sections = sections[i];
-            else if (group.outermost != nullptr)
-                bounds = {{group.outermost->layers[i]},
-                          options.strategy ? depth_of(*group.outermost->exposure, *options.strategy) : 0};
+            else if (group.outermost)
+                bounds = {
+                    {vectors.polylines[*group.outermost]},
+                    options.strategy ? depth_of(*file.parts[*group.outermost].exposure, *options.strategy)
+                                     : 0};
             return bounds;
         };
         for (const ExposureGroup& group : groups)
-            vectors.check(group, i, bounds_of(group, options.mesh.has_value()), checks[i]);
+            checked.check(on_plane(group, file, vectors), bounds_of(group, options.mesh.has_value()),
+                          checks[i]);
         if (options.mesh) {
             const InvertedRings inverted =
                 inverted_rings(sections[i].front(), options.granted(), InversionSearch::full);
@@ -347,7 +354,8 @@ VectorVerification verify_vectors(std::span<const LayerPart> parts, const Verify
             checks[i].inverted_mm3 = inverted.area_mm2 * planes[i].thickness();
         }
         for (const ExposureGroup& group : of_parts)
-            vectors.check_rows(group, i, bounds_of(group, options.mesh && of_parts.size() == 1), checks[i]);
+            checked.check_rows(on_plane(group, file, vectors),
+                               bounds_of(group, options.mesh && of_parts.size() == 1), checks[i]);
         progress.add(1);
     });
     progress.finish();

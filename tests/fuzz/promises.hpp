@@ -54,7 +54,7 @@ inline void require_sound(const LayerFile& file) {
     for (const Layer& layer : layers)
         require(in_normal_form(layer) || file.parts.size() == 1);
     static_cast<void>(verify(layers, {}, {.threads = 1}));
-    static_cast<void>(verify_vectors(file.parts, {}, {.threads = 1}));
+    static_cast<void>(verify_vectors(file, {}, {.threads = 1}));
 }
 
 } // namespace lamella::fuzz

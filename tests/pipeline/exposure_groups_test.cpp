@@ -16,9 +16,9 @@ TEST_F(VerifyVectors, TakesContoursThatFilesDoNotNumber) {
     EXPECT_TRUE(with_nothing().ok());
     EXPECT_TRUE(with_mesh().ok());
     both.layers[3] = layer_of({rectangle(1, 1, 9, 9), rectangle(2, 2, 8, 8)});
-    EXPECT_EQ(verify_vectors(std::vector{both}).misoriented, 1U);
+    EXPECT_EQ(verify_vectors(file_of({both})).misoriented, 1U);
     both.exposure->contour = 0;
-    EXPECT_EQ(verify_vectors(std::vector{both}).misoriented, 0U);
+    EXPECT_EQ(verify_vectors(file_of({both})).misoriented, 0U);
 }
 
 TEST_F(VerifyVectors, DistinguishesParts) {

@@ -54,8 +54,10 @@ TEST(Verify, NamesTheContourOfACoordinateThatIsNoLength) {
                            [&] { static_cast<void>(verify(layers)); });
         const LayerPart part{
             .label = "a", .layers = layers, .exposure = Exposure{.part = "a", .parameters = {}}};
+        LayerFile file;
+        file.parts.push_back(part);
         test::expect_error(ErrorKind::usage, {"layer 7, contour 1"},
-                           [&] { static_cast<void>(verify_vectors(std::span(&part, 1))); });
+                           [&] { static_cast<void>(verify_vectors(file)); });
         Layer high = at(8, layer_of({rectangle(0, 0, 9, 9)}));
         high.top = bad;
         test::expect_error(ErrorKind::usage, {"layer 8", "heights"},

@@ -22,6 +22,12 @@ using test::box_mesh;
 using test::layer_of;
 using test::rectangle;
 
+inline LayerFile file_of(std::vector<LayerPart> parts) {
+    LayerFile file;
+    file.parts = std::move(parts);
+    return file;
+}
+
 /// The vectors of layers, as a file has them.
 inline std::vector<LayerPart> scanned(const LayerStack& layers, const ScanStrategy& strategy,
                                       const std::string& part) {
@@ -54,11 +60,11 @@ class VerifyVectors : public testing::Test {
 
     /// With the mesh and the strategy, with one of them, with none.
     VectorVerification with_all() const {
-        return verify_vectors(parts_, {.mesh = mesh_, .strategy = strategy_});
+        return verify_vectors(file_of(parts_), {.mesh = mesh_, .strategy = strategy_});
     }
-    VectorVerification with_strategy() const { return verify_vectors(parts_, {.strategy = strategy_}); }
-    VectorVerification with_mesh() const { return verify_vectors(parts_, {.mesh = mesh_}); }
-    VectorVerification with_nothing() const { return verify_vectors(parts_); }
+    VectorVerification with_strategy() const { return verify_vectors(file_of(parts_), {.strategy = strategy_}); }
+    VectorVerification with_mesh() const { return verify_vectors(file_of(parts_), {.mesh = mesh_}); }
+    VectorVerification with_nothing() const { return verify_vectors(file_of(parts_)); }
 
     LayerPart& part(const std::string& name) {
         for (LayerPart& part : parts_)

@@ -1,8 +1,11 @@
+#include "lamella/write/layer_writer.hpp"
+
 #include "verify_vectors_fixture.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,10 +35,47 @@ TEST_F(VerifyVectors, FindsNothingInWhatScanMakes) {
 
 TEST_F(VerifyVectors, IsTheSameForAnyNumberOfThreads) {
     change_hatches("core hatch", 5, [](std::vector<Point2>& points) { points[0].x += 100; });
-    const VectorVerification one = verify_vectors(parts_, {.mesh = mesh_}, {.threads = 1});
-    const VectorVerification four = verify_vectors(parts_, {.mesh = mesh_}, {.threads = 4});
+    const VectorVerification one = verify_vectors(file_of(parts_), {.mesh = mesh_}, {.threads = 1});
+    const VectorVerification four = verify_vectors(file_of(parts_), {.mesh = mesh_}, {.threads = 4});
     EXPECT_EQ(one.findings, four.findings);
     EXPECT_EQ(one.outside, four.outside);
+}
+
+TEST_F(VerifyVectors, FindsTheSameIfLayersAreNotInMemory) {
+    change_hatches("core hatch", 5, [](std::vector<Point2>& points) { points[0].x += 100; });
+    for (const bool numbered : {true, false}) {
+        LayerFileInfo info{.layers = plan_.layers.size(), .parts = {}};
+        std::vector<ScanVectors> planes(plan_.layers.size());
+        for (LayerPart& part : parts_) {
+            if (!numbered)
+                part.exposure->contour = 0;
+            info.parts.push_back({part.label, part_box(part.layers, part.hatches), part.exposure});
+            info.box.add(info.parts.back().box);
+            for (std::size_t i = 0; i < planes.size(); ++i)
+                planes[i].add(part.layers[i], part.hatches[i]);
+        }
+        std::string text;
+        info.memory = &text;
+        static_cast<void>(write_layers("a.ovf", layer_format("ovf", {}), planes, info));
+        const auto bytes = std::as_bytes(std::span(text));
+        const LayerFile held = read_layers(bytes, "a.ovf");
+        for (const bool by_strategy : {true, false}) {
+            VerifyOptions options{.mesh = mesh_, .rounding = held.rounding};
+            if (by_strategy)
+                options.strategy = strategy_;
+            const VectorVerification expected = verify_vectors(held, options, {.threads = 1});
+            EXPECT_EQ(expected.outside, 1U);
+            for (const unsigned threads : {1U, 2U, 7U}) {
+                const LayerFile file = read_layers(bytes, "a.ovf", {.layers = LayersKept::none});
+                ASSERT_TRUE(file.stream);
+                const VectorVerification found = verify_vectors(file, options, {.threads = threads});
+                EXPECT_EQ(found.findings, expected.findings);
+                EXPECT_EQ(found.hatch_vectors, expected.hatch_vectors);
+                EXPECT_EQ(found.unreached_mm2, expected.unreached_mm2);
+                EXPECT_EQ(found.cover, expected.cover);
+            }
+        }
+    }
 }
 
 TEST_F(VerifyVectors, FindsVectorsThatLeaveTheMaterial) {
@@ -62,7 +102,7 @@ TEST_F(VerifyVectors, FindsVectorsWithinHoles) {
     const Mesh hollow =
         TriangleSoup(test::joined({test::box_triangles({0, 0, 0}, {20, 10, 1}),
                                    test::flipped(test::box_triangles({5, 3, 0}, {8, 6, 1}))}));
-    EXPECT_GT(verify_vectors(parts_, {.mesh = hollow}).outside, 100U);
+    EXPECT_GT(verify_vectors(file_of(parts_), {.mesh = hollow}).outside, 100U);
 }
 
 TEST_F(VerifyVectors, HoldsDistancesAgainstTheStrategy) {
@@ -192,7 +232,7 @@ TEST_F(VerifyVectors, GrantsTheRoundingOfTheFormat) {
         }
     EXPECT_FALSE(with_all().ok());
     EXPECT_TRUE(
-        verify_vectors(parts_, {.mesh = mesh_, .rounding = {.step_mm = 0.01}, .strategy = strategy_}).ok());
+        verify_vectors(file_of(parts_), {.mesh = mesh_, .rounding = {.step_mm = 0.01}, .strategy = strategy_}).ok());
 }
 
 } // namespace

@@ -198,12 +198,11 @@ struct VectorVerification {
     }
 };
 
-/// Checks the parts of a file that have an exposure, and ignores the others. All checked parts must have the
-/// same planes. Parallel over layers, with the same result for any number of threads. Throws the errors of
-/// `slice` and `offset`, and those of `verify` for a coordinate that is not finite. O(n log n) for n points
+/// Checks the parts of a file that have an exposure, and ignores the others. If the layers are not in memory,
+/// all parts must have one. Parallel over layers, with the same result for any number of threads. Throws the errors of
+/// `slice`, `offset` and `check(const LayerFile&)`, and those of `verify` for a coordinate that is not finite. O(n log n) for n points
 /// and vectors of a layer, plus the cost of slicing and offsets.
-[[nodiscard]] VectorVerification verify_vectors(std::span<const LayerPart> parts,
-                                                const VerifyOptions& options = {},
+[[nodiscard]] VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& options = {},
                                                 const Execution& execution = {});
 
 } // namespace lamella
