@@ -80,8 +80,6 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
                                              const ExposureOfPart& exposure_of, ReadLimits& limits,
                                              const Execution& execution) {
     const CommonLayerHeader header = read_common_layer_header(bytes, name, limits);
-    if (!header.binary)
-        limits.keep_text_in_memory(bytes.size());
     CommonLayerContent content{
         .file = {.path = name, .format = header.binary ? "cli" : "cli-ascii", .units_mm = header.units_mm},
         .layers = {},
@@ -107,7 +105,7 @@ CommonLayerContent read_common_layer_content(std::string_view bytes, const std::
     const std::vector<CommonLayerPart> parts = geometry.number_parts(header, file);
     content.layers = std::move(geometry.layers());
     if (!limits.in_memory())
-        content.parse = [bytes, &name, header, beams = std::move(geometry.beams()),
+        content.parse = [bytes, name, header, beams = std::move(geometry.beams()),
                          parts](std::size_t begin, ReadLimits& counted) {
             const auto later =
                 std::upper_bound(beams.begin(), beams.end(), begin,
@@ -186,6 +184,9 @@ LayerFile layers_of(CommonLayerContent content, std::span<const double> bottoms,
 
 LayerFile read_common_layer(std::string_view bytes, const std::string& name, ReadLimits& limits,
                             const Execution& execution) {
+    ReadLimits of_header(limits);
+    if (!read_common_layer_header(bytes, name, of_header).binary)
+        limits.keep_text_in_memory(bytes.size());
     CommonLayerContent content = read_common_layer_content(
         bytes, name, [](std::string_view label, VectorKind) { return labelled_exposure(label); }, limits,
         execution);

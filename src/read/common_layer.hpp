@@ -31,6 +31,7 @@ struct CommonLayerContent {
 /// hatch line, otherwise hatch.
 using ExposureOfPart = std::function<std::optional<Exposure>(std::string_view label, VectorKind held)>;
 
+/// `bytes` must outlive `parse`.
 [[nodiscard]] CommonLayerContent read_common_layer_content(std::string_view bytes, const std::string& name,
                                                            const ExposureOfPart& exposure_of,
                                                            ReadLimits& limits, const Execution& execution);

@@ -20,6 +20,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <memory>
 #include <optional>
 #include <set>
 #include <span>
@@ -288,7 +290,7 @@ LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
         const auto location = [&] {
             return std::string_view(file.path);
         };
-        for (const Layer& layer : file.parts.front().layers) {
+        for (const Layer& layer : file.planes()) {
             limits.make_room(all, 1, location);
             all.push_back({.z = layer.z, .bottom = layer.bottom, .top = layer.top});
         }
@@ -309,30 +311,86 @@ LayerStack planes_of(const std::vector<LayerFile>& files, ReadLimits& limits) {
     return all;
 }
 
-/// Gives a part the layers of another part, of `file`, on all planes; they are empty on planes that it does
-/// not have.
-void put_on_planes(LayerPart from, const LayerStack& planes, const std::string& file, LayerPart& to) {
+constexpr std::size_t no_position = std::numeric_limits<std::size_t>::max();
+
+/// Returns the position of the layer of a file on each plane; no_position on planes that it does not have.
+std::vector<std::size_t> positions_of(const LayerFile& file, const LayerStack& planes) {
+    const LayerStack& layers = file.planes();
+    std::vector<std::size_t> positions(planes.size(), no_position);
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < planes.size(); ++i)
+        if (next < layers.size() && same_height(layers[next].top, planes[i].top))
+            positions[i] = next++;
+    if (next != layers.size())
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: found layers at z = {} mm that are thinner than {} mm; they cannot be "
+                                "apart",
+                                file.path, layers[next].top, ilt_one_plane_mm));
+    return positions;
+}
+
+/// Gives a part the layers of another part on all planes; they are empty on planes that it does not have.
+void put_on_planes(LayerPart from, const LayerStack& planes, std::span<const std::size_t> positions,
+                   LayerPart& to) {
     to.layers = planes;
     if (!from.hatches.empty())
         to.hatches.resize(planes.size());
-    std::size_t next = 0;
     for (std::size_t i = 0; i < planes.size(); ++i) {
-        Layer& plane = to.layers[i];
-        if (next == from.layers.size() || !same_height(from.layers[next].top, plane.top))
+        if (positions[i] == no_position)
             continue;
-        Layer& layer = from.layers[next];
+        Layer& layer = from.layers[positions[i]];
+        Layer& plane = to.layers[i];
         plane.points = layer.points;
         plane.offsets = std::move(layer.offsets);
         plane.rings = layer.rings;
         if (!from.hatches.empty())
-            to.hatches[i] = std::move(from.hatches[next]);
-        ++next;
+            to.hatches[i] = std::move(from.hatches[positions[i]]);
     }
-    if (next != from.layers.size())
-        throw Error(ErrorKind::input,
-                    fmt::format("{}: found layers at z = {} mm that are thinner than {} mm; they cannot be "
-                                "apart",
-                                file, from.layers[next].top, ilt_one_plane_mm));
+}
+
+/// A file of the archive whose layers are not in memory.
+struct StreamedFile {
+    ByteSource source;
+    std::shared_ptr<const LayerStream> stream;
+    std::vector<std::size_t> positions;
+};
+
+/// Returns the streams of all files as one; the files have all parts of the archive, in order.
+LayerStream joined(std::vector<StreamedFile> files, const LayerStack& planes, const ReadLimits& limits) {
+    LayerStream all{.planes = planes, .contents = std::vector<PlaneContent>(planes.size())};
+    for (const StreamedFile& file : files) {
+        const LayerStream& stream = *file.stream;
+        all.boxes.insert(all.boxes.end(), stream.boxes.begin(), stream.boxes.end());
+        all.hatch_lines.insert(all.hatch_lines.end(), stream.hatch_lines.begin(), stream.hatch_lines.end());
+        all.largest_coordinate = std::max(all.largest_coordinate, stream.largest_coordinate);
+        all.largest_hatch_coordinate =
+            std::max(all.largest_hatch_coordinate, stream.largest_hatch_coordinate);
+        for (std::size_t i = 0; i < planes.size(); ++i)
+            if (const std::size_t position = file.positions[i]; position != no_position) {
+                const PlaneContent& content = stream.contents[position];
+                all.contents[i].contours = all.contents[i].contours || content.contours;
+                all.contents[i].hatch_lines += content.hatch_lines;
+            }
+    }
+    for (Box3& box : all.boxes)
+        if (!box.empty()) {
+            box.min.z = planes.front().bottom;
+            box.max.z = planes.back().top;
+        }
+    all.bytes = limits.bytes();
+    all.parse = [files = std::move(files)](std::size_t plane) {
+        ScanVectors vectors;
+        for (const StreamedFile& file : files) {
+            const std::size_t position = file.positions[plane];
+            if (position != no_position)
+                vectors.append(file.stream->parse(position));
+            else
+                for (std::size_t part = 0; part < file.stream->boxes.size(); ++part)
+                    vectors.add({}, {});
+        }
+        return vectors;
+    };
+    return all;
 }
 
 } // namespace
@@ -342,12 +400,12 @@ bool is_ilt(const ZipReader& zip) {
 }
 
 LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& execution) {
-    limits.keep_in_memory(); // all files are unpacked, and have planes in common
     const ByteSource list = unpacked_entry(zip, *zip.find(ilt_parameters), limits);
     std::vector<CommonLayerContent> contents;
     LayerFile result{.path = zip.name(), .format = "ilt", .warnings = zip.counted_warnings()};
     std::uint64_t bytes = 0;
     std::vector<std::string> sections; // of `contents`
+    std::vector<ByteSource> sources;   // likewise; layers that are parsed again refer to their bytes
     std::set<const ZipEntry*> known;
     CountedWarning unknown(
         "file has a name that says nothing of its vectors; they are taken for those of the core",
@@ -374,7 +432,8 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
             pulsed.note(at_line(section.line));
         if (section.has_speed != section.has_power)
             one_of_two.note(at_line(section.line));
-        const ByteSource source = unpacked_entry(zip, *entry, limits);
+        sources.push_back(unpacked_entry(zip, *entry, limits));
+        const ByteSource& source = sources.back();
         bytes += source.bytes.size();
         if (!is_common_layer(source.text()))
             throw Error(
@@ -388,6 +447,8 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
                 return exposure_of(section, label, held, unknown);
             },
             limits, execution));
+        if (limits.in_memory())
+            sources.back() = {};
         sections.push_back(section.name);
     }
     if (contents.empty())
@@ -410,7 +471,10 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
     for (const LayerFile& file : files)
         result.rounding.step_mm = std::min(result.rounding.step_mm, file.rounding.step_mm);
     const LayerStack planes = planes_of(files, limits);
-    for (LayerFile& file : files)
+    std::vector<StreamedFile> streamed;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        LayerFile& file = files[i];
+        std::vector<std::size_t> positions = positions_of(file, planes);
         for (LayerPart& part : file.parts) {
             std::string label = std::move(part.label);
             if (part.exposure && !labelled_exposure(label)) {
@@ -421,10 +485,20 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
             result.parts.push_back(
                 {.label = std::move(label), .layers = {}, .exposure = std::move(part.exposure)});
             check_part_planes(result, planes.size(), bytes);
+            if (file.stream)
+                continue;
             limits.add_bytes(planes.size() * (sizeof(Layer) + sizeof(PointArray) + of_empty_layer),
                              file.path);
-            put_on_planes(std::move(part), planes, file.path, result.parts.back());
+            put_on_planes(std::move(part), planes, positions, result.parts.back());
         }
+        if (file.stream) {
+            limits.add_bytes(planes.size() * (sizeof(PlaneContent) + sizeof(std::size_t)), file.path);
+            streamed.push_back({std::move(sources[i]), std::move(file.stream), std::move(positions)});
+        }
+    }
+    if (!streamed.empty())
+        result.stream =
+            std::make_shared<const LayerStream>(joined(std::move(streamed), planes, limits));
     return result;
 }
 

@@ -238,8 +238,13 @@ class NpzReader {
         std::vector<RawLayer> raw;
         limits_.make_room(raw, z.size(), [] { return std::string_view("array 'z'"); });
         raw.resize(z.size());
-        read_contours({points, offsets, closed, layer, part}, raw, executor);
-        read_hatches(raw);
+        for (RawLayer& empty : raw)
+            empty.begin = nothing;
+        const Contours all{points, offsets, closed, layer, part};
+        read_contours(all, raw, executor);
+        const std::optional<Hatches> lines = hatches();
+        if (lines)
+            read_hatches(*lines, all.size(), raw);
         constexpr std::uint64_t most_index = 9'000'000'000'000'000;
         std::vector<PlacedLayer> planes;
         planes.reserve(raw.size());
@@ -254,7 +259,7 @@ class NpzReader {
                 z.fail(fmt::format("z = {} behind z = {}", at, z.length(i - 1)), "layers must ascend");
             planes.push_back({&raw[i], index.whole(i, most_index), at, from, to});
         }
-        add_layers(file_, planes, limits_, executor);
+        add_layers(file_, planes, limits_, executor, layer_again(all, lines, file_.parts.size()));
         for (const Array* lengths : {&points, &z, &bottom, &top})
             if (lengths->is_single_precision())
                 file_.rounding.single_precision = true;
@@ -262,6 +267,9 @@ class NpzReader {
     }
 
   private:
+    /// RawLayer::begin of a layer without contents.
+    static constexpr std::size_t nothing = std::numeric_limits<std::size_t>::max();
+
     [[nodiscard]] Array array(const std::string& name) const {
         const ZipEntry* entry = zip_.find(name + ".npy");
         if (entry == nullptr)
@@ -292,16 +300,76 @@ class NpzReader {
         std::size_t end = 0; ///< number of the next contour
     };
 
-    /// The arrays that describe contours.
+    /// The arrays that describe contours, which share the memory of the archive.
     struct Contours {
-        const Array& points;
-        const Array& offsets;
-        const Array& closed;
-        const Array& layer;
-        const Array& part;
+        Array points;
+        Array offsets;
+        Array closed;
+        Array layer;
+        Array part;
 
-        [[nodiscard]] std::size_t size() const { return offsets.size() - 1; }
+        [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(offsets.size() - 1); }
+        [[nodiscard]] std::uint32_t part_of(std::uint64_t i, std::size_t parts) const {
+            return static_cast<std::uint32_t>(part.whole(i, parts - 1));
+        }
+
+        /// Adds contour i, which has the points from `begin` to `end`, to its layer.
+        void add(std::uint64_t i, std::uint64_t begin, std::uint64_t end, std::uint32_t of_part,
+                 RawLayer& into, ReadLimits& limits, DroppedContours& dropped) const {
+            const auto position = [&] {
+                return fmt::format("contour {}", i);
+            };
+            limits.make_room(into.points, end - begin, position);
+            for (std::uint64_t k = begin; k < end; ++k)
+                into.points.push_back({points.length(2 * k), points.length(2 * k + 1)});
+            into.end_contour(closed.whole(i, 1) != 0, of_part, limits, position, dropped);
+        }
     };
+
+    /// The arrays that describe hatch lines.
+    struct Hatches {
+        Array lines;
+        Array layer;
+        Array part;
+
+        /// Adds line i to its layer.
+        void add(std::uint64_t i, std::size_t parts, RawLayer& into, ReadLimits& limits) const {
+            const auto position = [&] {
+                return fmt::format("hatch line {}", i);
+            };
+            limits.make_room(into.hatches, 2, position);
+            for (std::uint64_t k = 4 * i; k < 4 * i + 4; k += 2)
+                into.hatches.push_back({lines.length(k), lines.length(k + 1)});
+            into.end_hatches(static_cast<std::uint32_t>(part.whole(i, parts - 1)), limits, position);
+        }
+    };
+
+    /// Returns a function that reads consecutive contours of one layer again, from the first one, or hatch
+    /// lines, which are numbered behind the contours.
+    static ParseLayer layer_again(Contours contours, std::optional<Hatches> hatches, std::size_t parts) {
+        return [contours = std::move(contours), hatches = std::move(hatches), parts](std::size_t begin,
+                                                                                     ReadLimits& limits) {
+            constexpr std::uint64_t any = std::numeric_limits<std::uint64_t>::max();
+            RawLayer raw;
+            DroppedContours dropped;
+            const auto for_run = [&](const Array& layer, std::uint64_t from, std::uint64_t to, const auto& add) {
+                for (std::uint64_t i = from; i < to && layer.whole(i, any) == layer.whole(from, any); ++i)
+                    add(i);
+            };
+            if (begin < contours.size())
+                for_run(contours.layer, begin, contours.size(), [&](std::uint64_t i) {
+                    const auto offset = [&](std::uint64_t k) {
+                        return contours.offsets.whole(k, contours.points.size());
+                    };
+                    contours.add(i, offset(i), offset(i + 1), contours.part_of(i, parts), raw, limits,
+                                 dropped);
+                });
+            else if (begin != nothing)
+                for_run(hatches->layer, begin - contours.size(), hatches->lines.size(),
+                        [&](std::uint64_t i) { hatches->add(i, parts, raw, limits); });
+            return raw;
+        };
+    }
 
     void read_contours(const Contours& contours, std::vector<RawLayer>& raw, Executor& executor) {
         static_cast<void>(contours.offsets.whole(0, 0));
@@ -313,13 +381,8 @@ class NpzReader {
             },
             [&](Piece&& piece) {
                 dropped_.add(piece.dropped);
-                for (auto& [layer, contents] : piece.layers) {
-                    RawLayer& into = raw[layer];
-                    if (into.ends.empty())
-                        into = std::move(contents);
-                    else
-                        append(into, contents);
-                }
+                for (auto& [layer, contents] : piece.layers)
+                    put(std::move(contents), raw[layer]);
             });
     }
 
@@ -353,35 +416,45 @@ class NpzReader {
             if (end < begin)
                 contours.offsets.fail(fmt::format("{} behind {}", end, begin), "they must not descend");
             const std::uint64_t layer = contours.layer.whole(i, layers - 1);
-            const auto of_part = static_cast<std::uint32_t>(contours.part.whole(i, file_.parts.size() - 1));
+            const std::uint32_t part = contours.part_of(i, file_.parts.size());
             const auto position = [&] {
                 return fmt::format("contour {}", i);
             };
             if (piece.layers.empty() || piece.layers.back().first != layer) {
                 limits_.make_room(piece.layers, 1, position);
-                piece.layers.emplace_back(layer, RawLayer{});
+                if (!limits_.in_memory() && !piece.layers.empty())
+                    piece.layers.back().second.drop_contents(limits_);
+                piece.layers.emplace_back(layer, RawLayer()).second.begin = static_cast<std::size_t>(i);
             }
-            RawLayer& into = piece.layers.back().second;
-            limits_.make_room(into.points, end - begin, position);
-            for (std::uint64_t k = begin; k < end; ++k)
-                into.points.push_back({points.length(2 * k), points.length(2 * k + 1)});
-            into.end_contour(contours.closed.whole(i, 1) != 0, of_part, limits_, position, piece.dropped);
+            contours.add(i, begin, end, part, piece.layers.back().second, limits_, piece.dropped);
             begin = end;
         }
+        if (!limits_.in_memory() && !piece.layers.empty())
+            piece.layers.back().second.drop_contents(limits_);
         piece.end = to;
         return piece;
     }
 
-    /// Appends the contours of a layer that comes more than once.
+    /// Adds contents to a layer, which may come more than once.
+    void put(RawLayer&& contents, RawLayer& into) const {
+        if (into.begin == nothing)
+            into = std::move(contents);
+        else
+            append(into, contents);
+    }
+
     void append(RawLayer& into, const RawLayer& more) const {
         const auto location = [] {
             return std::string_view("array 'layer'");
         };
         limits_.make_room(into.points, more.points.size(), location);
         limits_.make_room(into.ends, more.ends.size(), location);
+        limits_.make_room(into.hatches, more.hatches.size(), location);
+        limits_.make_room(into.hatch_ends, more.hatch_ends.size(), location);
         into.append(more);
-        limits_.give_back(0, more.points.capacity() * sizeof(Point2) +
-                                 more.ends.capacity() * sizeof(RawLayer::Contour));
+        limits_.give_back(0, (more.points.capacity() + more.hatches.capacity()) * sizeof(Point2) +
+                                 more.ends.capacity() * sizeof(RawLayer::Contour) +
+                                 more.hatch_ends.capacity() * sizeof(RawLayer::Hatches));
     }
 
     void read_rule() const {
@@ -396,25 +469,36 @@ class NpzReader {
         file_.rule = *rule;
     }
 
-    void read_hatches(std::vector<RawLayer>& raw) const {
+    [[nodiscard]] std::optional<Hatches> hatches() const {
         if (zip_.find("hatches.npy") == nullptr)
-            return;
-        const Array hatches = array("hatches");
-        hatches.expect_shape({2, 2}, "hatch lines have two points");
-        const Array layer = list("hatch_layer", hatches.size(), "hatch lines");
-        const Array part = list("hatch_part", hatches.size(), "hatch lines");
-        for (std::uint64_t i = 0; i < hatches.size(); ++i) {
-            RawLayer& into = raw[layer.whole(i, raw.size() - 1)];
-            const auto position = [&] {
-                return fmt::format("hatch line {}", i);
-            };
-            limits_.make_room(into.hatches, 2, position);
-            for (std::uint64_t k = 4 * i; k < 4 * i + 4; k += 2)
-                into.hatches.push_back({hatches.length(k), hatches.length(k + 1)});
-            into.end_hatches(static_cast<std::uint32_t>(part.whole(i, file_.parts.size() - 1)), limits_,
-                             position);
+            return std::nullopt;
+        const Array lines = array("hatches");
+        lines.expect_shape({2, 2}, "hatch lines have two points");
+        return Hatches{lines, list("hatch_layer", lines.size(), "hatch lines"),
+                       list("hatch_part", lines.size(), "hatch lines")};
+    }
+
+    void read_hatches(const Hatches& hatches, std::size_t contours, std::vector<RawLayer>& raw) const {
+        RawLayer run;
+        std::uint64_t of_layer = 0;
+        const auto end_run = [&] {
+            if (run.hatches.empty())
+                return;
+            if (!limits_.in_memory())
+                run.drop_contents(limits_);
+            put(std::exchange(run, RawLayer()), raw[of_layer]);
+        };
+        for (std::uint64_t i = 0; i < hatches.lines.size(); ++i) {
+            const std::uint64_t layer = hatches.layer.whole(i, raw.size() - 1);
+            if (layer != of_layer)
+                end_run();
+            of_layer = layer;
+            if (run.hatches.empty())
+                run.begin = static_cast<std::size_t>(contours + i);
+            hatches.add(i, file_.parts.size(), run, limits_);
         }
-        if (hatches.is_single_precision())
+        end_run();
+        if (hatches.lines.is_single_precision())
             file_.rounding.single_precision = true;
     }
 

@@ -8,8 +8,10 @@
 #include <lamella/io.hpp>
 
 #include <cmath>
+#include <cstddef>
 #include <fstream>
 #include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -95,6 +97,49 @@ TEST_P(LayerReading, GivesTheSameLayersForAnyNumberOfThreads) {
     EXPECT_NE(one.find("of 120 layers"), std::string::npos) << one.substr(0, 300);
     for (const unsigned threads : {2U, 3U, 7U, 16U})
         EXPECT_EQ(outcome(bytes, threads), one) << threads;
+}
+
+TEST_P(LayerReading, GivesTheSameLayersIfTheyAreNotInMemory) {
+    const std::string bytes = written(GetParam());
+    const auto read = [&](LayersKept kept, unsigned threads) {
+        return read_layers(std::as_bytes(std::span(bytes)), "layers", {.layers = kept}, {.threads = threads});
+    };
+    const LayerFile held = read(LayersKept::all, 1);
+    ASSERT_FALSE(held.stream);
+    const bool streamed = GetParam() != "3mf" && GetParam() != "3mf-toolpath";
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        const LayerFile file = read(LayersKept::none, threads);
+        ASSERT_EQ(file.stream != nullptr, streamed);
+        EXPECT_EQ(file.warnings, held.warnings);
+        EXPECT_EQ(file.rounding, held.rounding);
+        ASSERT_EQ(file.parts.size(), held.parts.size());
+        for (std::size_t i = 0; i < file.parts.size(); ++i) {
+            const LayerPart& part = held.parts[i];
+            EXPECT_EQ(file.parts[i].label, part.label);
+            EXPECT_EQ(file.hatch_lines(i), part.hatch_lines());
+            if (file.stream) {
+                const Box3 box = part_box(part.layers, part.hatches);
+                EXPECT_EQ(file.stream->boxes[i].min, box.min);
+                EXPECT_EQ(file.stream->boxes[i].max, box.max);
+            }
+        }
+        const std::vector<PlaneContent> contents[2] = {file.contents(), held.contents()};
+        ASSERT_EQ(file.planes().size(), held.planes().size());
+        for (std::size_t i = 0; i < file.planes().size(); ++i) {
+            EXPECT_EQ(contents[0][i].contours, contents[1][i].contours);
+            EXPECT_EQ(contents[0][i].hatch_lines, contents[1][i].hatch_lines);
+            const ScanVectors planes[2] = {file.plane(i), held.plane(i)};
+            ASSERT_EQ(content_hash(planes[0]), content_hash(planes[1])) << i;
+            for (std::size_t k = 0; k < file.parts.size(); ++k) {
+                const Layer& layer = planes[0].polylines[k];
+                const Layer& expected = planes[1].polylines[k];
+                EXPECT_EQ(layer.index, expected.index);
+                EXPECT_EQ(layer.z, expected.z);
+                EXPECT_EQ(layer.bottom, expected.bottom);
+                EXPECT_EQ(layer.top, expected.top);
+            }
+        }
+    }
 }
 
 TEST_P(LayerReading, FindsTheSameDefectForAnyNumberOfThreads) {

@@ -51,6 +51,20 @@ TEST(ReadIlt, HeightsOfAllFilesAreBottomsWhereTheLowestOnesAre) {
                                     {.name = "a.cli", .content = layers(high)},
                                     {.name = "b.cli", .content = layers(low)}});
     };
+    // The files have different planes in common with the archive.
+    const auto expect_the_same_if_not_in_memory = [&](const std::string& bytes) {
+        const LayerFile held = read(bytes);
+        const LayerFile file =
+            read_layers(std::as_bytes(std::span(bytes)), "test.ilt", {.layers = LayersKept::none});
+        ASSERT_TRUE(file.stream);
+        EXPECT_EQ(file.warnings, held.warnings);
+        ASSERT_EQ(file.planes().size(), held.planes().size());
+        for (std::size_t plane = 0; plane < file.planes().size(); ++plane) {
+            EXPECT_EQ(content_hash(file.plane(plane)), content_hash(held.plane(plane)));
+            EXPECT_EQ(file.contents()[plane].hatch_lines, held.contents()[plane].hatch_lines);
+            EXPECT_EQ(file.plane(plane).polylines.back().bottom, held.parts.back().layers[plane].bottom);
+        }
+    };
     // Vectors end at x = z of the file.
     const auto expect_bottoms = [](const LayerFile& file) {
         for (const LayerPart& part : file.parts) {
@@ -65,6 +79,8 @@ TEST(ReadIlt, HeightsOfAllFilesAreBottomsWhereTheLowestOnesAre) {
     expect_bottoms(read(archive_of({"2", "3"}, all)));
     expect_bottoms(read(archive_of({"1", "3"}, all)));
     expect_bottoms(read(archive_of({"0", "2"}, {"1", "3"})));
+    expect_the_same_if_not_in_memory(archive_of({"2", "3"}, all));
+    expect_the_same_if_not_in_memory(archive_of({"0", "2"}, {"1", "3"}));
     EXPECT_EQ(read(archive_of({"2", "3"}, {"1", "2"})).parts.at(0).layers.at(0).bottom, 0);
 }
 

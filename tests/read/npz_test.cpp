@@ -1,3 +1,4 @@
+#include "lamella/contour/exposure.hpp"
 #include "lamella/read/layer_file.hpp"
 
 #include "container/zip_bytes.hpp"
@@ -6,6 +7,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>
@@ -35,9 +39,25 @@ std::string numbers(const std::vector<std::uint64_t>& values) {
     return bytes;
 }
 
+std::string lengths(const std::vector<double>& values) {
+    std::string bytes;
+    for (const double value : values)
+        zip_test::put(bytes, std::bit_cast<std::uint64_t>(value), 8);
+    return bytes;
+}
+
+using Arrays = std::map<std::string, NumpyArray>;
+
+std::string archive(const Arrays& arrays) {
+    std::vector<zip_test::ZipPart> parts;
+    for (const auto& [key, array] : arrays)
+        parts.push_back({.name = key + ".npy", .content = npy(array)});
+    return zip_test::zip_bytes(parts);
+}
+
 /// An empty layer from 0 to 0 with a hatch line, where `name` is another array.
 std::string with(const std::string& name, const NumpyArray& other) {
-    std::map<std::string, NumpyArray> arrays{{"points", {"<f8", "0, 2", ""}},
+    Arrays arrays{{"points", {"<f8", "0, 2", ""}},
                                              {"offsets", {"<i8", "1,", numbers({0})}},
                                              {"closed", {"|b1", "0,", ""}},
                                              {"layer", {"<i8", "0,", ""}},
@@ -51,10 +71,7 @@ std::string with(const std::string& name, const NumpyArray& other) {
                                              {"hatch_layer", {"<i8", "1,", numbers({0})}},
                                              {"hatch_part", {"<i8", "1,", numbers({0})}}};
     arrays[name] = other;
-    std::vector<zip_test::ZipPart> parts;
-    for (const auto& [key, array] : arrays)
-        parts.push_back({.name = key + ".npy", .content = npy(array)});
-    return zip_test::zip_bytes(parts);
+    return archive(arrays);
 }
 
 std::string error_of(const std::string& bytes) {
@@ -72,6 +89,49 @@ TEST(ReadNpz, ListsHaveASingleDimension) {
         const NumpyArray pair{empty.type, "1, 2", numbers({0, 0})};
         EXPECT_NE(error_of(with(name, pair)).find("another shape; it must be a list"), std::string::npos)
             << name;
+    }
+}
+
+TEST(ReadNpz, GivesLayersThatComeInAnyOrderAlsoIfTheyAreNotInMemory) {
+    // Layers of contours: 2, 0, 2, 0, 2; layers of hatch lines: 2, 2, 1, 2. Layer 3 has nothing.
+    std::vector<double> points;
+    for (int contour = 0; contour < 5; ++contour)
+        for (const double x : {0, 4, 2})
+            points.insert(points.end(), {x + 10 * contour, x == 2 ? 3.0 : 0.0});
+    std::vector<double> ends;
+    for (int line = 0; line < 4; ++line)
+        for (const double x : {1, 9})
+            ends.insert(ends.end(), {x, 5.0 + line});
+    const std::string bytes = archive({{"points", {"<f8", "15, 2", lengths(points)}},
+                                       {"offsets", {"<i8", "6,", numbers({0, 3, 6, 9, 12, 15})}},
+                                       {"closed", {"|b1", "5,", std::string("\1\1\1\0\1", 5)}},
+                                       {"layer", {"<i8", "5,", numbers({2, 0, 2, 0, 2})}},
+                                       {"part", {"<i8", "5,", numbers({0, 1, 1, 0, 0})}},
+                                       {"index", {"<i8", "4,", numbers({0, 1, 2, 3})}},
+                                       {"z", {"<f8", "4,", lengths({0.5, 1.5, 2.5, 3.5})}},
+                                       {"bottom", {"<f8", "4,", lengths({0, 1, 2, 3})}},
+                                       {"top", {"<f8", "4,", lengths({1, 2, 3, 4})}},
+                                       {"labels", {"<U1", "2,", std::string("a\0\0\0b\0\0\0", 8)}},
+                                       {"hatches", {"<f8", "4, 2, 2", lengths(ends)}},
+                                       {"hatch_layer", {"<i8", "4,", numbers({2, 2, 1, 2})}},
+                                       {"hatch_part", {"<i8", "4,", numbers({0, 1, 0, 1})}}});
+    const auto read = [&](LayersKept kept) {
+        return read_layers(std::as_bytes(std::span(bytes)), "test.npz", {.layers = kept});
+    };
+    const LayerFile held = read(LayersKept::all);
+    EXPECT_EQ(held.parts.at(0).layers.at(2).contours(), 2U);
+    EXPECT_EQ(held.parts.at(1).hatches_of(2).size(), 4U);
+    const LayerFile file = read(LayersKept::none);
+    ASSERT_TRUE(file.stream);
+    EXPECT_EQ(file.hatch_lines(0), 2U);
+    EXPECT_EQ(file.hatch_lines(1), 2U);
+    EXPECT_EQ(file.stream->largest_coordinate, 44);
+    EXPECT_EQ(file.stream->largest_hatch_coordinate, 9);
+    const std::vector<PlaneContent> contents[2] = {file.contents(), held.contents()};
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(contents[0][i].contours, contents[1][i].contours) << i;
+        EXPECT_EQ(contents[0][i].hatch_lines, contents[1][i].hatch_lines) << i;
+        EXPECT_EQ(content_hash(file.plane(i)), content_hash(held.plane(i))) << i;
     }
 }
 
