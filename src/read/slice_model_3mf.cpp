@@ -28,6 +28,31 @@
 
 namespace lamella {
 
+/// The tags of slices whose names have this prefix.
+struct SliceTags {
+    explicit SliceTags(std::string_view prefix)
+        : before(prefix.empty() ? std::string() : fmt::format("{}:", prefix)) {}
+
+    std::string before;
+    std::string stack = before + "slicestack";
+    std::string slice = "<" + before + "slice";
+    std::string vertices = "<" + before + "vertices";
+    std::string vertex = "<" + before + "vertex";
+    std::string polygon = "<" + before + "polygon";
+    std::string segment = "<" + before + "segment";
+    std::string end_of_slice = "</" + before + "slice";
+    std::string end_of_vertices = "</" + before + "vertices";
+    std::string end_of_polygon = "</" + before + "polygon";
+};
+
+/// The text of a part, and what is needed to read its plain slices.
+struct SliceText {
+    ByteSource part;
+    std::size_t last_tag;
+    std::vector<std::string> prefixes; ///< of attributes
+    SliceTags tags;
+};
+
 namespace {
 
 struct SliceWarnings {
@@ -101,6 +126,9 @@ class SliceReader {
 
     template <class Where>
     bool start_polygon(std::uint32_t index, const Where& where) {
+        Slice& slice = stack_->slices.back();
+        if (slice.text) // this polygon follows the end of its slice, so that is not plain
+            slice = Slice{slice.top, slice.read_again(limits_)};
         start_ = index;
         return add_point(index, where);
     }
@@ -129,6 +157,14 @@ class SliceReader {
             warnings_.open.note(where);
         raw().end_contour(closed, 0, limits_, where, warnings_.dropped);
         start_.reset();
+    }
+
+    /// Frees the contours of the last slice, which begins at this offset of the text.
+    void drop_contents(const std::shared_ptr<const SliceText>& text, std::size_t begin) {
+        Slice& slice = stack_->slices.back();
+        slice.raw.begin = begin;
+        slice.raw.drop_contents(limits_);
+        slice.text = text;
     }
 
     /// Appends a stack to this one. The tops of all its slices must be above this stack. Its first slice
@@ -215,23 +251,6 @@ class SliceReader {
     std::optional<std::uint32_t> start_; ///< first vertex of the polygon under construction
     std::uint32_t last_ = 0;
     std::size_t line_ = 0; ///< of the last element
-};
-
-/// The tags of slices whose names have this prefix.
-struct SliceTags {
-    explicit SliceTags(std::string_view prefix)
-        : before(prefix.empty() ? std::string() : fmt::format("{}:", prefix)) {}
-
-    std::string before;
-    std::string stack = before + "slicestack";
-    std::string slice = "<" + before + "slice";
-    std::string vertices = "<" + before + "vertices";
-    std::string vertex = "<" + before + "vertex";
-    std::string polygon = "<" + before + "polygon";
-    std::string segment = "<" + before + "segment";
-    std::string end_of_slice = "</" + before + "slice";
-    std::string end_of_vertices = "</" + before + "vertices";
-    std::string end_of_polygon = "</" + before + "polygon";
 };
 
 /// Reads a slice that is plain. `lines` are those of the whole text.
@@ -416,6 +435,8 @@ class SliceModelReader {
         prefixes_ = plain_prefixes(element.spaces);
         const auto space = element.spaces.find(std::string(prefix_.value_or("")));
         in_pieces_ = space != element.spaces.end() && space->second == three_mf::slices;
+        if (in_pieces_ && !limits_.in_memory())
+            again_ = std::make_shared<const SliceText>(SliceText{part_, last_tag_, prefixes_, tags_});
     }
 
     void start_stack(const ThreeMfElement& element) {
@@ -531,6 +552,8 @@ class SliceModelReader {
             PlainSlice slice(text_, at, last_tag_, prefixes_, tags_, piece.slices, lines);
             if (!slice.read())
                 return false;
+            if (again_)
+                piece.slices.drop_contents(again_, at);
             at = slice.end();
             return true;
         };
@@ -584,6 +607,7 @@ class SliceModelReader {
     std::optional<TextPieces> stack_ends_; ///< offsets where stacks probably end
     const ThreeMfSpaces* spaces_ = nullptr;
     std::vector<std::string> prefixes_; ///< of attributes
+    std::shared_ptr<const SliceText> again_; ///< null if layers are kept in memory
     bool in_pieces_ = false;
     std::size_t depth_ = 0;
     std::size_t stack_depth_ = 0;
@@ -594,6 +618,25 @@ class SliceModelReader {
 };
 
 } // namespace
+
+std::size_t Slice::points() const {
+    if (!text)
+        return raw.points.size();
+    std::size_t points = 0;
+    for (const RawLayer::Run& run : raw.runs())
+        points += run.end - run.begin;
+    return points;
+}
+
+RawLayer Slice::read_again(ReadLimits& limits) const {
+    assert(text);
+    SliceReader slices(-std::numeric_limits<double>::infinity(), limits);
+    LineCounter lines(text->part.text());
+    PlainSlice slice(text->part.text(), raw.begin, text->last_tag, text->prefixes, text->tags, slices, lines);
+    [[maybe_unused]] const bool is_plain = slice.read();
+    assert(is_plain);
+    return std::move(slices.stack()->slices.front().raw);
+}
 
 std::uint64_t contour_bytes(const RawLayer& raw) {
     return raw.points.size() * sizeof(Point2) + raw.ends.size() * sizeof(RawLayer::Contour);

@@ -18,10 +18,19 @@ namespace lamella {
 class Executor;
 class ReadLimits;
 
-/// One slice, in the unit of its object, with the contours as written.
+struct SliceText;
+
+/// One slice, in the unit of its object, with the contours as written. If they are not in memory, only their
+/// runs are, and the slice is read again when it is needed.
 struct Slice {
     double top = 0;
     RawLayer raw;
+    std::shared_ptr<const SliceText> text = {}; ///< where to read it again; null if it is in memory
+
+    /// Returns the number of points of the contours.
+    [[nodiscard]] std::size_t points() const;
+    /// Reads the contours again. May be called by any number of threads at once.
+    [[nodiscard]] RawLayer read_again(ReadLimits& limits) const;
 };
 
 struct SliceStack {
@@ -49,10 +58,11 @@ struct SliceModel {
 /// Returns the stack that a <sliceref> refers to.
 using FindSliceStack = std::function<std::shared_ptr<const SliceStack>(const ThreeMfElement& reference)>;
 
-/// Returns the bytes that a copy of the contours takes.
+/// Returns the bytes that a copy of what is in memory of the contours takes.
 [[nodiscard]] std::uint64_t contour_bytes(const RawLayer& raw);
 
-/// Reads a part. All threads read its slices. `find` is called by this thread.
+/// Reads a part. All threads read its slices. `find` is called by this thread. If layers are not kept in
+/// memory, nearly all slices are to be read again; then the limits must live as long as the stacks.
 [[nodiscard]] SliceModel read_slice_model(const ByteSource& part, const FindSliceStack& find,
                                           ReadLimits& limits, Executor& executor);
 

@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
@@ -46,6 +47,15 @@ std::vector<std::string> used_parts(const SliceModel& model) {
     return parts;
 }
 
+/// Returns the number of bytes that the model parts of the package unpack to.
+std::uint64_t bytes_of_models(const ZipReader& zip) {
+    std::uint64_t bytes = 0;
+    for (const ZipEntry& entry : zip.entries())
+        if (entry.name.ends_with(".model"))
+            bytes += entry.size;
+    return bytes;
+}
+
 /// A stack with the placement by a build item.
 struct Placed {
     std::string label;
@@ -58,6 +68,67 @@ struct Placed {
     [[nodiscard]] double height(double z) const { return z * scale + shift; }
 };
 
+void check_reach(const Point3& p, const std::string& file) {
+    if (is_too_far(p))
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: the build puts slices further away than {} mm", file, farthest_mm));
+}
+
+/// Returns where the part has a point of a slice. Throws Error{input} if that is too far away.
+Point2 placed_point(const Placed& part, double x, double y, const std::string& file) {
+    const Point3 at = part.placement(Point3{x * part.scale, y * part.scale, 0});
+    check_reach(at, file);
+    return {at.x + 0.0, at.y + 0.0};
+}
+
+Layer placed_layer(const Placed& part, const RawLayer& raw, const std::string& file) {
+    const auto& m = part.placement.linear;
+    const bool mirrors = m[0][0] * m[1][1] - m[0][1] * m[1][0] < 0;
+    LayerBuilder builder;
+    std::size_t begin = 0;
+    for (const RawLayer::Contour& contour : raw.ends) {
+        for (std::size_t i = begin; i < contour.end; ++i) {
+            // Mirroring reverses the direction of a ring.
+            const Point2& p = raw.points[mirrors ? contour.end - 1 - (i - begin) : i];
+            builder.add_point(placed_point(part, p.x, p.y, file));
+        }
+        builder.end_contour(contour.closed);
+        begin = contour.end;
+    }
+    return builder.finish(0, 0, 0, 0);
+}
+
+/// The same for a slice that may have to be read again. What that takes is not counted in `limits`, because
+/// it is freed with the layer, but must not exceed them.
+Layer placed_layer(const Placed& part, const Slice& slice, const ReadLimits& limits, const std::string& file) {
+    ReadLimits own(limits);
+    const RawLayer again = slice.text ? slice.read_again(own) : RawLayer();
+    const RawLayer& raw = slice.text ? again : slice.raw;
+    own.add_bytes(2 * contour_bytes(raw)); // growing arrays
+    return placed_layer(part, raw, file);
+}
+
+/// The planes of one slice.
+struct PlanesOfSlice {
+    const Slice* slice;
+    std::size_t begin;
+    std::size_t end;
+};
+
+/// A part, and its slices that are on planes, ascending.
+struct DrawnPart {
+    Placed placed;
+    std::vector<PlanesOfSlice> drawn;
+
+    /// Returns the slice on a plane, or null.
+    [[nodiscard]] const Slice* on(std::size_t plane) const {
+        const auto next =
+            std::upper_bound(drawn.begin(), drawn.end(), plane,
+                             [](std::size_t at, const PlanesOfSlice& slice) { return at < slice.begin; });
+        return next == drawn.begin() || plane >= std::prev(next)->end ? nullptr : std::prev(next)->slice;
+    }
+};
+
 class PackageReader {
   public:
     PackageReader(const ZipReader& zip, LayerFile& file, ReadLimits& limits, const Execution& execution)
@@ -67,6 +138,7 @@ class PackageReader {
         if (zip_.find(root_) == nullptr)
             throw NoLayers(fmt::format("{}: found no part '{}'; a 3MF file of layers has its model there",
                                        zip_.name(), printable(root_, 100)));
+        limits_.keep_text_in_memory(bytes_of_models(zip_));
         const Model& model = model_of(root_);
         // A package without slices may use features in its build that are not supported here.
         if (has_slices(model))
@@ -207,12 +279,6 @@ class PackageReader {
         return {object.name, object.stack, placement, unit, placement.offset[2]};
     }
 
-    void check_reach(const Point3& p) const {
-        if (is_too_far(p))
-            throw Error(ErrorKind::input, fmt::format("{}: the build puts slices further away than {} mm",
-                                                      zip_.name(), farthest_mm));
-    }
-
     /// Describes a part by its number in the build, for errors.
     static auto place_of(std::size_t part) {
         return [part] {
@@ -228,12 +294,12 @@ class PackageReader {
         for (std::size_t k = 0; k < placed_.size(); ++k) {
             const Placed& part = placed_[k];
             limits_.make_room(heights, 1 + part.stack->slices.size(), place_of(k));
-            check_reach({0, 0, part.height(part.stack->bottom)});
+            check_reach({0, 0, part.height(part.stack->bottom)}, zip_.name());
             heights.push_back(part.height(part.stack->bottom));
             for (const Slice& slice : part.stack->slices) {
-                check_reach({0, 0, part.height(slice.top)});
+                check_reach({0, 0, part.height(slice.top)}, zip_.name());
                 heights.push_back(part.height(slice.top));
-                points += slice.raw.points.size();
+                points += slice.points();
             }
         }
         std::sort(heights.begin(), heights.end());
@@ -258,32 +324,23 @@ class PackageReader {
         labels.append_to(file_.warnings);
         check_part_planes(file_, heights.size() - 1, std::max(points, zip_.unpacked()));
         std::uint64_t left = 64 * (points + heights.size() + (std::uint64_t{1} << 20));
+        if (!limits_.in_memory())
+            return make_stream(heights, left);
         for (std::size_t k = 0; k < placed_.size(); ++k)
             add_part(k, heights, left);
     }
 
-    /// The layers of one slice.
-    struct LayersOfSlice {
-        const RawLayer* raw;
-        std::size_t begin;
-        std::size_t end;
-    };
-
-    void add_part(std::size_t index, const std::vector<double>& heights, std::uint64_t& left) {
+    /// Finds the slice on each plane of a part. `left` is the number of points that parts may still have.
+    std::vector<PlanesOfSlice> drawn_slices(std::size_t index, const std::vector<double>& heights,
+                                            std::uint64_t& left) {
         const Placed& part = placed_[index];
-        LayerStack& layers = file_.parts[index].layers;
         const std::vector<Slice>& slices = part.stack->slices;
-        std::vector<LayersOfSlice> drawn;
+        std::vector<PlanesOfSlice> drawn;
         std::size_t next = 0;
         std::size_t last_slice = slices.size();
-        limits_.make_room(layers, heights.size() - 1, place_of(index));
         limits_.make_room(drawn, heights.size() - 1, place_of(index));
-        limits_.add_bytes_at((heights.size() - 1) * of_empty_layer, place_of(index));
         for (std::size_t i = 0; i + 1 < heights.size(); ++i) {
-            const double bottom = heights[i];
-            const double top = heights[i + 1];
-            const double z = bottom + (top - bottom) / 2;
-            layers.push_back({.index = i, .z = z, .bottom = bottom, .top = top});
+            const double z = middle(heights, i);
             while (next < slices.size() && part.height(slices[next].top) < z)
                 ++next;
             if (next == slices.size() || !(z > part.height(part.stack->bottom)))
@@ -292,18 +349,40 @@ class PackageReader {
                 drawn.back().end = i + 1;
                 continue;
             }
-            const RawLayer& raw = slices[next].raw;
-            drawn.push_back({&raw, i, i + 1});
-            if (raw.points.size() > left)
+            const Slice& slice = slices[next];
+            drawn.push_back({&slice, i, i + 1});
+            if (slice.points() > left)
                 throw Error(ErrorKind::input,
                             fmt::format("{}: found the same slices placed so often that they would have more "
                                         "than 64 times their points",
                                         zip_.name()));
-            left -= raw.points.size();
-            limits_.add_bytes_at(2 * contour_bytes(raw), place_of(index)); // growing arrays
+            left -= slice.points();
+            if (limits_.in_memory())
+                limits_.add_bytes_at(2 * contour_bytes(slice.raw), place_of(index)); // growing arrays
         }
+        return drawn;
+    }
+
+    static double middle(const std::vector<double>& heights, std::size_t plane) {
+        return heights[plane] + (heights[plane + 1] - heights[plane]) / 2;
+    }
+
+    /// Appends layers without contours.
+    static void append_planes(const std::vector<double>& heights, LayerStack& layers) {
+        for (std::size_t i = 0; i + 1 < heights.size(); ++i)
+            layers.push_back(
+                {.index = i, .z = middle(heights, i), .bottom = heights[i], .top = heights[i + 1]});
+    }
+
+    void add_part(std::size_t index, const std::vector<double>& heights, std::uint64_t& left) {
+        const Placed& part = placed_[index];
+        LayerStack& layers = file_.parts[index].layers;
+        limits_.make_room(layers, heights.size() - 1, place_of(index));
+        limits_.add_bytes_at((heights.size() - 1) * of_empty_layer, place_of(index));
+        append_planes(heights, layers);
+        const std::vector<PlanesOfSlice> drawn = drawn_slices(index, heights, left);
         executor_.for_chunks(drawn.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
-            const Layer shared = placed_layer(part, *drawn[i].raw);
+            const Layer shared = placed_layer(part, drawn[i].slice->raw, zip_.name());
             for (std::size_t k = drawn[i].begin; k < drawn[i].end; ++k) {
                 const Layer empty = std::exchange(layers[k], shared); // shares the points
                 layers[k].index = empty.index;
@@ -313,26 +392,73 @@ class PackageReader {
             }
         });
         executor_.check_cancelled();
-        limits_.give_back(0, drawn.capacity() * sizeof(LayersOfSlice));
+        limits_.give_back(0, drawn.capacity() * sizeof(PlanesOfSlice));
     }
 
-    Layer placed_layer(const Placed& part, const RawLayer& raw) const {
-        const auto& m = part.placement.linear;
-        const bool mirrors = m[0][0] * m[1][1] - m[0][1] * m[1][0] < 0;
-        LayerBuilder builder;
-        std::size_t begin = 0;
-        for (const RawLayer::Contour& contour : raw.ends) {
-            for (std::size_t i = begin; i < contour.end; ++i) {
-                // Mirroring reverses the direction of a ring.
-                const Point2& p = raw.points[mirrors ? contour.end - 1 - (i - begin) : i];
-                const Point3 at = part.placement(Point3{p.x * part.scale, p.y * part.scale, 0});
-                check_reach(at);
-                builder.add_point({at.x, at.y});
+    /// Gives the file a stream that reads slices again.
+    void make_stream(const std::vector<double>& heights, std::uint64_t& left) {
+        const std::size_t planes = heights.size() - 1;
+        limits_.add_bytes(planes * (sizeof(Layer) + of_empty_layer + sizeof(PlaneContent)));
+        limits_.add_bytes(placed_.size() * sizeof(DrawnPart));
+        LayerStream stream{.hatch_lines = std::vector<std::uint64_t>(placed_.size()),
+                           .contents = std::vector<PlaneContent>(planes)};
+        append_planes(heights, stream.planes);
+        std::vector<DrawnPart> parts;
+        parts.reserve(placed_.size());
+        for (std::size_t k = 0; k < placed_.size(); ++k) {
+            parts.push_back({placed_[k], drawn_slices(k, heights, left)});
+            Box3 box = box_of(parts.back());
+            if (!box.empty()) {
+                for (const Point3& corner : {box.min, box.max})
+                    stream.largest_coordinate =
+                        std::max({stream.largest_coordinate, std::abs(corner.x), std::abs(corner.y)});
+                box.min.z = heights.front();
+                box.max.z = heights.back();
             }
-            builder.end_contour(contour.closed);
-            begin = contour.end;
+            stream.boxes.push_back(box);
+            for (const PlanesOfSlice& drawn : parts.back().drawn)
+                if (drawn.slice->points() > 0)
+                    for (std::size_t i = drawn.begin; i < drawn.end; ++i)
+                        stream.contents[i].contours = true;
         }
-        return builder.finish(0, 0, 0, 0);
+        stream.bytes = limits_.bytes();
+        stream.parse = [parts = std::move(parts), name = zip_.name(), &limits = limits_](std::size_t plane) {
+            ScanVectors vectors;
+            for (const DrawnPart& part : parts) {
+                const Slice* const slice = part.on(plane);
+                vectors.add(slice == nullptr ? Layer() : placed_layer(part.placed, *slice, limits, name),
+                            PointArray());
+            }
+            return vectors;
+        };
+        file_.stream = std::make_shared<const LayerStream>(std::move(stream));
+    }
+
+    /// Returns the box of the points of a part at a height of 0.
+    Box3 box_of(const DrawnPart& part) {
+        const auto& m = part.placed.placement.linear;
+        // If each coordinate depends on only one of the slice, the extremes of points are those of boxes,
+        // after any rounding.
+        const bool by_boxes = (m[0][0] == 0 || m[0][1] == 0) && (m[1][0] == 0 || m[1][1] == 0);
+        std::vector<Box3> boxes(executor_.workers());
+        executor_.for_chunks(part.drawn.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
+            const Slice& slice = *part.drawn[i].slice;
+            const auto add = [&](const Point2& p) {
+                boxes[worker].add(Point3{p.x, p.y, 0});
+            };
+            if (by_boxes && slice.text)
+                for (const RawLayer::Run& run : slice.raw.runs())
+                    for (const Point3& corner : {run.box.min, run.box.max})
+                        add(placed_point(part.placed, corner.x, corner.y, zip_.name()));
+            else
+                for (const Point2& p : placed_layer(part.placed, slice, limits_, zip_.name()).points)
+                    add(p);
+        });
+        executor_.check_cancelled();
+        Box3 box;
+        for (const Box3& some : boxes)
+            box.add(some);
+        return box;
     }
 
     const ZipReader& zip_;

@@ -1,5 +1,7 @@
+#include "lamella/contour/exposure.hpp"
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
@@ -9,6 +11,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -43,14 +48,15 @@ std::string object(int id, int stack) {
            std::to_string(stack) + "\"/>";
 }
 
-LayerFile read(const std::string& root, const std::string& other = "", unsigned threads = 0) {
+LayerFile read(const std::string& root, const std::string& other = "", unsigned threads = 0,
+               const LayerReadOptions& options = {}) {
     const TemporaryFolder folder;
     ZipWriter zip(folder.file("a.3mf"));
     zip.add("3D/3dmodel.model", root, ZipMethod::deflated);
     if (!other.empty())
         zip.add("2D/other.model", other);
     zip.finish();
-    return read_layers(folder.file("a.3mf"), {}, {.threads = threads});
+    return read_layers(folder.file("a.3mf"), options, {.threads = threads});
 }
 
 std::vector<std::uint64_t> hashes(const LayerPart& part) {
@@ -228,6 +234,116 @@ TEST(ReadSlices3mf, ReferencesAreReadAlikeByAnyNumberOfThreads) {
         EXPECT_EQ(many.warnings, one.warnings);
         for (std::size_t part = 0; part < 4; ++part)
             EXPECT_EQ(hashes(many.parts[part]), hashes(one.parts[part])) << threads << " threads";
+    }
+}
+
+/// Expects that a file whose layers are not in memory has the same contents as one whose layers are.
+void expect_same_stream(const std::string& root, const std::string& other = "") {
+    const LayerFile held = read(root, other, 1);
+    for (const unsigned threads : {1U, 2U, 7U}) {
+        const LayerFile file = read(root, other, threads, {.layers = LayersKept::none});
+        ASSERT_TRUE(file.stream);
+        EXPECT_EQ(file.warnings, held.warnings);
+        ASSERT_EQ(file.parts.size(), held.parts.size());
+        ASSERT_EQ(file.stream->boxes.size(), held.parts.size());
+        double largest = 0;
+        for (std::size_t i = 0; i < file.parts.size(); ++i) {
+            EXPECT_TRUE(file.parts[i].layers.empty());
+            EXPECT_EQ(file.parts[i].label, held.parts[i].label);
+            EXPECT_EQ(file.parts[i].support, held.parts[i].support);
+            EXPECT_EQ(file.hatch_lines(i), 0U);
+            const Box3 box = part_box(held.parts[i].layers);
+            EXPECT_EQ(file.stream->boxes[i].empty(), box.empty());
+            if (!box.empty()) {
+                EXPECT_EQ(file.stream->boxes[i].min, box.min);
+                EXPECT_EQ(file.stream->boxes[i].max, box.max);
+            }
+            for (const Layer& layer : held.parts[i].layers)
+                largest = std::max(largest, largest_coordinate(layer.points.span()));
+        }
+        EXPECT_EQ(file.stream->largest_coordinate, largest);
+        EXPECT_EQ(file.stream->largest_hatch_coordinate, 0);
+        ASSERT_EQ(file.planes().size(), held.planes().size());
+        const std::vector<PlaneContent> contents[2] = {file.contents(), held.contents()};
+        ASSERT_EQ(contents[0].size(), contents[1].size());
+        for (std::size_t i = 0; i < file.planes().size(); ++i) {
+            EXPECT_EQ(contents[0][i].contours, contents[1][i].contours) << i;
+            EXPECT_EQ(contents[0][i].hatch_lines, 0U);
+            ASSERT_EQ(content_hash(file.plane(i)), content_hash(held.plane(i))) << i;
+            EXPECT_EQ(file.planes()[i].z, held.planes()[i].z);
+            EXPECT_EQ(file.planes()[i].bottom, held.planes()[i].bottom);
+            EXPECT_EQ(file.planes()[i].top, held.planes()[i].top);
+        }
+    }
+}
+
+TEST(ReadSlices3mf, LayersThatAreNotInMemoryAreTheSame) {
+    std::string slices;
+    for (int top = 1; top <= 3000; ++top) {
+        std::string one = slice(std::to_string(top), top % 1000 == 0 ? "1" : "0") + '\n';
+        if (top % 700 == 3)
+            one.insert(one.find("<t:polygon"), "<!-- not plain -->");
+        if (top % 700 == 5)
+            one.replace(one.find("x=\"5\""), 5, "x=\"&#57;\"");
+        slices += top % 500 == 9 ? "<t:slice ztop=\"" + std::to_string(top) + "\"/>\n" : one;
+    }
+    const std::string reference = "<t:sliceref slicestackid=\"7\" slicepath=\"/2D/other.model\"/>";
+    const std::string root =
+        model(stack(1, slices) + object(2, 1) + stack(3, reference) + object(4, 3) + stack(5, "") +
+                  object(6, 5) + stack(8, slice("0.7") + "<t:slice ztop=\"1.7\"/>") + object(9, 8),
+              "<item objectid=\"2\"/><item objectid=\"6\"/>"
+              "<item objectid=\"9\" transform=\"0 -1 0 1 0 0 0 0 1 0.1 0.3 7.3\"/>"
+              "<item objectid=\"2\" transform=\"-1.1 0 0 0 1 0 0 0 1 -20.1 0.3 0.25\"/>"
+              "<item objectid=\"4\" transform=\"0.6 0.8 0 0.8 -0.6 0 0 0 1 3.3 0.1 -2\"/>",
+              "inch");
+    expect_same_stream(root, model(stack(7, slices), ""));
+    expect_same_stream(model(stack(1, "<t:slice ztop=\"1\"/>") + object(2, 1), "<item objectid=\"2\"/>"));
+    EXPECT_FALSE(read(root, model(stack(7, slices), ""), 2, {.layers = LayersKept::if_faster}).stream);
+}
+
+TEST(ReadSlices3mf, APolygonBehindItsSliceIsInTheStreamToo) {
+    const std::string behind = "<t:polygon startv=\"0\"><t:segment v2=\"2\"/></t:polygon>";
+    expect_same_stream(model(stack(1, slice("1") + behind + slice("2") + slice("3") + behind) + object(2, 1),
+                             "<item objectid=\"2\"/>"));
+}
+
+TEST(ReadSlices3mf, LayersThatAreNotInMemoryNeedNoMemory) {
+    std::string vertices;
+    std::string segments;
+    for (int i = 0; i < 1000; ++i) {
+        vertices += i % 2 == 0 ? "<t:vertex x=\"0\" y=\"0\"/>" : "<t:vertex x=\"9\" y=\"9\"/>";
+        segments += "<t:segment v2=\"" + std::to_string(i) + "\"/>";
+    }
+    std::string slices;
+    for (int top = 1; top <= 300; ++top)
+        slices += "<t:slice ztop=\"" + std::to_string(top) + "\"><t:vertices>" + vertices +
+                  "</t:vertices><t:polygon startv=\"0\">" + segments + "</t:polygon></t:slice>";
+    const std::string root = model(stack(1, slices) + object(2, 1), "<item objectid=\"2\"/>");
+    const std::uint64_t max_memory = root.size() * 5 / 4;
+    test::expect_error(ErrorKind::limit, {"max_memory"}, [&] {
+        static_cast<void>(read(root, "", 1, {.max_memory = max_memory}));
+    });
+    for (const LayersKept layers : {LayersKept::if_faster, LayersKept::none}) {
+        const LayerFile file = read(root, "", 2, {.max_memory = max_memory, .layers = layers});
+        ASSERT_TRUE(file.stream);
+        EXPECT_LT(file.stream->bytes, max_memory);
+        EXPECT_EQ(file.plane(299).polylines.at(0).points.size(), 1000U);
+    }
+}
+
+TEST(ReadSlices3mf, PointsTooFarAwayAreFoundAlthoughLayersAreNotInMemory) {
+    for (const std::string linear : {"1e38 0 0 0 1e38 0", "6e37 8e37 0 8e37 -6e37 0"}) {
+        const auto over = [&](int id) {
+            return "<object id=\"" + std::to_string(id) + "\"><components><component objectid=\"" +
+                   std::to_string(id - 1) + "\" transform=\"" + linear +
+                   " 0 0 1 0 0 0\"/></components></object>";
+        };
+        const std::string root = model(stack(1, slice("1")) + object(2, 1) + over(3) + over(4) + over(5),
+                                       "<item objectid=\"5\"/>");
+        const std::string of_stream = test::error_of(
+            ErrorKind::input, [&] { static_cast<void>(read(root, "", 2, {.layers = LayersKept::none})); });
+        EXPECT_NE(of_stream.find("the build puts slices further away than 1e+100 mm"), std::string::npos)
+            << of_stream;
     }
 }
 

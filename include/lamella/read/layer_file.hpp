@@ -24,8 +24,8 @@ namespace lamella {
 /// The layers that stay in memory while a file is open. All others are parsed again; see LayerStream.
 enum class LayersKept {
     all,
-    /// Only those of text formats (ASCII Common Layer Interface, SVG, JSON), which take long to parse, and
-    /// only if `max_memory` is at least eight times the size of the file.
+    /// Only those of text formats (ASCII Common Layer Interface, SVG, JSON, 3MF), which take long to
+    /// parse, and only if `max_memory` is at least eight times the size of the text.
     if_faster,
     none, ///< none if the format allows it
 };
