@@ -58,7 +58,7 @@ struct LayerPart {
     [[nodiscard]] std::uint64_t hatch_lines() const noexcept;
 };
 
-/// What a plane holds, all parts together.
+/// The contents of a plane, all parts together.
 struct PlaneContent {
     bool contours = false;
     std::uint64_t hatch_lines = 0;
