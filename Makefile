@@ -184,6 +184,7 @@ bench: packages  ## build and run the benchmarks (bench/README.md)
 	build-bench/bench/scan
 	build-bench/bench/small_parts
 	build-bench/bench/hostile_layers
+	build-bench/bench/light_meshes
 	build-bench/bench/kernels
 
 scaling: build  ## measure and predict bytes and seconds of lamella-mpi: out/scaling/ (bench/README.md)
