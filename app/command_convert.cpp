@@ -52,9 +52,9 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
     const LayerSteps steps = arguments.making.steps();
-    LayerFile file = read_layers(
-        arguments.input, steps.any() ? arguments.limits.of_layers() : arguments.limits.of_passing_layers(),
-        execution);
+    LayerReadOptions reading = arguments.limits.of_layers();
+    reading.layers = layers_kept(steps);
+    LayerFile file = read_layers(arguments.input, reading, execution);
     options.page.title = title_of(arguments.input);
     warn_about(file, file.warnings, arguments.strict, context.messages);
     const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);

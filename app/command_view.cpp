@@ -131,7 +131,7 @@ int run_view(const ViewArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
     MeshReadOptions reading = arguments.limits.of_meshes();
-    reading.stream_layers = !arguments.making.steps().any();
+    reading.layers = layers_kept(arguments.making.steps());
     auto read = read_any(arguments.input, reading, execution);
     auto* const file = std::get_if<LayerFile>(&read);
     const std::uint64_t layers =

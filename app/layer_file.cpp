@@ -1,8 +1,7 @@
 #include "layer_file.hpp"
 
-#include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
-#include "lamella/core/printable.hpp"
+#include "lamella/pipeline/layer_file_steps.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 
@@ -84,57 +83,24 @@ void write_planes(LayerWriter& writer, const LayerFile& file, bool search_rings,
     warn_about_inverted(file, search.doubts().inverted, strict, messages);
 }
 
+LayersKept layers_kept(const LayerSteps& steps) {
+    return steps.any() ? LayersKept::if_ample : LayersKept::if_faster;
+}
+
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
                        const Execution& execution, std::uint64_t max_memory) {
-    for (const LayerPart& part : file.parts)
-        if (part.exposure && steps.any())
-            throw Error(ErrorKind::usage,
-                        fmt::format("{}: holds scan vectors ({}), and --fill, --offset, --largest-only, "
-                                    "--min-area and --simplify are for contours: take these steps before "
-                                    "lamella scan",
-                                    file.path, one_line(part.label)));
-    // Steps drop inverted rings because they have no material, unless a fill rule defines the material.
-    if (steps.fill == FillRule::none)
-        warn_about_inverted(
-            file,
-            layer_doubts(file, steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick,
-                         execution, max_memory)
-                .inverted,
-            strict, messages);
-    std::vector<LayerStack> parts;
-    std::vector<std::string> names;
-    for (LayerPart& part : file.parts) {
-        parts.push_back(std::move(part.layers));
-        names.push_back(file.parts.size() == 1
-                            ? file.path
-                            : fmt::format("{}, part \"{}\"", file.path, excerpt(part.label)));
-    }
-    const std::vector<LayerStack> before = parts; // shares their points
-    ChangedStacks stepped = lamella::take_steps(
-        steps, std::move(parts), {.execution = execution, .max_memory = max_memory, .names = names});
-    parts = std::move(stepped.parts);
+    SteppedFile stepped = lamella::take_steps(steps, std::move(file), execution, max_memory);
+    file = std::move(stepped.file);
+    warn_about_inverted(file, stepped.inverted, strict, messages);
     StepChanges changes{.planes = std::move(stepped.planes), .all = {}};
-    std::uint64_t contours = 0;
-    std::uint64_t hatches_dropped = 0;
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        LayerPart& part = file.parts[i];
-        for (std::size_t plane = 0; plane < parts[i].size(); ++plane) {
-            contours += parts[i][plane].contours();
-            if (!part.hatches_of(plane).empty() && !same_contours(before[i][plane], parts[i][plane])) {
-                hatches_dropped += part.hatches[plane].size() / 2;
-                part.hatches[plane] = {};
-            }
-        }
-        part.layers = std::move(parts[i]);
-    }
     for (const LayerChanges& plane : changes.planes)
         changes.all += plane;
-    if (hatches_dropped > 0)
+    if (stepped.hatch_lines_dropped > 0)
         warn_about(file,
                    {fmt::format("{} left out: the contours that they fill were changed",
-                                counted(hatches_dropped, "hatch line"))},
+                                counted(stepped.hatch_lines_dropped, "hatch line"))},
                    strict, messages);
-    if (const std::string nothing = nothing_left(changes.planes.size(), contours, changes.all);
+    if (const std::string nothing = nothing_left(changes.planes.size(), stepped.contours, changes.all);
         !nothing.empty())
         warn_about(file, {nothing}, strict, messages);
     return changes;

@@ -23,15 +23,17 @@ namespace lamella::app {
 void warn_about(const LayerFile& file, const std::vector<std::string>& warnings, bool strict,
                 Messages& messages);
 
+/// Returns the layers that stay in memory if the steps are taken. Steps on layers that do not stay are taken
+/// twice.
+[[nodiscard]] LayersKept layers_kept(const LayerSteps& steps);
+
 struct StepChanges {
     std::vector<LayerChanges> planes;
     LayerChanges all;
 };
 
-/// Applies the steps. Warns like warn_about of rings that bound no material, of hatch lines that are dropped
-/// together with the contours that they fill, and of results without contours. Throws Error{usage} for steps
-/// on scan vectors, because hatches and their contours are different parts, and only contours would be
-/// offset. `max_memory` is that of lamella::take_steps.
+/// Applies the steps by lamella::take_steps. Warns like warn_about of rings that bound no material, of hatch
+/// lines that are dropped together with the contours that they fill, and of results without contours.
 StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Messages& messages,
                        const Execution& execution, std::uint64_t max_memory);
 

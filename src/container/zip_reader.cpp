@@ -15,6 +15,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -207,6 +208,7 @@ ZipReader::ZipReader(ByteSource source, std::uint64_t max_unpacked)
     : source_(std::move(source)),
       max_unpacked_(max_unpacked != 0 ? max_unpacked : usual_most_unpacked(source_.bytes.size())) {
     read_directory();
+    was_read_ = std::vector<std::atomic<bool>>(entries_.size());
 }
 
 void ZipReader::read_directory() {
@@ -364,7 +366,10 @@ ByteSource ZipReader::read(const ZipEntry& entry, const std::function<void(std::
                                             : entry.size != entry.compressed_size)
         fail(fmt::format("claims to hold {} bytes in {}, which is impossible", entry.size,
                          entry.compressed_size));
-    const std::uint64_t before = unpacked_.fetch_add(entry.size);
+    const ZipEntry* const listed = find(entry.name);
+    assert(listed != nullptr);
+    const bool first = !was_read_[static_cast<std::size_t>(listed - entries_.data())].exchange(true);
+    const std::uint64_t before = first ? unpacked_.fetch_add(entry.size) : 0;
     if (entry.size > max_unpacked_ || before > max_unpacked_ - entry.size)
         throw Error(ErrorKind::limit,
                     fmt::format("{}: zip entry '{}' of {} bytes brings what is unpacked above {} bytes; "

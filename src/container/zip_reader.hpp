@@ -30,7 +30,7 @@ class Executor;
 class ZipReader {
   public:
     /// Reads the directory. `max_unpacked` limits the bytes of all entries that are read, decompressed or
-    /// stored; 0 means `usual_most_unpacked`.
+    /// stored, each counted once; 0 means `usual_most_unpacked`.
     ZipReader(ByteSource source, std::uint64_t max_unpacked);
 
     /// Returns the entries except folders, in the order of the directory.
@@ -58,7 +58,7 @@ class ZipReader {
         return counted_warnings_;
     }
     [[nodiscard]] const std::string& name() const noexcept { return source_.name; }
-    /// Returns the number of bytes read from entries.
+    /// Returns the number of bytes of the entries that were read, each counted once.
     [[nodiscard]] std::uint64_t unpacked() const noexcept { return unpacked_.load(); }
 
   private:
@@ -70,6 +70,7 @@ class ZipReader {
     std::uint64_t max_unpacked_;
     mutable std::atomic<std::uint64_t> unpacked_{0};
     std::vector<ZipEntry> entries_;
+    mutable std::vector<std::atomic<bool>> was_read_; ///< of each entry
     std::vector<std::size_t> by_name_; ///< indices of entries in the order of their names
     std::vector<std::string> counted_warnings_;
 };

@@ -24,13 +24,28 @@ namespace lamella {
 
 namespace {
 
-LayerFile read_source(const ByteSource& source, const LayerReadOptions& options, ReadLimits& limits,
-                      const Execution& execution) {
+/// A file, and what its layers refer to if they are parsed again.
+struct OpenedFile {
+    ByteSource source;
+    ReadLimits limits;
+    std::unique_ptr<const ZipReader> archive = nullptr; ///< if it is one
+};
+
+std::uint64_t size_of_entries(const ZipReader& archive) {
+    std::uint64_t bytes = 0;
+    for (const ZipEntry& entry : archive.entries())
+        bytes += entry.size;
+    return bytes;
+}
+
+LayerFile read_source(OpenedFile& file, const LayerReadOptions& options, const Execution& execution) {
+    const ByteSource& source = file.source;
     const std::string_view bytes = source.text();
     if (is_zip(bytes)) {
-        const ZipReader package(source, most_unpacked(options));
-        if (ReadLayersOfArchive* const read = archive_reader(package))
-            return read(package, limits, execution);
+        file.archive = std::make_unique<const ZipReader>(source, most_unpacked(options));
+        file.limits.keep_in_ample_memory(size_of_entries(*file.archive));
+        if (ReadLayersOfArchive* const read = archive_reader(*file.archive))
+            return read(*file.archive, file.limits, execution);
         if (const MeshFormatRow* const other =
                 recognised_format(source, {.max_memory = most_unpacked(options)});
             !other->advice.empty())
@@ -40,8 +55,9 @@ LayerFile read_source(const ByteSource& source, const LayerReadOptions& options,
                         "stacks or toolpaths, NumPy arrays and ILT are read",
                         source.name));
     }
+    file.limits.keep_in_ample_memory(source.size());
     if (const MeshFormatRow* const format = layer_format_of(source))
-        return format->read_layers(bytes, source.name, limits, execution);
+        return format->read_layers(bytes, source.name, file.limits, execution);
     if (const MeshFormatRow* const other = recognised_format(source, {.max_memory = most_unpacked(options)});
         other != nullptr && other->read != nullptr)
         throw Error(ErrorKind::input,
@@ -74,15 +90,12 @@ namespace {
 
 /// Reads the layers once. If they are not kept in memory, keeps what is needed to parse them again.
 LayerFile read_once(const ByteSource& source, const LayerReadOptions& options, const Execution& execution) {
-    struct Opened {
-        ByteSource source;
-        ReadLimits limits;
-    };
-    const auto opened = std::make_shared<Opened>(Opened{source, {source, options}});
-    LayerFile file = read_source(opened->source, options, opened->limits, releasing(source, execution));
+    const auto opened =
+        std::make_shared<OpenedFile>(OpenedFile{.source = source, .limits = {source, options}});
+    LayerFile file = read_source(*opened, options, releasing(source, execution));
     if (file.stream) {
         const auto both =
-            std::make_shared<std::pair<std::shared_ptr<Opened>, std::shared_ptr<const LayerStream>>>(
+            std::make_shared<std::pair<std::shared_ptr<OpenedFile>, std::shared_ptr<const LayerStream>>>(
                 opened, std::move(file.stream));
         file.stream = {both, both->second.get()};
     }

@@ -27,7 +27,7 @@ struct NoLayers : Error {
 [[nodiscard]] LayerFile read_unpacked_layers(const ByteSource& source, const LayerReadOptions& options,
                                              const Execution& execution);
 
-/// Reads the layers of an archive.
+/// Reads the layers of an archive, which must live as long as the stream of the result.
 using ReadLayersOfArchive = LayerFile(const ZipReader& archive, ReadLimits& limits,
                                       const Execution& execution);
 /// Returns the reader for an archive that holds layers, or may hold them, by the names of its entries; null

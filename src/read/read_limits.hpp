@@ -74,6 +74,11 @@ class ReadLimits {
     [[nodiscard]] bool in_memory() const noexcept { return layers_ == LayersKept::all; }
     /// For formats whose layers cannot be parsed one by one.
     void keep_in_memory() noexcept { layers_ = LayersKept::all; }
+    /// `bytes` is the size of the decompressed file.
+    void keep_in_ample_memory(std::uint64_t bytes) noexcept {
+        if (layers_ == LayersKept::if_ample && !is_tight_for_layers(max_memory_, bytes))
+            keep_in_memory();
+    }
     /// For text formats; `bytes` is the size of the text.
     void keep_text_in_memory(std::uint64_t bytes) noexcept {
         if (layers_ == LayersKept::if_faster && !is_tight_for_layers(max_memory_, bytes))

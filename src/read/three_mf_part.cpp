@@ -196,7 +196,7 @@ ByteSource unpack_part(const ZipReader& package, const std::string& name, ReadLi
     return unpacked_entry(package, *entry, limits, helpers);
 }
 
-void parse_part(const ByteSource& part, const ThreeMfHandlers& handlers, Executor& executor) {
+void parse_part(const ByteSource& part, const ThreeMfHandlers& handlers, const Executor& executor) {
     ThreeMfSpaces spaces;
     bool in_root = false;
     bool usual_spaces = true;

@@ -113,7 +113,7 @@ struct ThreeMfHandlers {
 };
 
 /// Parses a part.
-void parse_part(const ByteSource& part, const ThreeMfHandlers& handlers, Executor& executor);
+void parse_part(const ByteSource& part, const ThreeMfHandlers& handlers, const Executor& executor);
 
 /// Parses elements of a part from `begin`, which is on line `line`, as parse_xml_elements does, where a part
 /// may be skimmed. `parent` is the name of their parent as written.

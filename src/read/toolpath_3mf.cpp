@@ -21,6 +21,7 @@
 #include <compare>
 #include <exception>
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -294,6 +295,49 @@ class LayerReader {
     std::uint32_t kind_ = 0; ///< its number
 };
 
+CountedWarning of_other_lasers() {
+    return {"segment is for another laser than the first; which one was left out",
+            "segments are for another laser than the first; which one was left out"};
+}
+
+/// A toolpath, and the parts of the package with its layers.
+struct ToolpathParts {
+    /// One layer.
+    struct Piece {
+        RawLayer raw;
+        PartNumbers<SegmentKind> kinds;
+        CountedWarning other_lasers = of_other_lasers();
+        DroppedContours dropped = {};
+        std::size_t end; ///< number of the next layer
+    };
+
+    const ZipReader& package;
+    Model model;
+    const Toolpath& toolpath; ///< of the model
+    std::vector<std::string> layers = {};
+
+    /// Returns the size of a unit of coordinates and heights.
+    [[nodiscard]] double unit_mm() const { return toolpath.unit * model.unit_mm; }
+
+    /// Reads the layer with this number. May be called by any number of threads at once.
+    [[nodiscard]] Piece read(std::size_t number, ReadLimits& limits, const Executor& executor) const {
+        Piece piece{.raw = {}, .kinds = PartNumbers<SegmentKind>(limits), .end = number + 1};
+        piece.raw.z = toolpath.layers[number].top * unit_mm();
+        piece.raw.begin = number;
+        const ByteSource source = unpack_part(package, layers[number], limits);
+        piece.raw.location = source.name;
+        LayerReader reader(source.name, model, toolpath, piece.kinds, piece.other_lasers, piece.raw, limits);
+        parse_part(source,
+                   {.start = [&](const ThreeMfElement& element) { reader.start(element); },
+                    .end =
+                        [&](XmlName element) {
+                            reader.end(element, piece.dropped);
+                        }},
+                   executor);
+        return piece;
+    }
+};
+
 class ToolpathReader {
   public:
     ToolpathReader(const ZipReader& package, LayerFile& file, ReadLimits& limits, const Execution& execution)
@@ -309,19 +353,22 @@ class ToolpathReader {
                             reader.start(element);
                         }},
                    executor_);
-        model_ = reader.take();
-        const Toolpath& toolpath = chosen(source.name);
-        file_.units_mm = toolpath.unit * model_.unit_mm;
+        Model model = reader.take();
+        const Toolpath& toolpath = chosen(model, source.name);
+        // Moving a map does not move what is in it.
+        const auto parts = std::make_shared<ToolpathParts>(
+            ToolpathParts{.package = package_, .model = std::move(model), .toolpath = toolpath});
+        file_.units_mm = parts->unit_mm();
         file_.rounding = {.step_mm = file_.units_mm};
         std::vector<RawLayer> layers;
         limits_.make_room(layers, toolpath.layers.size(), [] { return std::string_view("the layers"); });
-        read_layers(root, source.name, toolpath, layers);
+        read_layers(root, source.name, *parts, layers);
         if (layers.empty())
             throw Error(
                 ErrorKind::input,
                 fmt::format("{}: found a toolpath without layers; there must be one at least", source.name));
-        number_parts(toolpath, layers);
-        make_layers(toolpath, layers);
+        number_parts(*parts, layers);
+        make_layers(parts, layers);
         append_to(names_, file_.warnings);
         other_lasers_.append_to(file_.warnings);
         dropped_.append_to(file_.warnings);
@@ -329,51 +376,51 @@ class ToolpathReader {
 
   private:
     /// Returns the toolpath to which the build refers, or the first one.
-    [[nodiscard]] const Toolpath& chosen(const std::string& document) const {
-        const auto found = model_.chosen ? model_.toolpaths.find(*model_.chosen) : model_.toolpaths.begin();
-        if (found == model_.toolpaths.end())
+    [[nodiscard]] static const Toolpath& chosen(const Model& model, const std::string& document) {
+        const auto found = model.chosen ? model.toolpaths.find(*model.chosen) : model.toolpaths.begin();
+        if (found == model.toolpaths.end())
             throw Error(ErrorKind::input,
                         fmt::format("{}: found no toolpath; the build must have one", document));
         return found->second;
     }
 
-    /// One layer.
-    struct Piece {
-        RawLayer raw;
-        PartNumbers<SegmentKind> kinds;
-        CountedWarning other_lasers;
-        DroppedContours dropped = {};
-        std::size_t end; ///< number of the next layer
-    };
-
-    void read_layers(const std::string& root, const std::string& document, const Toolpath& toolpath,
+    void read_layers(const std::string& root, const std::string& document, ToolpathParts& parts,
                      std::vector<RawLayer>& layers) {
-        std::vector<std::string> names;
         std::set<const ZipEntry*> known;
+        std::uint64_t bytes = 0;
         std::exception_ptr error; // of the layer after those named
         try {
-            for (const Toolpath::Listed& listed : toolpath.layers) {
+            for (const Toolpath::Listed& listed : parts.toolpath.layers) {
                 std::string part = opc_resolved(package_, root, listed.path);
-                if (!known.insert(package_.find(part)).second)
+                const ZipEntry* const entry = package_.find(part);
+                if (!known.insert(entry).second)
                     throw Error(
                         ErrorKind::input,
                         fmt::format(
                             "{}, line {}: found the layer '{}' a second time; each has a part of its own",
                             document, listed.line, printable(listed.path, 100)));
                 limits_.add_bytes_at(sizeof part + part.size() + node_bytes, at_line(listed.line));
-                names.push_back(std::move(part));
+                parts.layers.push_back(std::move(part));
+                bytes += entry == nullptr ? 0 : entry->size;
             }
         } catch (const Error&) {
             error = std::current_exception();
         }
+        limits_.keep_text_in_memory(bytes);
         PieceBegins begins;
-        for (std::size_t i = 0; i < names.size(); ++i)
+        for (std::size_t i = 0; i < parts.layers.size(); ++i)
             begins.push_back(i);
         if (!begins.empty())
             read_pieces(
-                begins, names.size(), executor_,
-                [&](std::size_t i, std::size_t) { return read_layer(names[i], toolpath, i); },
-                [&](Piece&& piece) {
+                begins, begins.size(), executor_,
+                [&](std::size_t i, std::size_t) {
+                    executor_.check_cancelled();
+                    ToolpathParts::Piece piece = parts.read(i, limits_, executor_);
+                    if (!limits_.in_memory())
+                        piece.raw.drop_contents(limits_);
+                    return piece;
+                },
+                [&](ToolpathParts::Piece&& piece) {
                     kinds_.add(
                         piece.kinds, {&piece.raw, 1}, [](const SegmentKind& kind) { return kind; },
                         [&] { return std::string_view(piece.raw.location); });
@@ -385,39 +432,13 @@ class ToolpathReader {
             std::rethrow_exception(error);
     }
 
-    Piece read_layer(const std::string& name, const Toolpath& toolpath, std::size_t number) {
-        executor_.check_cancelled();
-        Piece piece{.raw = {},
-                    .kinds = PartNumbers<SegmentKind>(limits_),
-                    .other_lasers = of_other_lasers(),
-                    .end = number + 1};
-        piece.raw.z = toolpath.layers[number].top * file_.units_mm;
-        const ByteSource source = unpack_part(package_, name, limits_);
-        piece.raw.location = source.name;
-        LayerReader reader(source.name, model_, toolpath, piece.kinds, piece.other_lasers, piece.raw,
-                           limits_);
-        parse_part(source,
-                   {.start = [&](const ThreeMfElement& element) { reader.start(element); },
-                    .end =
-                        [&](XmlName element) {
-                            reader.end(element, piece.dropped);
-                        }},
-                   executor_);
-        return piece;
-    }
-
-    static CountedWarning of_other_lasers() {
-        return {"segment is for another laser than the first; which one was left out",
-                "segments are for another laser than the first; which one was left out"};
-    }
-
     /// Numbers parts in the order of the build, and exposures of each part in that of the profiles.
-    void number_parts(const Toolpath& toolpath, std::vector<RawLayer>& layers) {
-        std::vector<std::string> labels(model_.items.size());
-        for (const auto& [uuid, item] : model_.items)
+    void number_parts(const ToolpathParts& parts, std::vector<RawLayer>& layers) {
+        std::vector<std::string> labels(parts.model.items.size());
+        for (const auto& [uuid, item] : parts.model.items)
             labels[item.first] = item.second;
-        std::vector<const Toolpath::Profile*> profiles(toolpath.profiles.size());
-        for (const auto& [uuid, profile] : toolpath.profiles)
+        std::vector<const Toolpath::Profile*> profiles(parts.toolpath.profiles.size());
+        for (const auto& [uuid, profile] : parts.toolpath.profiles)
             profiles[profile.number] = &profile;
         ReadLabels read_labels;
         std::map<std::size_t, std::string> names; // of items with vectors
@@ -447,18 +468,24 @@ class ToolpathReader {
         return part;
     }
 
-    void make_layers(const Toolpath& toolpath, std::vector<RawLayer>& layers) {
+    void make_layers(std::shared_ptr<const ToolpathParts> parts, std::vector<RawLayer>& layers) {
         sort_by_height(layers, file_.warnings);
         check_part_planes(file_, layers.size(), package_.unpacked());
-        const double bottom = std::min(toolpath.bottom * file_.units_mm, layers.front().z);
-        add_layers_by_tops(file_, layers, bottom, limits_, executor_);
+        const double bottom = std::min(parts->toolpath.bottom * file_.units_mm, layers.front().z);
+        add_layers_by_tops(file_, layers, bottom, limits_, executor_,
+                           [parts = std::move(parts), kinds = kinds_.keys()](std::size_t begin,
+                                                                             ReadLimits& limits) {
+                               const Execution silent{.threads = 1};
+                               ToolpathParts::Piece piece = parts->read(begin, limits, Executor(silent));
+                               piece.kinds.put(piece.raw, kinds);
+                               return std::move(piece.raw);
+                           });
     }
 
     const ZipReader& package_;
     LayerFile& file_;
     ReadLimits& limits_;
     Executor executor_;
-    Model model_;
     PartNumbers<SegmentKind> kinds_;
     DistinctNames names_;
     CountedWarning other_lasers_ = of_other_lasers();

@@ -328,10 +328,9 @@ void expect_harmless(std::string_view bytes) {
 
 TEST(SliceFormats, AreTheSameWhereLayersAreParsedWhenTheyAreNeeded) {
     for (const Resolution& format : readable()) {
-        const bool parses_twice = format.format != std::string("3mf-toolpath");
         const std::string bytes = written(format.format, random_parts(9, format.parts ? 3 : 1, 400));
         for (const unsigned threads : {1U, 2U, 3U, 7U, 16U})
-            EXPECT_EQ(expect_same_stream(bytes, threads), parses_twice) << format.format;
+            EXPECT_TRUE(expect_same_stream(bytes, threads)) << format.format;
     }
 }
 

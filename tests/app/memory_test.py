@@ -218,16 +218,16 @@ class Memory(ProgramTest):
         for name in "a.cli", "b.cli":
             self.succeed("info", name, "--max-memory", "64M")
         self.assertLess(self.peak("compare", "a.cli", "b.cli", "--max-memory", "64M"), 89e6)
-        self.succeed("convert", "a.cli", "a.ilt")
-        for name in "a.3mf", "b.3mf":  # the layers of these stay in memory
-            self.succeed("convert", "a.ilt", name, "--format", "3mf-toolpath")
-        self.assertLess(self.peak("compare", "a.3mf", "b.3mf", "--max-memory", "64M", codes=(5,)), 89e6)
-        self.fail_with(5, r"b\.3mf: takes more than the 64000000 bytes of --max-memory together with the files read before, which "
-                       r"take 2060\d{4} ", "compare", "a.3mf", "b.3mf", "--max-memory", "64M")
-        self.succeed("compare", "a.3mf", "b.3mf", "--max-memory", "150M")
+        self.succeed("make", "box", "--size", 10, "-o", "box.stl")
+        for name in "many.cli", "more.cli":  # planes stay in memory, their contours do not
+            self.succeed("slice", "box.stl", "-o", name, "--layer-height", 0.0002)
+        self.assertLess(self.peak("compare", "many.cli", "more.cli", "--max-memory", "64M", codes=(5,)), 89e6)
+        self.fail_with(5, r"more\.cli: takes more than the 64000000 bytes of --max-memory together with the files read before, which "
+                       r"take 508\d{5} ", "compare", "many.cli", "more.cli", "--max-memory", "64M")
+        self.succeed("compare", "many.cli", "more.cli", "--max-memory", "150M")
         self.lattice("mesh.ply", "--cells", 20)
-        self.fail_with(5, r"mesh\.ply: takes more than the 60000000 bytes .* files read before", "verify", "a.3mf", "--mesh", "mesh.ply",
-                       "--max-memory", "60M")
+        self.fail_with(5, r"mesh\.ply: takes more than the 60000000 bytes .* files read before", "verify", "many.cli", "--mesh",
+                       "mesh.ply", "--max-memory", "60M")
 
     def test_layers_that_are_parsed_twice_share_no_limit_with_a_mesh(self):
         self.succeed("convert", self.large_layers(), "a.cli")
@@ -239,6 +239,26 @@ class Memory(ProgramTest):
         self.succeed("convert", self.large_layers(), "a.cli")
         for name in "b.cli", "b.slc", "b.ovf":
             self.succeed("convert", "a.cli", name, "--max-memory", "24M", "--threads", 1)
+
+    def test_layers_of_toolpaths_in_3mf_take_little_memory(self):
+        self.succeed("convert", self.large_layers(), "a.ilt")
+        self.succeed("convert", "a.ilt", "a.3mf", "--format", "3mf-toolpath")
+        self.succeed("convert", "a.3mf", "b.cli")
+        self.assertLess(self.peak("convert", "a.3mf", "c.cli", "--max-memory", "44M", "--threads", 1), 60e6)
+        self.assertEqual(self.bytes_of("c.cli"), self.bytes_of("b.cli"))
+
+    def test_layer_steps_take_little_memory(self):
+        self.succeed("convert", self.large_layers(), "a.cli")
+        steps = ["--min-area", "1", "--simplify", "0.001"]
+        kept = self.succeed("convert", "a.cli", "b.cli", *steps).text
+        self.assertLess(self.peak("convert", "a.cli", "c.cli", *steps, "--max-memory", "40M", "--threads", 1), 45e6)
+        self.assertEqual(self.bytes_of("c.cli"), self.bytes_of("b.cli"))
+        self.assertEqual(self.succeed("convert", "a.cli", "c.cli", *steps, "--max-memory", "40M").text,
+                         kept.replace("b.cli", "c.cli"))
+        pages = [self.path(name) for name in ("b.html", "c.html")]
+        for page, options in zip(pages, ([], ["--max-memory", "40M"])):
+            self.succeed("view", "a.cli", "-o", page.name, *steps, *options)
+        self.assertEqual(*(page.read_bytes() for page in pages))
 
     def test_ranges_give_the_same_bytes(self):
         self.check(self.lattice(), least_ranges=3)

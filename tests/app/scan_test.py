@@ -455,8 +455,8 @@ class Scan(ProgramTest):
     def test_steps_are_for_contours(self):
         self.succeed("slice", "part.stl", "-o", "job.ovf", "--layer-height", "1", "--scan")
         for step in (["--offset", "0.1"], ["--fill", "nonzero"], ["--simplify", "0.1"], ["--min-area", "1"], ["--largest-only"]):
-            self.fail_with(2, "job.ovf: holds scan vectors .* before lamella scan", "convert", "job.ovf", "x.cli", *step)
-            self.fail_with(2, "job.ovf: holds scan vectors .* before lamella scan", "view", "job.ovf", "-o", "x.html", *step)
+            self.fail_with(2, "job.ovf: holds scan vectors .part core hatch.; steps such as --fill .* before vectors are made", "convert", "job.ovf", "x.cli", *step)
+            self.fail_with(2, "job.ovf: holds scan vectors .part core hatch.; steps such as --fill .* before vectors are made", "view", "job.ovf", "-o", "x.html", *step)
         self.succeed("convert", "job.ovf", "job.ilt")
 
     def test_jobs_of_machines_keep_what_is_exposed(self):

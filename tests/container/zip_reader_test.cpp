@@ -303,6 +303,17 @@ TEST(ZipReader, UnpacksNoMoreThanItMayAndSaysWhichOptionAllowsMore) {
     EXPECT_TRUE(says(error_of(bytes, 1, ErrorKind::limit), "zip entry 'a'"));
 }
 
+TEST(ZipReader, CountsAnEntryThatIsReadAgainOnce) {
+    const std::string bytes =
+        zip_bytes({{.name = "a", .content = long_text}, {.name = "b", .content = "end", .deflated = false}});
+    const ZipReader zip(source_of(bytes), long_text.size() + 3);
+    for (int pass = 0; pass < 3; ++pass) {
+        EXPECT_EQ(content(zip, "a"), long_text);
+        EXPECT_EQ(content(zip, "b"), "end");
+    }
+    EXPECT_EQ(zip.unpacked(), long_text.size() + 3);
+}
+
 TEST(ZipReader, FirstBytesOfAnEntryTakeNoMoreThanThese) {
     const std::string content(10'000'000, 'a');
     for (const bool deflated : {true, false}) {

@@ -181,5 +181,33 @@ TEST(LayerFile, WhoseLayersAreNotInMemoryNeedsNoMemoryForThem) {
         ASSERT_EQ(file.plane(i).polylines.front().points.size(), 2000U);
 }
 
+TEST(LayerFile, KeepsLayersInAmpleMemory) {
+    std::string bytes = "$$HEADERSTART\n$$BINARY\n$$UNITS/1\n$$VERSION/200\n$$HEADEREND";
+    for (int z = 1; z <= 100; ++z) {
+        const auto put = [&](auto value) {
+            bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+        };
+        put(std::uint16_t{127});
+        put(static_cast<float>(z));
+        put(std::uint16_t{130});
+        for (const std::int32_t number : {1, 1, 400})
+            put(number);
+        for (int i = 0; i < 100; ++i)
+            for (const float value : {0.F, 0.F, 9.F, 0.F, 9.F, 9.F, 0.F, 9.F})
+                put(value);
+    }
+    const auto kept = [&](LayersKept layers, std::uint64_t max_memory) {
+        const LayerFile file = read_layers(std::as_bytes(std::span(bytes)), "a.cli",
+                                           {.max_memory = max_memory, .layers = layers}, {.threads = 1});
+        EXPECT_EQ(file.planes().size(), 100U);
+        return file.stream == nullptr;
+    };
+    const std::uint64_t ample = 8 * bytes.size();
+    EXPECT_TRUE(kept(LayersKept::if_ample, 0));
+    EXPECT_TRUE(kept(LayersKept::if_ample, ample));
+    EXPECT_FALSE(kept(LayersKept::if_ample, ample - 1));
+    EXPECT_FALSE(kept(LayersKept::if_faster, ample));
+}
+
 } // namespace
 } // namespace lamella

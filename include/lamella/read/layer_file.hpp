@@ -24,6 +24,9 @@ namespace lamella {
 /// The layers that stay in memory while a file is open. All others are parsed again; see LayerStream.
 enum class LayersKept {
     all,
+    /// All if `max_memory` is at least eight times the size of the decompressed file, otherwise none. For
+    /// layers that take long to process and that are needed more than once.
+    if_ample,
     /// Only those of text formats (ASCII Common Layer Interface, SVG, JSON, 3MF), which take long to
     /// parse, and only if `max_memory` is at least eight times the size of the text.
     if_faster,

@@ -1,0 +1,38 @@
+#pragma once
+
+// Layer steps on the layers of a slice file.
+
+#include "lamella/contour/open_gaps.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/polygon/layer_steps.hpp"
+#include "lamella/read/layer_file.hpp"
+
+#include <cstdint>
+#include <vector>
+
+LAMELLA_API_BEGIN
+namespace lamella {
+
+/// A slice file after layer steps.
+struct SteppedFile {
+    LayerFile file;
+    std::vector<LayerChanges> planes; ///< changes of each plane
+    std::uint64_t contours = 0;       ///< that are left
+    std::uint64_t hatch_lines_dropped = 0;
+    /// Rings that bounded no material before the steps. Not searched for if `LayerSteps::fill` defines the
+    /// material.
+    InvertedLayers inverted = {};
+};
+
+/// Applies the steps to the layers of a file, in parallel. Drops the hatch lines of a layer whose contours
+/// change. If the layers are not in memory, those of the result are not either: the steps are taken twice,
+/// now for what is known of the whole file, and then whenever a plane is needed, for which the cancel flag of
+/// `execution` must live as long as the stream. `max_memory`: see layer_limits. Throws Error{usage} for parts
+/// that are scan vectors, because hatches and their contours are different parts, and only contours would
+/// change; the errors of the steps, which name the file and the part; and Error{cancelled}.
+[[nodiscard]] SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution& execution = {},
+                                     std::uint64_t max_memory = 0);
+
+} // namespace lamella
+LAMELLA_API_END
