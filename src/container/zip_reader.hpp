@@ -71,7 +71,7 @@ class ZipReader {
     mutable std::atomic<std::uint64_t> unpacked_{0};
     std::vector<ZipEntry> entries_;
     mutable std::vector<std::atomic<bool>> was_read_; ///< of each entry
-    std::vector<std::size_t> by_name_; ///< indices of entries in the order of their names
+    std::vector<std::size_t> by_name_;                ///< indices of entries in the order of their names
     std::vector<std::string> counted_warnings_;
 };
 

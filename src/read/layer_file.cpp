@@ -151,9 +151,9 @@ void check(const LayerFile& file) {
                             "put together where all have the same planes",
                             file.path, excerpt(part.label), part.layers.size(), planes));
         if (!part.hatches.empty() && part.hatches.size() != planes)
-            throw Error(ErrorKind::usage, fmt::format("{}: the part \"{}\" has {} layers and hatch lines of {}",
-                                                      file.path, excerpt(part.label), planes,
-                                                      part.hatches.size()));
+            throw Error(ErrorKind::usage,
+                        fmt::format("{}: the part \"{}\" has {} layers and hatch lines of {}", file.path,
+                                    excerpt(part.label), planes, part.hatches.size()));
     }
 }
 

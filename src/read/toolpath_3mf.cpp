@@ -472,14 +472,14 @@ class ToolpathReader {
         sort_by_height(layers, file_.warnings);
         check_part_planes(file_, layers.size(), package_.unpacked());
         const double bottom = std::min(parts->toolpath.bottom * file_.units_mm, layers.front().z);
-        add_layers_by_tops(file_, layers, bottom, limits_, executor_,
-                           [parts = std::move(parts), kinds = kinds_.keys()](std::size_t begin,
-                                                                             ReadLimits& limits) {
-                               const Execution silent{.threads = 1};
-                               ToolpathParts::Piece piece = parts->read(begin, limits, Executor(silent));
-                               piece.kinds.put(piece.raw, kinds);
-                               return std::move(piece.raw);
-                           });
+        add_layers_by_tops(
+            file_, layers, bottom, limits_, executor_,
+            [parts = std::move(parts), kinds = kinds_.keys()](std::size_t begin, ReadLimits& limits) {
+                const Execution silent{.threads = 1};
+                ToolpathParts::Piece piece = parts->read(begin, limits, Executor(silent));
+                piece.kinds.put(piece.raw, kinds);
+                return std::move(piece.raw);
+            });
     }
 
     const ZipReader& package_;

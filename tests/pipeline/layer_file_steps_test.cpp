@@ -1,7 +1,6 @@
-#include "lamella/pipeline/layer_file_steps.hpp"
-
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/contour/stack_hash.hpp"
+#include "lamella/pipeline/layer_file_steps.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "fixtures/expect_error.hpp"
@@ -72,9 +71,9 @@ void expect_same(const SteppedFile& found, const SteppedFile& expected) {
 }
 
 TEST(LayerFileSteps, GiveTheSameIfLayersAreNotInMemory) {
-    for (const LayerSteps& steps : {LayerSteps{.fill = FillRule::nonzero}, LayerSteps{.offset_mm = -0.05},
-                                    LayerSteps{.offset_mm = 0.1, .simplify_mm = 0.01},
-                                    LayerSteps{.min_area_mm2 = 1e6}, LayerSteps{}}) {
+    for (const LayerSteps& steps :
+         {LayerSteps{.fill = FillRule::nonzero}, LayerSteps{.offset_mm = -0.05},
+          LayerSteps{.offset_mm = 0.1, .simplify_mm = 0.01}, LayerSteps{.min_area_mm2 = 1e6}, LayerSteps{}}) {
         const SteppedFile expected = take_steps(steps, file_of(LayersKept::all));
         for (const unsigned threads : {1U, 2U, 3U, 7U, 16U})
             expect_same(take_steps(steps, file_of(LayersKept::none), {.threads = threads}), expected);
