@@ -45,7 +45,7 @@ class Kills(ProgramTest):
             self.succeed(*command, "--scale", "1.1")
             old = content(self.path("out"))
             self.assertNotEqual(old, new)
-            for _ in range(40 if AT_LENGTH else 8):
+            for _ in range(20 if AT_LENGTH else 8):
                 process = self.start(*command)
                 time.sleep(chance.uniform(0, took))
                 process.send_signal(signal.SIGKILL)
@@ -98,7 +98,7 @@ class Kills(ProgramTest):
         seed = random.randrange(10**6)
         chance = random.Random(seed)
         signals = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
-        end = time.monotonic() + (120 if AT_LENGTH else 6)
+        end = time.monotonic() + (50 if AT_LENGTH else 6)
         for i in itertools.count():
             if time.monotonic() > end:
                 break
@@ -140,7 +140,7 @@ class Kills(ProgramTest):
                 for command in commands:
                     self.succeed(*command)
                     wholes.append(content(self.path("out")))
-                for _ in range(20 if AT_LENGTH else 3):
+                for _ in range(10 if AT_LENGTH else 3):
                     processes = [self.start(*command) for command in commands]
                     while any(p.poll() is None for p in processes):
                         pass
@@ -160,7 +160,7 @@ class Kills(ProgramTest):
         command = ["slice", "--batch", "in", "-o", "out", "--format", "cli"]
         self.succeed(*command)
         expected = {p.name: p.read_bytes() for p in self.path("out").iterdir()}
-        for _ in range(20 if AT_LENGTH else 3):
+        for _ in range(10 if AT_LENGTH else 3):
             for path in self.path("out").iterdir():
                 path.unlink()
             process = self.start(*command)
