@@ -28,9 +28,10 @@ struct SteppedFile {
 /// Applies the steps to the layers of a file, in parallel. Drops the hatch lines of a layer whose contours
 /// change. If the layers are not in memory, those of the result are not either: the steps are taken twice,
 /// now for what is known of the whole file, and then whenever a plane is needed, for which the cancel flag of
-/// `execution` must live as long as the stream. `max_memory`: see layer_limits. Throws Error{usage} for parts
-/// that are scan vectors, because hatches and their contours are different parts, and only contours would
-/// change; the errors of the steps, which name the file and the part; and Error{cancelled}.
+/// `execution` must live as long as the stream. Without steps, the file is returned as it is and the counts
+/// are 0. `max_memory`: see layer_limits. Throws Error{usage} for parts that are scan vectors, because hatches
+/// and their contours are different parts, and only contours would change; the errors of the steps, which
+/// name the file and the part; and Error{cancelled}.
 [[nodiscard]] SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution& execution = {},
                                      std::uint64_t max_memory = 0);
 
