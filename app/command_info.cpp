@@ -1,8 +1,8 @@
 #include "lamella/contour/exposure.hpp"
-#include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/pipeline/layer_files.hpp"
 #include "lamella/read/any_file.hpp"
 #include "lamella/write/layer_page.hpp"
 
@@ -98,28 +98,6 @@ bool holds_vectors(const LayerFile& file) {
                        [](const LayerPart& part) { return part.exposure.has_value(); });
 }
 
-/// Returns each exposure of the file with its figures. The beam exposes the parts of a layer one after the
-/// other.
-std::vector<ExposureResult> exposures_of(const LayerFile& file) {
-    std::vector<ExposureResult> exposures;
-    for (const LayerPart& part : file.parts)
-        if (part.exposure)
-            exposures.push_back({*part.exposure, {}});
-    for (std::size_t i = 0; i < file.parts.front().layers.size(); ++i) {
-        std::optional<Point2> beam;
-        auto exposure = exposures.begin();
-        for (const LayerPart& part : file.parts)
-            if (part.exposure) {
-                const MeasuredVectors measured =
-                    measure_vectors(part.layers[i], part.hatches_of(i), part.exposure->parameters, beam);
-                beam = measured.beam;
-                exposure->figures += measured.figures;
-                ++exposure;
-            }
-    }
-    return exposures;
-}
-
 /// Returns the figures of vectors. Times and energies are included if the file contains speeds and powers;
 /// jumps at an unknown speed take no time.
 Figures vector_figures(const std::vector<ExposureResult>& exposures) {
@@ -142,20 +120,12 @@ Figures vector_figures(const std::vector<ExposureResult>& exposures) {
     return figures;
 }
 
-Figures figures_of(const LayerFile& file, const std::vector<ExposureResult>& exposures) {
-    LayerMeasure all;
-    double volume_mm3 = 0;
+Figures figures_of(const LayerFile& file, const FileFigures& measured) {
     std::uint64_t other_hatches = 0; // without an exposure
-    for (const LayerPart& part : file.parts) {
-        other_hatches += part.exposure ? 0 : part.hatch_lines();
-        for (const Layer& layer : part.layers) {
-            const LayerMeasure measured = measure(layer);
-            all.add(measured);
-            volume_mm3 += measured.area_mm2 * layer.thickness();
-        }
-    }
-    const LayerStack& layers = file.parts.front().layers;
-    Figures figures = layer_figures(layers.size(), all, volume_mm3);
+    for (std::size_t i = 0; i < file.parts.size(); ++i)
+        other_hatches += file.parts[i].exposure ? 0 : file.hatch_lines(i);
+    const LayerStack& layers = file.planes();
+    Figures figures = layer_figures(layers.size(), measured.contours, measured.volume_mm3);
     Figure range{"z_range", Json(), "from"};
     if (!layers.empty()) {
         const double bottom = layers.front().bottom;
@@ -171,7 +141,7 @@ Figures figures_of(const LayerFile& file, const std::vector<ExposureResult>& exp
         // Contours of some exposures lie within those of others, so all contours together do not bound a
         // volume.
         std::erase_if(figures, [](const Figure& figure) { return figure.key == "volume_mm3"; });
-        for (Figure& figure : vector_figures(exposures))
+        for (Figure& figure : vector_figures(measured.exposures))
             figures.push_back(std::move(figure));
     }
     return figures;
@@ -213,7 +183,8 @@ Json layers_json(const std::string& path, const LayerFile& file, const Figures& 
     return json;
 }
 
-int describe_layers(const InfoArguments& arguments, const LayerFile& file, const Context& context) {
+int describe_layers(const InfoArguments& arguments, const LayerFile& file, const Context& context,
+                    const Execution& execution) {
     context.messages.warn_of(input_name(file.path), file.warnings);
     if (arguments.placement.given())
         throw Error(ErrorKind::usage,
@@ -224,15 +195,13 @@ int describe_layers(const InfoArguments& arguments, const LayerFile& file, const
             fmt::format("{}: --self-intersections and --report are for meshes; lamella view writes a page of "
                         "a slice file",
                         file.path));
-    const std::vector<ExposureResult> exposures = exposures_of(file);
-    const Figures figures = figures_of(file, exposures);
-    const std::vector<RegionFigures> regions = region_figures(exposures);
+    const FileFigures measured = measure(file, execution);
+    const Figures figures = figures_of(file, measured);
+    const std::vector<RegionFigures> regions = region_figures(measured.exposures);
     context.messages.result(arguments.json ? json_text(layers_json(arguments.input, file, figures, regions))
                                            : layers_text(file, figures, regions));
-    const std::uint64_t open_chains = as_json(figures)["open_chains"];
-    if (arguments.strict && open_chains > 0)
-        throw Error(ErrorKind::defect,
-                    fmt::format("{}: has {}", file.path, counted(open_chains, "open chain")));
+    if (const std::size_t chains = measured.contours.open_chains; arguments.strict && chains > 0)
+        throw Error(ErrorKind::defect, fmt::format("{}: has {}", file.path, counted(chains, "open chain")));
     return 0;
 }
 
@@ -242,10 +211,11 @@ int run_info(const InfoArguments& arguments, const Context& context) {
     arguments.limits.prepare_memory();
     MeshReadOptions options = arguments.limits.of_meshes();
     options.strict = arguments.strict;
+    options.layers = LayersKept::if_faster;
     const auto file = read_any(arguments.input, options, execution);
     if (const auto* mesh = std::get_if<MeshFile>(&file))
         return describe_mesh(arguments, *mesh, context, execution);
-    return describe_layers(arguments, std::get<LayerFile>(file), context);
+    return describe_layers(arguments, std::get<LayerFile>(file), context, execution);
 }
 
 } // namespace

@@ -1,7 +1,7 @@
 #include "layer_file.hpp"
 
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/layer_file_steps.hpp"
+#include "lamella/pipeline/layer_files.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 
@@ -79,7 +79,7 @@ void write_planes(LayerWriter& writer, const LayerFile& file, bool search_rings,
                 search.look_at(i, file, plane);
             return plane;
         },
-        execution);
+        file.for_planes(execution));
     warn_about_inverted(file, search.doubts().inverted, strict, messages);
 }
 

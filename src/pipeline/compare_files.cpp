@@ -266,8 +266,7 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
     check_tolerance(options.tolerance_mm);
     check(first);
     check(second);
-    FileComparison result{
-        .layers = {}, .details = {}, .parameters = {}, .only_first = {}, .only_second = {}};
+    FileComparison result{.layers = {}, .details = {}, .parameters = {}, .only_first = {}, .only_second = {}};
     const std::vector<PartPair> pairs = compare_exposures(first, second, result);
     const std::vector<std::string> labels = hatched_labels(first);
     const bool by_label = labels == hatched_labels(second);
@@ -281,7 +280,7 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
             others.push_back({other});
         }
     }
-    Executor executor(execution);
+    Executor executor(second.for_planes(first.for_planes(execution)));
     MovedPoints tolerance{options.tolerance_mm.value_or(0), options.tolerance_mm.value_or(0)};
     if (!options.tolerance_mm) {
         const MovedPoints moved[2] = {moved_points(first, executor), moved_points(second, executor)};

@@ -1,9 +1,8 @@
-#include "lamella/pipeline/layer_file_steps.hpp"
-
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/layer_limits.hpp"
 #include "lamella/core/printable.hpp"
+#include "lamella/pipeline/layer_files.hpp"
 
 #include "core/executor.hpp"
 #include "core/progress.hpp"
@@ -150,7 +149,7 @@ SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution&
     if (!steps.any())
         return result;
     check_contours(result.file);
-    Executor executor(execution);
+    Executor executor(result.file.for_planes(execution));
     const auto stepper = std::make_shared<const PlaneSteps>(
         PlaneSteps{.steps = steps,
                    .limits = layer_limits(execution, max_memory, executor.workers()),
@@ -183,6 +182,8 @@ SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution&
         LayerStream stream{.planes = before->planes,
                            .contents = std::move(contents),
                            .bytes = before->bytes + planes * (sizeof(Layer) + sizeof(PlaneContent)),
+                           .plane_bytes = before->plane_bytes,
+                           .spare_bytes = before->spare_bytes,
                            .parse = [before, stepper](std::size_t position) {
                                return stepper->take(before->parse(position)).vectors;
                            }};

@@ -224,7 +224,7 @@ LayerDoubts layer_doubts(std::span<const LayerStack> parts, const Rounding& roun
 
 LayerDoubts layer_doubts(const LayerFile& file, InversionSearch search, const Execution& execution,
                          std::uint64_t max_memory) {
-    return searched(file.planes().size(), file.rounding, search, execution, max_memory,
+    return searched(file.planes().size(), file.rounding, search, file.for_planes(execution), max_memory,
                     [&](LayerDoubtSearch& all, std::size_t i) { all.look_at(i, file, file.plane(i)); });
 }
 

@@ -464,7 +464,7 @@ void write_anew(const std::vector<ShardFile>& shards, const std::string& output,
             return plane;
         };
         write_planes(*writer, known.size(), moved_plane,
-                     without_progress(execution)); // a stage must not repeat for each file
+                     without_progress(file.for_planes(execution))); // a stage must not repeat for each file
         top = known.back().top;
         next = known.back().index + moved + 1;
     }

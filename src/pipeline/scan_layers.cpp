@@ -112,7 +112,7 @@ FileResult scan_layers(const std::string& path, const LayerFormat& format, const
                        std::uint64_t max_memory) {
     return scan_planes(
         path, format, file.planes(), [&](std::size_t plane) { return file.plane(plane).polylines; },
-        file.rounding, info, strategy, options, execution, max_memory, file.path);
+        file.rounding, info, strategy, options, file.for_planes(execution), max_memory, file.path);
 }
 
 } // namespace lamella

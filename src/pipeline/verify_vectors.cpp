@@ -38,8 +38,7 @@ class VectorCheck {
         : options_(options), rounding_(rounding), tolerance_(rounding + options.steps.simplify_mm),
           before_(before) {}
 
-    void check(const PlaneGroup& group, const MaterialBounds& bounds,
-               PlaneFindings& found) const {
+    void check(const PlaneGroup& group, const MaterialBounds& bounds, PlaneFindings& found) const {
         std::uint64_t all = 0;
         for (const PlaneExposure& part : group) {
             const Layer& vectors = part.polylines;
@@ -68,8 +67,7 @@ class VectorCheck {
 
     /// Checks that each contour that the strategy prescribes for a part is present and encloses the area at
     /// its depth.
-    void check_rows(const PlaneGroup& group, const MaterialBounds& bounds,
-                    PlaneFindings& found) const {
+    void check_rows(const PlaneGroup& group, const MaterialBounds& bounds, PlaneFindings& found) const {
         if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0)
             return;
         const ContourRule& rule = contours_of(*options_.strategy, group.front().exposure.region);
@@ -148,8 +146,7 @@ class VectorCheck {
         }
     }
 
-    void find_outside(const PlaneGroup& group, const MaterialBounds& bounds,
-                      PlaneFindings& found) const {
+    void find_outside(const PlaneGroup& group, const MaterialBounds& bounds, PlaneFindings& found) const {
         // The material is grown a little, so that points on an edge are inside.
         Layer material = bounds.sections.front();
         for (std::size_t i = 1; i < bounds.sections.size(); ++i)
@@ -163,11 +160,10 @@ class VectorCheck {
             // the innermost contour also run along the middle of areas that are too thin for a hatch.
             const bool in_walls = part.exposure.kind == VectorKind::contour;
             if (in_walls && options_.strategy)
-                find_in_thick(
-                    edges,
-                    std::max(0.0, deepest_line(part.exposure, *options_.strategy) - bounds.depth) + grown +
-                        tolerance_,
-                    part.polylines, part.hatches, found.misplaced);
+                find_in_thick(edges,
+                              std::max(0.0, deepest_line(part.exposure, *options_.strategy) - bounds.depth) +
+                                  grown + tolerance_,
+                              part.polylines, part.hatches, found.misplaced);
             if (part.outermost && !options_.mesh)
                 continue;
             const Layer& vectors = part.polylines;
@@ -290,7 +286,7 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
     for (const LayerPart& part : file.parts)
         for (const Layer& layer : part.layers)
             check(layer);
-    Executor executor(execution);
+    Executor executor(file.for_planes(execution));
     const std::vector<ExposureGroup> groups = groups_of(file, options.mesh.has_value(), executor);
     // Requirements on contours apply to each part. A mesh does not distinguish parts.
     const std::vector<ExposureGroup> of_parts =
@@ -337,10 +333,10 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
             if (by_mesh)
                 bounds.sections = sections[i];
             else if (group.outermost)
-                bounds = {
-                    {vectors.polylines[*group.outermost]},
-                    options.strategy ? depth_of(*file.parts[*group.outermost].exposure, *options.strategy)
-                                     : 0};
+                bounds = {{vectors.polylines[*group.outermost]},
+                          options.strategy
+                              ? depth_of(*file.parts[*group.outermost].exposure, *options.strategy)
+                              : 0};
             return bounds;
         };
         for (const ExposureGroup& group : groups)

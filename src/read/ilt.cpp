@@ -363,6 +363,7 @@ LayerStream joined(std::vector<StreamedFile> files, const LayerStack& planes, co
         all.boxes.insert(all.boxes.end(), stream.boxes.begin(), stream.boxes.end());
         all.hatch_lines.insert(all.hatch_lines.end(), stream.hatch_lines.begin(), stream.hatch_lines.end());
         all.largest_coordinate = std::max(all.largest_coordinate, stream.largest_coordinate);
+        all.plane_bytes += stream.plane_bytes;
         all.largest_hatch_coordinate =
             std::max(all.largest_hatch_coordinate, stream.largest_hatch_coordinate);
         for (std::size_t i = 0; i < planes.size(); ++i)
@@ -378,6 +379,7 @@ LayerStream joined(std::vector<StreamedFile> files, const LayerStack& planes, co
             box.max.z = planes.back().top;
         }
     all.bytes = limits.bytes();
+    all.spare_bytes = limits.bytes_left();
     all.parse = [files = std::move(files)](std::size_t plane) {
         ScanVectors vectors;
         for (const StreamedFile& file : files) {
@@ -497,8 +499,7 @@ LayerFile read_ilt(const ZipReader& zip, ReadLimits& limits, const Execution& ex
         }
     }
     if (!streamed.empty())
-        result.stream =
-            std::make_shared<const LayerStream>(joined(std::move(streamed), planes, limits));
+        result.stream = std::make_shared<const LayerStream>(joined(std::move(streamed), planes, limits));
     return result;
 }
 

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cassert>
+#include <cmath>
 #include <tuple>
 
 namespace lamella {
@@ -161,8 +161,10 @@ LayerStream stream_of(const LayerFile& file, std::span<const PlacedLayer> planes
         begins.emplace_back().push_back(plane.raw->begin);
         begins.back().insert(begins.back().end(), plane.raw->joined.begin(), plane.raw->joined.end());
         PlaneContent& content = stream.contents.emplace_back();
+        std::uint64_t points = 0;
         for (const RawLayer::Run& run : plane.raw->runs()) {
             stream.boxes[run.part].add(run.box);
+            points += run.end - run.begin;
             const bool hatches = run.kind == RawLayer::Run::Kind::hatch;
             double& largest = hatches ? stream.largest_hatch_coordinate : stream.largest_coordinate;
             for (const Point3& corner : {run.box.min, run.box.max})
@@ -174,8 +176,10 @@ LayerStream stream_of(const LayerFile& file, std::span<const PlacedLayer> planes
                 content.contours = true;
             }
         }
+        stream.plane_bytes = std::max(stream.plane_bytes, bytes_of_plane(points));
     }
     stream.bytes = limits.bytes();
+    stream.spare_bytes = limits.bytes_left();
     for (Box3& box : stream.boxes)
         if (!box.empty()) {
             box.min.z = planes.front().bottom;

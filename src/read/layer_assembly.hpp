@@ -292,6 +292,14 @@ void append_to(const DistinctNames& names, std::vector<std::string>& warnings);
 /// the points.
 inline constexpr std::uint64_t of_empty_layer = 128;
 
+/// Returns approximately the memory that a plane takes while it is parsed: lists of points that grow, and two
+/// copies of the points until its layers are made.
+[[nodiscard]] constexpr std::uint64_t bytes_of_plane(std::uint64_t points) noexcept {
+    constexpr std::uint64_t copies = 4;
+    constexpr std::uint64_t few = std::uint64_t{1} << 16;
+    return copies * points * sizeof(Point2) + few;
+}
+
 /// The index and the heights of a plane, and what the file has there.
 struct PlacedLayer {
     RawLayer* raw = nullptr;

@@ -16,6 +16,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <atomic>
+#include <functional>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -88,12 +91,34 @@ ReadLayersOfArchive* archive_reader(const ZipReader& archive) {
 
 namespace {
 
+/// Returns a function that parses planes of a file on disk, and releases the memory of its bytes again and
+/// again.
+std::function<ScanVectors(std::size_t)> releasing_planes(const LayerStream& stream,
+                                                         const ByteSource& source) {
+    constexpr std::uint64_t most_in_memory = std::uint64_t{1} << 22;
+    const std::uint64_t planes =
+        stream.planes.size() * most_in_memory / std::max<std::uint64_t>(1, source.size());
+    return [parse = stream.parse, &source, planes = std::max<std::uint64_t>(1, planes),
+            parsed = std::make_shared<std::atomic<std::uint64_t>>(0)](std::size_t position) {
+        ScanVectors plane = parse(position);
+        if (++*parsed % planes == 0)
+            release(source, source.bytes);
+        return plane;
+    };
+}
+
 /// Reads the layers once. If they are not kept in memory, keeps what is needed to parse them again.
 LayerFile read_once(const ByteSource& source, const LayerReadOptions& options, const Execution& execution) {
     const auto opened =
         std::make_shared<OpenedFile>(OpenedFile{.source = source, .limits = {source, options}});
     LayerFile file = read_source(*opened, options, releasing(source, execution));
     if (file.stream) {
+        if (opened->source.on_disk) {
+            release(source, source.bytes);
+            LayerStream stream = *file.stream;
+            stream.parse = releasing_planes(stream, opened->source);
+            file.stream = std::make_shared<const LayerStream>(std::move(stream));
+        }
         const auto both =
             std::make_shared<std::pair<std::shared_ptr<OpenedFile>, std::shared_ptr<const LayerStream>>>(
                 opened, std::move(file.stream));
@@ -194,7 +219,7 @@ void LayerFile::keep_layers(const LayerReadOptions& options, const Execution& ex
         if (hatch_lines(i) > 0)
             parts[i].hatches.resize(planes().size());
     }
-    Executor executor(execution);
+    Executor executor(for_planes(execution));
     executor.for_chunks(planes().size(), 1, [&](std::uint64_t position, std::uint64_t, unsigned) {
         ScanVectors vectors = plane(position);
         for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -207,6 +232,16 @@ void LayerFile::keep_layers(const LayerReadOptions& options, const Execution& ex
     });
     executor.check_cancelled();
     stream = nullptr;
+}
+
+Execution LayerFile::for_planes(const Execution& execution) const {
+    Execution fewer = execution;
+    if (stream) {
+        const std::uint64_t planes =
+            std::max<std::uint64_t>(1, stream->spare_bytes / std::max<std::uint64_t>(1, stream->plane_bytes));
+        fewer.threads = static_cast<unsigned>(std::min<std::uint64_t>(planes, thread_count(execution)));
+    }
+    return fewer;
 }
 
 ScanVectors LayerFile::plane(std::size_t position) const {

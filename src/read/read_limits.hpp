@@ -125,6 +125,8 @@ class ReadLimits {
 
     /// Returns the bytes that were counted and not given back.
     [[nodiscard]] std::uint64_t bytes() const noexcept { return bytes_; }
+    /// Returns the number of bytes that the limit still allows.
+    [[nodiscard]] std::uint64_t bytes_left() const noexcept { return memory_left(max_memory_, bytes_); }
     /// Returns the number of triangles that the limit still allows.
     [[nodiscard]] std::uint64_t triangles_left() const noexcept {
         return max_triangles_ == 0 ? std::numeric_limits<std::uint64_t>::max() : max_triangles_ - triangles_;

@@ -100,7 +100,8 @@ Layer placed_layer(const Placed& part, const RawLayer& raw, const std::string& f
 
 /// The same for a slice that may have to be read again. What that takes is not counted in `limits`, because
 /// it is freed with the layer, but must not exceed them.
-Layer placed_layer(const Placed& part, const Slice& slice, const ReadLimits& limits, const std::string& file) {
+Layer placed_layer(const Placed& part, const Slice& slice, const ReadLimits& limits,
+                   const std::string& file) {
     ReadLimits own(limits);
     const RawLayer again = slice.text ? slice.read_again(own) : RawLayer();
     const RawLayer& raw = slice.text ? again : slice.raw;
@@ -421,7 +422,16 @@ class PackageReader {
                     for (std::size_t i = drawn.begin; i < drawn.end; ++i)
                         stream.contents[i].contours = true;
         }
+        std::uint64_t points = 0; // of the largest slices of all parts
+        for (const DrawnPart& part : parts) {
+            std::uint64_t largest = 0;
+            for (const PlanesOfSlice& drawn : part.drawn)
+                largest = std::max<std::uint64_t>(largest, drawn.slice->points());
+            points += largest;
+        }
+        stream.plane_bytes = bytes_of_plane(points);
         stream.bytes = limits_.bytes();
+        stream.spare_bytes = limits_.bytes_left();
         stream.parse = [parts = std::move(parts), name = zip_.name(), &limits = limits_](std::size_t plane) {
             ScanVectors vectors;
             for (const DrawnPart& part : parts) {

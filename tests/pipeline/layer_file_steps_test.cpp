@@ -1,6 +1,6 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/contour/stack_hash.hpp"
-#include "lamella/pipeline/layer_file_steps.hpp"
+#include "lamella/pipeline/layer_files.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "fixtures/expect_error.hpp"

@@ -79,6 +79,8 @@ struct LayerStream {
     double largest_coordinate = 0;               ///< of contours: largest absolute value
     double largest_hatch_coordinate = 0;         ///< of hatch lines
     std::uint64_t bytes = 0;                     ///< memory that it takes
+    std::uint64_t plane_bytes = 0;               ///< memory for parsing the largest plane
+    std::uint64_t spare_bytes = 0; ///< memory that `max_memory` leaves for planes; used for `for_planes`
     /// Parses the contours and hatch lines of the plane at this position, without its heights. May be called
     /// by any number of threads at once.
     std::function<ScanVectors(std::size_t position)> parse = {};
@@ -116,6 +118,10 @@ struct LayerFile {
     /// Returns all parts as one stack: the layers of the only part, or one layer per plane with the contours
     /// of all parts. O(points), parallel. Throws as `check(const LayerFile&)` does, and Error{cancelled}.
     [[nodiscard]] LayerStack merged(const Execution& execution = {.threads = 1}) const;
+
+    /// Returns `execution` with no more threads than there may be planes of the stream in memory at the same
+    /// time, but at least one.
+    [[nodiscard]] Execution for_planes(const Execution& execution) const;
 
     /// Returns the layers of all parts on a plane, with their hatch lines. O(contours), or, if the layers are
     /// not in memory, the time for parsing them.

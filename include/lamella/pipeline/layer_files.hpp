@@ -1,10 +1,11 @@
 #pragma once
 
-// Layer steps on the layers of a slice file.
+// Figures of all layers of a slice file, and layer steps on them. The layers need not be in memory.
 
-#include "lamella/contour/open_gaps.hpp"
+#include "lamella/contour/measure.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/pipeline/slice_file.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/layer_file.hpp"
 
@@ -13,6 +14,17 @@
 
 LAMELLA_API_BEGIN
 namespace lamella {
+
+struct FileFigures {
+    LayerMeasure contours; ///< of all parts
+    double volume_mm3 = 0; ///< areas times the thickness of their layers
+    /// Figures of each part that has an exposure. The beam executes the parts of a layer one after the other.
+    std::vector<ExposureResult> exposures;
+};
+
+/// Measures all layers of a file, in parallel. The result is the same for any number of threads. Throws as
+/// `check(const LayerFile&)` does, and Error{cancelled}.
+[[nodiscard]] FileFigures measure(const LayerFile& file, const Execution& execution = {});
 
 /// A slice file after layer steps.
 struct SteppedFile {
@@ -29,9 +41,9 @@ struct SteppedFile {
 /// change. If the layers are not in memory, those of the result are not either: the steps are taken twice,
 /// now for what is known of the whole file, and then whenever a plane is needed, for which the cancel flag of
 /// `execution` must live as long as the stream. Without steps, the file is returned as it is and the counts
-/// are 0. `max_memory`: see layer_limits. Throws Error{usage} for parts that are scan vectors, because hatches
-/// and their contours are different parts, and only contours would change; the errors of the steps, which
-/// name the file and the part; and Error{cancelled}.
+/// are 0. `max_memory`: see layer_limits. Throws Error{usage} for parts that are scan vectors, because
+/// hatches and their contours are different parts, and only contours would change; the errors of the steps,
+/// which name the file and the part; and Error{cancelled}.
 [[nodiscard]] SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution& execution = {},
                                      std::uint64_t max_memory = 0);
 

@@ -1,0 +1,69 @@
+#include "lamella/contour/exposure.hpp"
+#include "lamella/core/commit.hpp"
+#include "lamella/pipeline/layer_files.hpp"
+
+#include "core/executor.hpp"
+#include "core/ordered_stage.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+namespace lamella {
+
+namespace {
+
+/// The figures of one plane, without the exposures themselves.
+struct PlaneFigures {
+    LayerMeasure contours;
+    double volume_mm3 = 0;
+    std::vector<ScanFigures> exposures;
+};
+
+PlaneFigures measure_plane(const LayerFile& file, std::size_t position) {
+    const ScanVectors plane = file.plane(position);
+    PlaneFigures figures;
+    std::optional<Point2> beam;
+    for (std::size_t i = 0; i < file.parts.size(); ++i) {
+        const Layer& layer = plane.polylines[i];
+        const LayerMeasure contours = measure(layer);
+        figures.contours.add(contours);
+        figures.volume_mm3 += contours.area_mm2 * layer.thickness();
+        if (const std::optional<Exposure>& exposure = file.parts[i].exposure) {
+            const MeasuredVectors vectors =
+                measure_vectors(layer, plane.hatches[i].span(), exposure->parameters, beam);
+            beam = vectors.beam;
+            figures.exposures.push_back(vectors.figures);
+        }
+    }
+    return figures;
+}
+
+} // namespace
+
+FileFigures measure(const LayerFile& file, const Execution& execution) {
+    check(file);
+    FileFigures all;
+    for (const LayerPart& part : file.parts)
+        if (part.exposure)
+            all.exposures.push_back({*part.exposure, {}});
+    const std::size_t planes = file.parts.empty() ? 0 : file.planes().size();
+    Executor executor(file.for_planes(execution));
+    const Execution silent; // no stage of its own
+    ProgressMeter progress(silent, Stage::read, planes);
+    // Sums of rounded numbers depend on the order.
+    run_in_order(executor, progress, planes, [&](std::uint64_t position) -> Commit {
+        const auto plane = std::make_shared<const PlaneFigures>(measure_plane(file, position));
+        return [&all, plane] {
+            all.contours.add(plane->contours);
+            all.volume_mm3 += plane->volume_mm3;
+            for (std::size_t i = 0; i < plane->exposures.size(); ++i)
+                all.exposures[i].figures += plane->exposures[i];
+        };
+    });
+    executor.check_cancelled();
+    return all;
+}
+
+} // namespace lamella
