@@ -269,6 +269,7 @@ Jobs jobs_of(unsigned cells) {
     job("verify lattice.cli", {"verify", layers, "--mesh", in}, {layers, in}, "");
     job("convert lattice.cli to .svg", {"convert", layers, file("out.svg")}, {layers}, "");
     jobs.others.back().output = file("out.svg");
+    job("info lattice.cli", {"info", layers}, {layers}, "");
     job("compare lattice.cli", {"compare", layers, layers}, {layers, layers}, "");
     job("info head.stl", {"info", head.path}, {head.path}, "");
     job("slice rook, to .sl1", {"slice", rook.path}, {rook.path}, file("out.sl1"));
