@@ -50,8 +50,7 @@ FileFigures measure(const LayerFile& file, const Execution& execution) {
             all.exposures.push_back({*part.exposure, {}});
     const std::size_t planes = file.parts.empty() ? 0 : file.planes().size();
     Executor executor(file.for_planes(execution));
-    const Execution silent; // no stage of its own
-    ProgressMeter progress(silent, Stage::read, planes);
+    ProgressMeter progress(execution, Stage::polygon, planes);
     // Sums of rounded numbers depend on the order.
     run_in_order(executor, progress, planes, [&](std::uint64_t position) -> Commit {
         const auto plane = std::make_shared<const PlaneFigures>(measure_plane(file, position));
@@ -62,6 +61,7 @@ FileFigures measure(const LayerFile& file, const Execution& execution) {
                 all.exposures[i].figures += plane->exposures[i];
         };
     });
+    progress.finish();
     executor.check_cancelled();
     return all;
 }

@@ -1,4 +1,5 @@
 #include "lamella/contour/exposure.hpp"
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -184,7 +185,8 @@ TEST(LayerFile, WhoseLayersAreNotInMemoryNeedsNoMemoryForThem) {
         ASSERT_EQ(file.plane(i).polylines.front().points.size(), 2000U);
 }
 
-TEST(LayerFile, KeepsLayersInAmpleMemory) {
+/// A binary file of 100 layers of 400 numbers each.
+std::string binary_layers() {
     std::string bytes = "$$HEADERSTART\n$$BINARY\n$$UNITS/1\n$$VERSION/200\n$$HEADEREND";
     for (int z = 1; z <= 100; ++z) {
         const auto put = [&](auto value) {
@@ -199,6 +201,11 @@ TEST(LayerFile, KeepsLayersInAmpleMemory) {
             for (const float value : {0.F, 0.F, 9.F, 0.F, 9.F, 9.F, 0.F, 9.F})
                 put(value);
     }
+    return bytes;
+}
+
+TEST(LayerFile, KeepsLayersInAmpleMemory) {
+    const std::string bytes = binary_layers();
     const auto kept = [&](LayersKept layers, std::uint64_t max_memory) {
         const LayerFile file = read_layers(std::as_bytes(std::span(bytes)), "a.cli",
                                            {.max_memory = max_memory, .layers = layers}, {.threads = 1});
@@ -210,6 +217,28 @@ TEST(LayerFile, KeepsLayersInAmpleMemory) {
     EXPECT_TRUE(kept(LayersKept::if_ample, ample));
     EXPECT_FALSE(kept(LayersKept::if_ample, ample - 1));
     EXPECT_FALSE(kept(LayersKept::if_faster, ample));
+}
+
+TEST(LayerFile, HasNoMorePlanesAtOnceThanFitTheMemory) {
+    const std::string bytes = binary_layers();
+    const auto threads = [&](LayersKept layers, std::uint64_t more, unsigned wished) {
+        // Memory for the bytes, a piece of them as points, and the planes without contours.
+        const std::uint64_t base = bytes.size() + 1'000'000;
+        const LayerFile file = read_layers(std::as_bytes(std::span(bytes)), "a.cli",
+                                           {.max_memory = base + more, .layers = layers}, {.threads = 1});
+        return file.for_planes({.threads = wished}).threads;
+    };
+    EXPECT_EQ(threads(LayersKept::all, 1'000'000, 8), 8U);
+    EXPECT_EQ(threads(LayersKept::none, 100'000'000, 8), 8U);
+    EXPECT_EQ(threads(LayersKept::none, 0, 1), 1U);
+    unsigned last = 0;
+    for (const std::uint64_t more : {0, 100'000, 200'000, 400'000, 800'000, 1'600'000}) {
+        const unsigned now = threads(LayersKept::none, more, 1000);
+        EXPECT_GE(now, std::max(1U, last)) << more;
+        EXPECT_LE(now, (1'000'000 + more) / (200 * sizeof(Point2))) << more;
+        last = now;
+    }
+    EXPECT_GT(last, 8U);
 }
 
 } // namespace
