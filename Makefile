@@ -44,6 +44,13 @@ demo:  ## make, slice and verify two parts; writes slice files, images and a pag
 	cmake --build build --target lamella_app
 	@python3 tools/demo.py build/lamella out
 
+# $(call suites,FOLDER,SUITES,LABELS) builds suites in a build folder, and runs them and what else has these labels. A
+# suite is a folder of tests/; its name is the label of its tests.
+define suites
+cmake --build $(1) --target $(patsubst %,tests/%/all,$(2))
+$(CTEST) --test-dir $(1) --label-regex '^($(subst $(blank),|,$(strip $(2) $(3))))$$'
+endef
+
 # TESTS are options of ctest that select tests.
 test: packages  ## build everything and run the tests: a few minutes
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D LAMELLA_LARGE_TESTS=OFF
@@ -70,8 +77,7 @@ test-asan: packages-all
 
 test-tsan: packages-all
 	cmake --preset tsan
-	cmake --build build-tsan --target $(MODULES:%=lamella_%_test)
-	$(CTEST) --test-dir build-tsan --label-regex '^($(subst $(blank),|,$(MODULES)))$$'
+	$(call suites,build-tsan,$(MODULES))
 
 # Tests the modules that compute, and the test bodies they use.
 test-arm64: packages-all
@@ -144,10 +150,10 @@ test-windows: packages-windows build
 test-shared: packages-all
 	cmake --preset release $(RELEASE) -D LAMELLA_TESTS=ON -D BUILD_SHARED_LIBS=ON
 	cmake --build build --target lamella_programs lamella_app_files
-	$(CTEST) --test-dir build --tests-regex '^project.install$$'
+	$(CTEST) --test-dir build --label-regex '^install$$'
 	cmake --preset shared-clang
 	cmake --build build-shared-clang --target lamella_app lamella_app_files
-	$(CTEST) --test-dir build-shared-clang --tests-regex '^project.install$$'
+	$(CTEST) --test-dir build-shared-clang --label-regex '^install$$'
 
 fresh:  ## run `make demo` and `make test` in a fresh Debian 12 with git, make and nothing else (root only)
 	@tools/fresh.sh

@@ -2,6 +2,7 @@
 
 #include "fixtures/layer_checks.hpp"
 #include "fixtures/named_solids.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
@@ -28,7 +29,10 @@ std::vector<std::string> errors_of(const Verification& found, const Mesh& mesh, 
     return errors;
 }
 
-class EverySolid : public testing::TestWithParam<Solid> {};
+class EverySolid : public testing::TestWithParam<Solid> {
+  protected:
+    void SetUp() override { LAMELLA_SKIP_IF_SLOWED(); }
+};
 
 INSTANTIATE_TEST_SUITE_P(Small, EverySolid, testing::ValuesIn(test::small_solids()), test::solid_name);
 
@@ -166,10 +170,12 @@ TEST(Rook, HasRightLayers) {
 }
 
 TEST(Head, HasRightLayers) {
+    LAMELLA_SKIP_IF_SLOWED();
     expect_right_layers(make_head(), 25);
 }
 
 TEST(Sole, HasRightLayers) {
+    LAMELLA_SKIP_IF_SLOWED();
     expect_right_layers(make_sole(), 27); // 2 mm: as thick as its plates
 }
 

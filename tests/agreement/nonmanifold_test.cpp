@@ -4,6 +4,7 @@
 #include "fixtures/meshes.hpp"
 #include "fixtures/named_solids.hpp"
 #include "fixtures/random.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
@@ -302,6 +303,7 @@ double length_of_cuts(const TriangleSoup& mesh, double z) {
 }
 
 TEST(Broken, NothingIsLostOrAddedWhateverIsDropped) {
+    LAMELLA_SKIP_IF_SLOWED();
     // Triangles dropped, flipped and doubled at random.
     for (const test::Solid& solid : test::small_solids()) {
         const TriangleSoup made = solid.make();

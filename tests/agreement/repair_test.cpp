@@ -5,6 +5,7 @@
 #include "fixtures/random_solids.hpp"
 #include "fixtures/rounds.hpp"
 #include "fixtures/shared_meshes.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 
 #include <gtest/gtest.h>
 #include <lamella/io.hpp>
@@ -71,6 +72,7 @@ double surface(const Soup& soup) {
 }
 
 TEST(RepairedMeshes, TurnedAndRepeatedTrianglesLeaveNoTrace) {
+    LAMELLA_SKIP_IF_SLOWED();
     Random random(101);
     for (int round = 0; round < rounds_within_reason(1000); ++round) {
         SCOPED_TRACE(round);
@@ -96,6 +98,7 @@ TEST(RepairedMeshes, TurnedAndRepeatedTrianglesLeaveNoTrace) {
 }
 
 TEST(RepairedMeshes, HolesOfATriangleAreClosedWithTheirArea) {
+    LAMELLA_SKIP_IF_SLOWED();
     Random random(102);
     std::size_t joins = 0;
     for (int round = 0; round < rounds_within_reason(1000); ++round) {
@@ -134,6 +137,7 @@ TEST(RepairedMeshes, HolesOfATriangleAreClosedWithTheirArea) {
 }
 
 TEST(RepairedMeshes, CracksThatAreWeldedMoveTheVolumeByNoMoreThanTheirWidth) {
+    LAMELLA_SKIP_IF_SLOWED();
     Random random(103);
     for (int round = 0; round < rounds_within_reason(1000); ++round) {
         SCOPED_TRACE(round);
@@ -162,6 +166,7 @@ TEST(RepairedMeshes, CracksThatAreWeldedMoveTheVolumeByNoMoreThanTheirWidth) {
 }
 
 TEST(RepairedMeshes, VerticesOnEdgesOfNeighboursLeaveGapsOfRoundingOnly) {
+    LAMELLA_SKIP_IF_SLOWED();
     Random random(104);
     for (int round = 0; round < rounds_within_reason(500); ++round) {
         SCOPED_TRACE(round);
@@ -208,6 +213,7 @@ Soup with_vertices_on_edges(const Soup& soup, double share, Random& random) {
 }
 
 TEST(RepairedMeshes, LayersOfMeshesWithVerticesOnEdgesVerifyOnceTheirGapsAreClosed) {
+    LAMELLA_SKIP_IF_SLOWED();
     Random random(108);
     std::uint64_t left_out = 0;
     for (int round = 0; round < rounds_within_reason(400); ++round) {
@@ -269,6 +275,7 @@ int winding(const Layer& layer, const Point2& p) {
 }
 
 TEST(RepairedMeshes, LayersWindAroundAPointAsOftenAsTheMeshAlsoWhereSolidsOverlap) {
+    LAMELLA_SKIP_IF_SLOWED();
     Random random(105);
     std::array<std::size_t, 4> seen{};
     for (int round = 0; round < 300; ++round) {
@@ -336,6 +343,7 @@ double united_area(const Layer& layer) {
 }
 
 TEST(RepairedMeshes, SeveralFaultsAtOnceMoveTheUnionByNoMoreThanTheirWidth) {
+    LAMELLA_SKIP_IF_SLOWED();
     Random random(106);
     int rounds = 0;
     std::size_t closed_layers = 0;
@@ -383,6 +391,7 @@ TEST(RepairedMeshes, SeveralFaultsAtOnceMoveTheUnionByNoMoreThanTheirWidth) {
 }
 
 TEST(RepairedMeshes, LayersDoNotDependOnTheOrderOfTrianglesAndCorners) {
+    LAMELLA_SKIP_IF_SLOWED();
     Random random(107);
     for (int round = 0; round < rounds_within_reason(500); ++round) {
         SCOPED_TRACE(round);
@@ -436,6 +445,7 @@ double distance_to(const EdgeLocation& edge, const Point3& p) {
 }
 
 TEST_P(DiagnosedMesh, ReportsEveryPlaceWhereAChainEnds) {
+    LAMELLA_SKIP_IF_SLOWED();
     IndexedMesh mesh;
     try {
         const std::array inputs{PlateInput{.path = GetParam().path}};

@@ -3,6 +3,7 @@
 
 #include "fixtures/layer_checks.hpp"
 #include "fixtures/named_solids.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "parts/shapes.hpp"
 #include "temporary_folder.hpp"
 
@@ -24,7 +25,14 @@ using test::NamedPlan;
 using test::Placement;
 using test::Solid;
 
-class SameBytes : public testing::TestWithParam<Solid> {};
+class SameBytes : public testing::TestWithParam<Solid> {
+  protected:
+    void SetUp() override {
+        if (std::string_view(GetParam().name) == "rook") {
+            LAMELLA_SKIP_IF_SLOWED();
+        }
+    }
+};
 
 const std::vector<Solid> large_solids{{"rook", [] {
                                            return make_rook();

@@ -4,6 +4,7 @@
 #include "container/inflate.hpp"
 #include "container/zip_samples.hpp"
 #include "container/zip_writer.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -107,6 +108,7 @@ TEST(ZipWriter, CountsMoreEntriesThanTheOldDirectoryCan) {
 
 // A piece that stands for more than it is: five times 1 GiB of zeros, one megabyte each.
 TEST(ZipWriter, EntriesBeyond4GiBAreWrittenInTheLargeForm) {
+    LAMELLA_SKIP_IF_SLOWED();
     const TemporaryFolder folder;
     const std::string zeros(std::size_t{1} << 26, '\0');
     std::string stream;
@@ -138,6 +140,7 @@ TEST(ZipWriter, EqualContentsGiveEqualBytesAlsoThroughAPipe) {
 
 // Bytes that pass through a pipe and lie in a file with holes.
 TEST(ZipWriter, ArchivesBeyond4GiBAreWrittenInTheLargeForm) {
+    LAMELLA_SKIP_IF_SLOWED();
     const TemporaryFolder folder;
     ASSERT_EQ(mkfifo(folder.file("pipe").c_str(), 0600), 0);
     std::thread reader([&] {

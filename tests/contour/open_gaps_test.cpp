@@ -2,6 +2,7 @@
 
 #include "fixtures/layers.hpp"
 #include "fixtures/random.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -47,6 +48,7 @@ TEST(OpenGaps, AShortPieceGoesOnInItsNeighboursNotInItself) {
 }
 
 TEST(OpenGaps, OfChainsInOnePlaceAreFoundWithoutLookingAtAllOfThem) {
+    LAMELLA_SKIP_IF_SLOWED();
     // Each end has all starts at the same distance. To compare all with all would take minutes.
     for (const Point2 step : {Point2{0, 0}, Point2{0, 1e-9}, Point2{1e-9, 0}}) {
         std::vector<Points> chains;

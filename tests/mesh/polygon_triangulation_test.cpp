@@ -2,6 +2,7 @@
 
 #include "core/orientation.hpp"
 #include "fixtures/random.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "mesh/polygon_triangulation.hpp"
 
 #include <gtest/gtest.h>
@@ -256,6 +257,7 @@ TEST(PolygonTriangulation, SurvivesTheLargestAndTheSmallestNumbers) {
 }
 
 TEST(PolygonTriangulation, EndsSoonOnAHostilePolygon) {
+    LAMELLA_SKIP_IF_SLOWED();
     // Long spikes, all through the same few cells of the grid: every corner is in the way of every ear.
     Random random(5);
     std::vector<Point3> corners(100'000);

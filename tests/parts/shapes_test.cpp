@@ -1,6 +1,7 @@
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/inspect.hpp"
 
+#include "fixtures/skip_if_slowed.hpp"
 #include "mesh/naive.hpp"
 #include "parts/shapes.hpp"
 
@@ -222,6 +223,7 @@ TEST(Calibration, FeaturesStandOnTheUncutPlate) {
 }
 
 TEST(Head, IsOneClosedSurfaceOfThePapersSizeAndCount) {
+    LAMELLA_SKIP_IF_SLOWED();
     const TriangleSoup header = make_head();
     expect_part(header, 467882, {141.61, 111.27, 81.29}, 1);
     // Without handles.
@@ -229,6 +231,7 @@ TEST(Head, IsOneClosedSurfaceOfThePapersSizeAndCount) {
 }
 
 TEST(Head, IsSeenFromWithinEverywhere) {
+    LAMELLA_SKIP_IF_SLOWED();
     // Each triangle has a cone of rays of its own, and all cones together cover the sphere once: no two
     // cross.
     const TriangleSoup header = make_head();
@@ -254,6 +257,7 @@ TEST(Head, IsSeenFromWithinEverywhere) {
 }
 
 TEST(Head, HasUnevenTrianglesAsAScan) {
+    LAMELLA_SKIP_IF_SLOWED();
     const TriangleSoup header = make_head();
     std::vector<double> areas(header.size());
     for (std::size_t i = 0; i < areas.size(); ++i)
@@ -263,10 +267,12 @@ TEST(Head, HasUnevenTrianglesAsAScan) {
 }
 
 TEST(Sole, IsOneClosedSurfaceOfThePapersSizeAndCount) {
+    LAMELLA_SKIP_IF_SLOWED();
     expect_part(make_sole(), 862014, {324, 125, 54}, 1);
 }
 
 TEST(Sole, HasAboutAQuarterOfItsTrianglesInEachPlane) {
+    LAMELLA_SKIP_IF_SLOWED();
     // 0.1 mm apart, in the middle of each layer.
     const TriangleSoup sole = make_sole();
     constexpr int planes = 540;

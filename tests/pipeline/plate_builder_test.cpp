@@ -2,6 +2,7 @@
 
 #include "fixtures/expect_error.hpp"
 #include "fixtures/random.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "parts/shapes.hpp"
 #include "pipeline/plate_builder.hpp"
 
@@ -232,6 +233,7 @@ TEST(PlateBuilder, RefusesPlacesThatNumbersCannotDistinguish) {
 }
 
 TEST(PlateBuilder, HoldsAMillionPartsAndNoMore) {
+    LAMELLA_SKIP_IF_SLOWED();
     constexpr std::uint64_t most = std::uint64_t{1} << 20;
     test::expect_error(ErrorKind::limit, {"a.stl", "1048577 copies of 1 part are too many"},
                        [&] { static_cast<void>(plate_of({.path = "a.stl", .copies = most + 1})); });

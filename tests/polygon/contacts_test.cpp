@@ -1,4 +1,5 @@
 #include "fixtures/layers.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "polygon/contacts.hpp"
 
 #include <gtest/gtest.h>
@@ -168,6 +169,7 @@ TEST(Contacts, OfManyCirclesAreThoseOfNeighbours) {
 }
 
 TEST(Contacts, OfLongWallsAslantAreFoundWithoutLookingAtAllPairs) {
+    LAMELLA_SKIP_IF_SLOWED();
     constexpr int n = 20000;
     std::vector<Contour> walls;
     for (int i = 0; i < n; ++i) {
@@ -186,6 +188,7 @@ TEST(Contacts, OfLongWallsAslantAreFoundWithoutLookingAtAllPairs) {
 }
 
 TEST(Contacts, OfHostileLayersAreFoundInAReasonableNumberOfSteps) {
+    LAMELLA_SKIP_IF_SLOWED();
     constexpr int n = 100000;
     // A fan of spikes from one point, a comb of long teeth, and as many copies of one ring.
     Contour fan;

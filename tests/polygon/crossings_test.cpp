@@ -1,6 +1,7 @@
 #include "lamella/polygon/crossings.hpp"
 
 #include "fixtures/layers.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "polygon/orientation.hpp"
 
 #include <gtest/gtest.h>
@@ -299,6 +300,7 @@ TEST(Crossings, OfAStrayLineThroughManyWallsAreAllFound) {
 }
 
 TEST(Crossings, OfManyLongWallsWithTheirNeighboursAreFoundAmongNeighbours) {
+    LAMELLA_SKIP_IF_SLOWED();
     // Every wall crosses the one beside it, so that each has a part in a crossing; to look at all pairs of
     // half a million would take longer than a test may.
     constexpr int n = 250000;
@@ -317,6 +319,7 @@ TEST(Crossings, OfManyLongWallsWithTheirNeighboursAreFoundAmongNeighbours) {
 }
 
 TEST(Crossings, OfManyLinesThatFanOutAreFoundAmongNeighbours) {
+    LAMELLA_SKIP_IF_SLOWED();
     // No common direction sets these apart; each crosses one of those beside it.
     constexpr int n = 200000;
     std::vector<Contour> narrow;

@@ -2,6 +2,7 @@
 
 #include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "polygon/known_nesting.hpp"
 
 #include <gtest/gtest.h>
@@ -575,6 +576,7 @@ TEST(Nesting, OfRingsAmongOthersInContactIsAsIfAllWereLookedAtTogether) {
 }
 
 TEST(Nesting, OfManySmallRingsWithinOneAnotherIsFoundWithoutLookingAtAllPairs) {
+    LAMELLA_SKIP_IF_SLOWED();
     constexpr int n = 100000; // all in one corner of a frame
     std::vector<Contour> rings{rectangle(-1000, -1000, 1000, 1000)};
     for (int i = n; i > 0; --i)
@@ -587,6 +589,7 @@ TEST(Nesting, OfManySmallRingsWithinOneAnotherIsFoundWithoutLookingAtAllPairs) {
 }
 
 TEST(Nesting, OfManyRingsInOnePlaceIsFoundWithoutLookingAtAllPairs) {
+    LAMELLA_SKIP_IF_SLOWED();
     constexpr std::uint32_t n = 40000;
     const Nesting copies = nesting(layer_of(std::vector<Contour>(n, rectangle(0, 0, 1, 1))));
     std::vector<Contour> corner; // all share their left and lower sides

@@ -9,6 +9,7 @@
 #include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "polygon/orientation.hpp"
 #include "polygon/swept.hpp"
 #include "polygon/winding_areas.hpp"
@@ -273,6 +274,7 @@ TEST(Offset, ByWhatIsNoDistanceIsRefused) {
 }
 
 TEST(Offset, OfManySidesByFarMoreThanTheirBodyWithoutLookingAtAllPairs) {
+    LAMELLA_SKIP_IF_SLOWED();
     const Layer disc = normal_form(layer_of({regular_polygon(100000, 10)}));
     const Layer pierced =
         normal_form(layer_of({rectangle(-20, -20, 20, 20), reversed(regular_polygon(100000, 10))}));

@@ -7,6 +7,7 @@
 #include "lamella/polygon/simplify.hpp"
 
 #include "fixtures/layers.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "polygon/segment_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -164,6 +165,7 @@ TEST(Simplify, StaysWithinTheToleranceAlsoWhereContoursWouldCross) {
 }
 
 TEST(Simplify, OfSpikesAndSpiralsTakesAReasonableNumberOfSteps) {
+    LAMELLA_SKIP_IF_SLOWED();
     // The farthest points of these split off one spike, or one turn, at a time.
     constexpr int n = 300000;
     Contour zigzag;

@@ -1,3 +1,4 @@
+#include "fixtures/skip_if_slowed.hpp"
 #include "read/amf_files.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/package_checks.hpp"
@@ -119,6 +120,7 @@ TEST(Amf, TwoObjectsOrTwoConstellationsOfOneIdAreRefused) {
 
 // They would be walked once for each of 65,536 instances.
 TEST(Amf, OfManyEmptyInstancesEndsSoon) {
+    LAMELLA_SKIP_IF_SLOWED();
     constexpr int doublings = 16;
     std::string empty;
     for (int i = 0; i < 50'000; ++i)

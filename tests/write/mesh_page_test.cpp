@@ -7,6 +7,7 @@
 #include "lamella/write/layer_page.hpp"
 
 #include "container/json_text.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "page_reader.hpp"
 #include "parts/shapes.hpp"
 #include "sample_layers.hpp"
@@ -88,6 +89,7 @@ TEST(MeshPage, HoldsASmallMeshWhole) {
 }
 
 TEST(MeshPage, CoarsensALargeMeshByItsRule) {
+    LAMELLA_SKIP_IF_SLOWED();
     const IndexedMesh mesh = weld(make_sphere(20, 8)); // 1.3 million triangles
     const ReadPage page = mesh_page(mesh);
     const std::string& header = page.json.at("head");

@@ -4,6 +4,7 @@
 
 #include "fixtures/random.hpp"
 #include "fixtures/rounds.hpp"
+#include "fixtures/skip_if_slowed.hpp"
 #include "fixtures/solids.hpp"
 #include "parts/shapes.hpp"
 #include "slicing/even_planes.hpp"
@@ -303,6 +304,7 @@ Triangles scattered(std::size_t count, float height, bool closed, std::uint64_t 
 }
 
 TEST(Sweep, KeepsCountOfManySmallContoursThatComeAndGo) {
+    LAMELLA_SKIP_IF_SLOWED();
     // Contours of two to four edges need the most padding, and none lives long: the sweep's memory is full of
     // contours on their way out.
     for (const bool closed : {false, true}) {
