@@ -59,10 +59,32 @@ test: packages  ## build everything and run the tests: a few minutes
 	$(CTEST) --test-dir build $(TESTS)
 	$(if $(TESTS),,@touch build/tests/passed)
 
+# `make test`, and of each other build the suites that find what no other finds. .ci/run runs two parts at a time.
+test-ci: packages-ci test ci-asan ci-tsan ci-windows ci-web  ## run `make test`, and the tests of memory, threads, Windows and web of CI
+
+packages-ci: packages packages-viewer
+	@tools/install_packages.sh tools/packages-ci.txt tools/packages-web.txt tools/packages-windows.txt
+
+ci-asan: packages-ci
+	cmake --preset asan-ubsan
+	cmake --build build-asan --target lamella_app
+	$(call suites,build-asan,container read slicing polygon scan write pipeline fuzz,processor input)
+
+ci-tsan: test-tsan
+
+# Optimised less, since that compiles in half the time. The output is compared with that of build/lamella.
+ci-windows: packages-windows
+	cmake --preset windows -D LAMELLA_TESTS=ON -D CMAKE_CXX_FLAGS_RELEASE='-O1 -DNDEBUG'
+	cmake --build build-windows --target lamella_app tests/app/all
+	$(call suites,build-windows,system,processes)
+
+ci-web: packages-ci web
+	tests/web/run.sh build package_test.mjs browser_test.mjs
+
 test-all: test-large test-asan test-tsan test-arm64 test-windows test-macos test-shared test-web fresh  ## run the long suites: large programs, sanitizers, ARM64, Windows, macOS, web, fresh
 
 # The targets from here to `fresh` are parts of test-all.
-packages-all: packages packages-viewer
+packages-all: packages-ci
 	@tools/install_packages.sh tools/packages-all.txt tools/packages-dist.txt tools/packages-docs.txt
 
 test-large: packages-all
@@ -75,7 +97,7 @@ test-asan: packages-all
 	cmake --build build-asan
 	$(CTEST) --test-dir build-asan --label-exclude '^(bench|project|viewer)$$'
 
-test-tsan: packages-all
+test-tsan: packages-ci
 	cmake --preset tsan
 	$(call suites,build-tsan,$(MODULES))
 
@@ -170,7 +192,7 @@ web: packages packages-viewer  ## build the npm package and the playground: buil
 	cmake --build build-web --target lamella_playground
 
 test-web: web build packages-all
-	tests/web/run.sh build
+	tests/web/run.sh build package_test.mjs layer_hashes_test.mjs browser_test.mjs sample_test.mjs
 
 fuzz: packages-all  ## fuzz readers and strategies, each for MINUTES (default 10); writes findings to out/fuzz/
 	cmake --preset fuzz
@@ -237,7 +259,7 @@ cores: packages  ## measure jobs with one thread and with all: out/cores/ (bench
 	python3 -B -m bench.cores $(OPTIONS)
 
 page-bench: packages-viewer build  ## measure the time until pages show something in a browser: out/pages/ (bench/README.md)
-	@tools/install_packages.sh tools/packages-all.txt
+	@tools/install_packages.sh tools/packages-ci.txt
 	python3 -B -m bench.pages $(OPTIONS)
 
 web-bench: web build  ## compare the npm package with the program and manifold-3d: out/web/ (bench/README.md)
@@ -279,6 +301,7 @@ clean:  ## remove all build and output folders
 
 .NOTPARALLEL:
 .PHONY: help packages packages-viewer packages-windows windows test-windows macos macos-arm64 macos-x86_64 test-macos \
-        compile-macos wheels build demo test test-all packages-all test-large test-asan test-tsan test-arm64 test-shared \
-        web test-web fresh fuzz bench scaling soak docs packages-rivals rivals broken read-meshes resin out-of-core \
-        python-bench cores page-bench web-bench paper format format-check lint install dist clean
+        compile-macos wheels build demo test test-ci packages-ci ci-asan ci-tsan ci-windows ci-web test-all packages-all \
+        test-large test-asan test-tsan test-arm64 test-shared web test-web fresh fuzz bench scaling soak docs \
+        packages-rivals rivals broken read-meshes resin out-of-core python-bench cores page-bench web-bench paper format \
+        format-check lint install dist clean

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Tests the npm package and the playground that `make web` has built. usage: tests/web/run.sh BUILD
+# Tests the npm package and the playground that `make web` has built. usage: tests/web/run.sh BUILD TEST...
 # BUILD has the program, web/package and web/playground.html.
 set -eu
 
@@ -23,7 +23,5 @@ export LAMELLA_PROGRAM="$build/lamella" LAMELLA_PACKAGE="$work/user/node_modules
 cp types_test.ts user/
 (cd user && "$work/node_modules/.bin/tsc" --noEmit --strict --module nodenext --target es2022 --lib es2022,dom \
     --typeRoots "$work/node_modules/@types" --types node types_test.ts)
-node --expose-gc --test package_test.mjs
-node --test browser_test.mjs
-node --test layer_hashes_test.mjs
-node --test sample_test.mjs
+shift
+for test; do node --expose-gc --test "$test"; done
