@@ -108,11 +108,11 @@ function untoldSpeeds({ parts }) {
   const marks = parameters.filter(({ speed_mm_s }) => speed_mm_s > 0).length;
   const jumps = parameters.filter(({ jump_speed_mm_s }) => jump_speed_mm_s > 0).length;
   if (parameters.length > 0 && marks + jumps === 0) return ['The file tells no speeds of the beam, so times and energies are unknown.'];
-  const told = [];
+  const sentences = [];
   if (marks < parameters.length)
-    told.push('The file does not tell all speeds of the beam: what is marked without one counts neither for time nor for energy.');
-  if (jumps < parameters.length) told.push('The file does not tell how fast the beam jumps: times are without jumps.');
-  return told;
+    sentences.push('The file does not tell all speeds of the beam: what is marked without one counts neither for time nor for energy.');
+  if (jumps < parameters.length) sentences.push('The file does not tell how fast the beam jumps: times are without jumps.');
+  return sentences;
 }
 
 function accuracy(head, table) {
@@ -180,7 +180,7 @@ export function firstLayer({ table }) {
   return worstLayers(table, 1)[0]?.layer ?? nearest;
 }
 
-/** Where no speed is told there is no time to tell, either. */
+/** Without a speed there is no time, either. */
 const vectorText = (vectors, seconds) => counted(vectors, 'vector') + (seconds > 0 ? ` in ${duration(seconds)}` : '');
 
 /** "3 contours, 12.5 mm²"; "1,234 vectors in 4.9 s" */

@@ -28,7 +28,7 @@ export function icon(name) {
   return svg;
 }
 
-/** A button with a sign; its name is told to those who point at it and to screen readers. */
+/** A button with a sign; its name is shown to those who point at it, and read by screen readers. */
 export function iconButton(label, name, act) {
   return element('button', { type: 'button', className: 'icon', title: label, 'aria-label': label, onclick: act }, icon(name));
 }

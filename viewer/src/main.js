@@ -21,7 +21,7 @@ import { nextTurn } from './turn.js';
  * @property {'layer'|'stack'|'both'} view
  * @property {Set<import('./data/exposures.js').Group>} off groups of parts that are not shown
  * @property {Set<number>} hidden the parts of these
- * @property {number} order so many vectors of the layer are shown, as they are executed; Infinity for all
+ * @property {number} order number of vectors of the layer that are shown, as they are executed; Infinity for all
  * @property {boolean} executing whether the order plays
  * @property {boolean} jumps whether the ways between vectors are shown
  * @property {number|null} shell of a mesh: the one that is shown in colours; null for all

@@ -8,9 +8,9 @@ export const count = (n) => whole.format(n);
 /** "1 layer", "3 layers" */
 export const counted = (n, one, many = `${one}s`) => `${count(n)} ${n === 1 ? one : many}`;
 
-const least = 1e-6; // smaller numbers are told as smaller, not as 0
+const least = 1e-6; // smaller numbers are shown as smaller, not as 0
 
-/** Four digits that matter, more before the point: 0.05, 12.35, 1,235, 123,457. What is not 0 is not told as 0. */
+/** Four digits that matter, more before the point: 0.05, 12.35, 1,235, 123,457. What is not 0 is not shown as 0. */
 export function brief(value) {
   if (value === 0 || !Number.isFinite(value)) return String(value);
   if (Math.abs(value) < least) return value > 0 ? '< 0.000001' : '> −0.000001';

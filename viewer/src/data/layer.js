@@ -5,7 +5,7 @@ import { NumberReader } from './number_reader.js';
  * @typedef {object} Contours
  * @property {Float32Array} points x and y in turn
  * @property {Uint32Array} ends one past the last point of each contour
- * @property {number} rings so many contours are closed; the others are open chains
+ * @property {number} rings number of closed contours; the others are open chains
  * @property {Float32Array} boxes of each contour: left, bottom, right, top
  * @property {Float32Array} areas of each contour, mm2: above 0 for a ring that runs counter-clockwise
  * @property {Float32Array} hatches two points each

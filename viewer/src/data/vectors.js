@@ -6,7 +6,7 @@ import { isVectors } from './exposures.js';
  * @property {number} count
  * @property {Float32Array} lines of each: where it begins and where it ends
  * @property {Uint32Array} ends one past the last vector of each part of the page
- * @property {Float64Array} seconds from the begin of the layer to the end of each, as the machine is told: the same rule
+ * @property {Float64Array} seconds from the begin of the layer to the end of each, by the parameters in the file: the same rule
  *     as measure_vectors of the library
  */
 
@@ -41,7 +41,7 @@ function timed(vectors, parts) {
   let now = 0;
   let i = 0;
   let delay = 0; // after the run of lines that goes on
-  /** For the way at numbers k of `lines`; none where nobody told the speed. */
+  /** For the way at numbers k of `lines`; none where the speed is unknown. */
   const secondsOf = (k, speed) => (speed > 0 ? Math.hypot(lines[k + 2] - lines[k], lines[k + 3] - lines[k + 1]) / speed : 0);
   const endRun = () => {
     now += delay;

@@ -158,7 +158,7 @@ function drawHatches(ctx, contours, camera, colour) {
   ctx.stroke();
 }
 
-/** An arrow head in the middle of a line's way, every so many pixels along a contour. */
+/** An arrow head in the middle of a line's way, at equal distances along a contour. */
 function drawDirections(ctx, contours, camera, colours, colourOf) {
   const every = 90;
   const head = 4.5;

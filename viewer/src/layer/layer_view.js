@@ -96,7 +96,7 @@ export class LayerView {
     return this.#camera;
   }
 
-  /** So many vectors are on the layer that is shown. */
+  /** This many vectors are on the layer that is shown. */
   get vectors() {
     return this.#vectors?.count ?? 0;
   }

@@ -60,8 +60,8 @@ export class OrderBar {
     const name = `${region} ${kind}${contour > 0 ? ` ${contour}` : ''}`;
     const body = new Set(this.#page.head.parts.map(({ exposure }) => exposure?.part)).size > 1 ? `${part}, ` : '';
     const { power_w, speed_mm_s } = parameters;
-    const told = [...(power_w > 0 ? [`${brief(power_w)} W`] : []), ...(speed_mm_s > 0 ? [`${brief(speed_mm_s)} mm/s`] : [])].join(', ');
-    return `${body}${name}${parameters.name ? `, “${parameters.name}”` : ''}${told ? `: ${told}` : ''}`;
+    const stated = [...(power_w > 0 ? [`${brief(power_w)} W`] : []), ...(speed_mm_s > 0 ? [`${brief(speed_mm_s)} mm/s`] : [])].join(', ');
+    return `${body}${name}${parameters.name ? `, “${parameters.name}”` : ''}${stated ? `: ${stated}` : ''}`;
   }
 
   #timeText(seconds) {

@@ -102,10 +102,10 @@ function partsCard({ parts }, bodies, store) {
   return card(`${count(items.length)} parts`, element('ul', { className: 'parts' }, ...items));
 }
 
-/** What the program told beside the data. */
+/** What the program reported beside the data. */
 function noteCards(page) {
-  return page.notes.sections.map(({ title, facts: told }) =>
-    card(title, facts(told.map(({ name, value, tone }) => [name, withBriefMeasures(value), tone]))),
+  return page.notes.sections.map(({ title, facts: rows }) =>
+    card(title, facts(rows.map(({ name, value, tone }) => [name, withBriefMeasures(value), tone]))),
   );
 }
 

@@ -18,7 +18,7 @@ const views = {
 
 const margin = 1.04; // of what is shown as a whole, at the edges of the canvas
 const millisecondsOfSlice = 80; // that whoever draws shall be busy before the page has its turn
-const leastOfSlice = 2000; // lines or triangles; the first slice has so many, to measure by
+const leastOfSlice = 2000; // lines or triangles; the first slice has this many, to measure by
 const slicesInMotion = 3; // that a picture may take while something moves
 const millisecondsOfTurn = 8;
 const millisecondsOfRest = 200; // until something is taken to rest

@@ -20,7 +20,7 @@ const millisecondsUnseen = 500; // until what was put up meanwhile is drawn
 const verticesOfLine = 12;
 let shared = new BufferAttribute(new Uint32Array(), 1);
 
-/** The vertices of so many lines or more, four triangles each; all geometries share them. */
+/** The vertices of this many lines or more, four triangles each; all geometries use them. */
 function verticesOf(lines) {
   if (shared.count < verticesOfLine * lines) {
     const indices = new Uint32Array(verticesOfLine * Math.max(linesOfPiece, lines));

@@ -119,7 +119,7 @@ const fragment = /* glsl */ `
     float wall = lit(normalize(normalSeen));
     bool isWall = gl_FrontFacing && isLedge < 0.5;
     float brightness = isWall ? mix(wall, 0.75 * wall + 0.17, thin) : lit(up) * mix(0.94, 0.8, thin);
-    // The seams between layers, where they are large enough to be told apart.
+    // The seams between layers, where they are large enough to be distinguished.
     float seam = 1.0 - smoothstep(0.0, max(0.06, pixels), min(upward, 1.0 - upward));
     brightness *= 1.0 - 0.22 * seam * (1.0 - smoothstep(0.15, 0.45, pixels)) * (isWall ? 1.0 : 0.0);
     gl_FragColor = vec4(colour * brightness, 1.0);
