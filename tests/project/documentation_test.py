@@ -87,6 +87,15 @@ class Documentation(unittest.TestCase):
         listed = re.findall(r"^\| `(src/[^`]+)` \| \S", page, re.MULTILINE)
         self.assertEqual(listed, untested)
 
+    def test_the_types_of_the_npm_package_list_all_engines_and_formats(self):
+        types = (ROOT / "web/package/api.d.ts").read_text(encoding="utf-8")
+        for union, table, row in [(r"engine\?: ([^;]*);", "slicing/engines.cpp", r'Engine\{"([\w-]+)"'),
+                                  (r"type FileFormat =([^;]*);", "write/layer_writer.cpp", r'LayerFormat\{\.name = "([\w-]+)"')]:
+            names = re.findall(row, (ROOT / "src" / table).read_text(encoding="utf-8"))
+            self.assertGreater(len(names), 3)
+            listed = re.findall(r"'([\w-]+)'", re.search(union, types)[1])
+            self.assertEqual(listed, [name for name in names if name != "png"])  # png writes a folder, no file
+
     def test_words_that_were_replaced_do_not_come_back(self):
         """See the glossary in CONTRIBUTING.md."""
         gone = re.compile(r"\b(crowded|torn corners?|one-sided|so many|so much|told|abscissa|oddity|"
