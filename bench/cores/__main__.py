@@ -42,15 +42,25 @@ def main(arguments):
 def page_of(results):
     threads = results["threads"]
     page = Page("Cores")
-    page.say(f"{results['machine']}. Wall seconds, the least of several runs, each in a process of its own. **efficiency**: how "
-             f"many times faster {threads[-1]} threads are than one, divided by {threads[-1]}. **limit**: no machine with these "
-             "speeds needs less time: the processor seconds of one thread divided among all threads, or the files read by all "
-             "threads and written by one at a time, at the measured speeds. All outputs of a job were equal.")
+    page.say("This page shows how much faster the commands of the program become with more threads.")
+    page.say("Each time is the least wall time of several runs on the machine named below, from the start to the end of a "
+             "process. The page of [other slicers](benchmarks.md) has medians instead, which include runs in which the system "
+             "hands out memory slowly. All outputs of a job were equal.")
+    page.say("**times**: the time of one thread divided by the time of all threads; **efficiency** is this number divided by "
+             "the number of threads.",
+             "**lower bound**: the larger of (a) the processor time of the run with one thread, divided by the number of "
+             "threads, and (b) the time to read the inputs on all threads and to write the output on one, at the speeds "
+             "measured on this machine.",
+             "**no file** writes only statistics (`--stats`), for which each layer is measured and hashed; it can take "
+             "longer than writing a CLI file.",
+             "**lattice 26** has 26 cells in each direction; **head 7.5 million** is the test part `head`, subdivided to 7.5 "
+             "million triangles.")
+    page.say(f"Machine: {results['machine']}.")
     page.heading("Large parts")
-    page.show(Chart("cores", "Seconds with 1 to all threads; lines: the limit", scatter(
+    page.show(Chart("cores", "Seconds with 1 to all threads; lines: the lower bound", scatter(
         [Series(job["job"], [(run["threads"], run["wall_s"]) for run in job["runs"]],
                 limit=tuple((run["threads"], run["limit_s"]) for run in job["runs"])) for job in results["growing"]],
-        "Seconds, and the limit as a line", "threads", "s")))
+        "Seconds, and the lower bound as a line", "threads", "s")))
     page.show(table_of(results["growing"], threads))
     page.heading("Other jobs")
     page.show(table_of(results["others"], [run["threads"] for run in results["others"][0]["runs"]]))
@@ -58,8 +68,8 @@ def page_of(results):
 
 
 def table_of(jobs, threads):
-    table = Table(["job", *(f"{n} thread{'' if n == 1 else 's'} s" for n in threads), "times", "efficiency", "limit s",
-                   "to the limit", "MB 1 thread", "MB all"])
+    table = Table(["job", *(f"{n} thread{'' if n == 1 else 's'} s" for n in threads), "times", "efficiency", "lower bound s",
+                   "to the lower bound", "MB 1 thread", "MB all"])
     for job in jobs:
         one, last = job["runs"][0], job["runs"][-1]
         times = one["wall_s"] / last["wall_s"]

@@ -53,8 +53,9 @@ std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& en
 }
 
 /// Returns whether a job that can stream, and that fits into memory, is sliced while its file is read.
-/// Several parts, and scan vectors, are sliced in windows of planes, and each window would read the file
-/// again. Processes and shards count the triangles first. Files that are in memory gain nothing.
+/// Several parts, and scan vectors, are sliced in ranges of a few planes, and each range would read the file
+/// again. With several processes or shards, triangles must be counted first, so the file is read more than
+/// once anyway. Files that are in memory gain nothing.
 bool can_slice_while_reading(const FileJob& job, const std::vector<MeshInput>& inputs) {
     return inputs.size() == 1 && job.inputs.front().copies == 1 && !job.scan && !job.shard &&
            inputs.front().records() && inputs.front().bytes_in_memory() == 0;
@@ -195,7 +196,8 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
             execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
         if (files_.front().triangles == files_.front().records)
             return;
-        // Sums over the usable triangles depend on their chunks, which are others if the mesh is in memory.
+        // Sums over the usable triangles depend on their chunks, which are different if the mesh is in
+        // memory.
         hashes_.reset();
         files_.clear();
     }
