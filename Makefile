@@ -6,7 +6,7 @@ JOBS := $(shell nproc)
 # One more than the number of processors: some tests mostly wait.
 CTEST := ctest --output-on-failure --no-tests=error --parallel $(shell expr $(JOBS) + 1)
 VERSION := $(shell sed -n 's/^\#define LAMELLA_VERSION "\(.*\)"/\1/p' include/lamella/core/version.hpp)
-MODULES := core mesh parts contour slicing polygon scan system container read raster write pipeline c
+MODULES := core mesh parts contour slicing polygon scan findings system container read raster write pipeline c
 blank := $(subst ,, )
 SOURCES = $(shell find app bench examples include parts python src tests viewer web -name '*.[ch]pp' 2>/dev/null)
 

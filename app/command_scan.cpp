@@ -1,6 +1,6 @@
 #include "lamella/core/error.hpp"
 #include "lamella/core/version.hpp"
-#include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/system/whole_file.hpp"
@@ -79,7 +79,7 @@ Json stats_of(const Command& command, const std::string& path, const LayerFile& 
                   {"seconds", {{"scan", result.seconds.scan}}},
                   {"volume_mm3", result.volume_mm3},
                   {"scan", scan_json(result, strategy)}};
-    stats.update(doubts_json(result));
+    add_findings(stats, result);
     Json& layers = stats["layers"] = Json::array();
     for (const LayerStatistics& layer : result.layers)
         layers.push_back({{"index", layer.index},
@@ -110,13 +110,14 @@ int run_scan(const ScanCommandArguments& arguments, const Context& context) {
         hatch_lines += file.hatch_lines(i);
     const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
     warn_about(file, file.warnings, arguments.strict, context.messages);
-    warn_about(file, LayerDoubts().scan_losses(hatch_lines), arguments.strict, context.messages);
+    Findings of_file;
+    if (hatch_lines > 0)
+        of_file.add({.kind = FindingKind::replaced_hatch_lines, .count = hatch_lines});
+    warn_about(file, of_file.texts(), arguments.strict, context.messages);
     const LayerFileInfo info = info_of(file, execution);
     const FileResult result =
         scan_layers(arguments.output, format, file, info, strategy, options, execution, max_memory);
-    warn_about(file, result.doubts.front().scan_losses(), false, context.messages);
-    if (result.unreached.layers > 0)
-        context.messages.warn(fmt::format("{}: {}", file.path, result.unreached.text()));
+    warn_about(file, result.findings.texts(), false, context.messages);
     context.messages.warn_of(output_name(arguments.output), result.warnings);
     after_output(arguments.output, [&] {
         if (arguments.stats.empty())

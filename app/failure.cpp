@@ -30,6 +30,8 @@ constexpr std::array field_options{
     FieldOption{"`inspect`", "--inspect"},
     FieldOption{"`max_memory`", "--max-memory"},
     FieldOption{"`max_triangles`", "--max-triangles"},
+    FieldOption{"`min_area_mm2`", "--min-area"},
+    FieldOption{"`offset_mm`", "--offset"},
     FieldOption{"`orient`", "--orient"},
     FieldOption{"`placement`", "--translate"},
     FieldOption{"`snap_mm`", "--snap"},

@@ -4,6 +4,7 @@
 #include "lamella/core/version.hpp"
 
 #include "config_file.hpp"
+#include "failure.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
 #include "repair_options.hpp"
@@ -88,6 +89,13 @@ Json changes_json(const LayerChanges& changes) {
             {"area_before_mm2", changes.area_before_mm2}, {"area_after_mm2", changes.area_after_mm2}};
 }
 
+/// Adds the numbers that have a key.
+void add_numbers(Json& object, std::initializer_list<std::pair<const char*, Json>> numbers) {
+    for (const auto& [key, value] : numbers)
+        if (*key != '\0')
+            object[key] = value;
+}
+
 Json layers_json(const FileResult& result) {
     Json layers = Json::array();
     for (const LayerStatistics& layer : result.layers) {
@@ -102,11 +110,12 @@ Json layers_json(const FileResult& result) {
                           {"open_chains", layer.measure.open_chains},
                           // Written as text, because a JSON number loses digits beyond 2^53.
                           {"hash", fmt::format("{:016x}", layer.hash)}});
-        if (layer.open_gaps.count > 0)
-            layers.back().update(open_gaps_json(layer.open_gaps));
-        if (layer.inverted.rings > 0)
-            layers.back().update(
-                {{"inverted_rings", layer.inverted.rings}, {"inverted_mm2", layer.inverted.area_mm2}});
+        for (const PlaneFinding& found : layer.findings) {
+            const FindingDescription& row = description(found.kind);
+            add_numbers(layers.back(), {{row.count_key, found.count},
+                                        {row.largest_key, found.largest},
+                                        {row.layer_amount_key, found.amount}});
+        }
         if (!layer.joins.empty())
             layers.back()["gaps"] = joins_json(layer.joins);
         if (result.changes)
@@ -141,16 +150,31 @@ Json parts_json(const FileResult& result) {
     return parts;
 }
 
+/// Returns the finding with its text, and the path of its file if it belongs to one.
+Json finding_json(const FileResult& result, const Finding& found) {
+    const FindingDescription& row = description(found.kind);
+    Json object = {{"kind", row.name}};
+    if (found.file < result.files.size())
+        object["path"] = result.files[found.file].path;
+    object["count"] = found.count;
+    if (*row.unit != '\0')
+        object[fmt::format("amount_{}", row.unit)] = found.amount;
+    object["layers"] = found.layers;
+    object["first_z"] = found.first_z;
+    object["text"] = with_options(found.text());
+    return object;
+}
+
 /// Returns the figures of all files with layers near horizontal faces.
 Json near_faces_json(const FileResult& result) {
     Json files = Json::array();
-    for (std::size_t file = 0; file < result.files.size(); ++file)
-        if (const NearFaceLayers& near = result.near_faces[file]; near.layers > 0)
-            files.push_back({{"path", result.files[file].path},
-                             {"layers", near.layers},
-                             {"first_z", near.first_z},
-                             {"area_mm2", near.area_mm2},
-                             {"farthest_mm", near.farthest_mm}});
+    for (const Finding& found : result.findings.by_file)
+        if (found.kind == FindingKind::near_faces)
+            files.push_back({{"path", result.files[found.file].path},
+                             {"layers", found.layers},
+                             {"first_z", found.first_z},
+                             {"area_mm2", found.amount},
+                             {"farthest_mm", found.largest}});
     return files;
 }
 
@@ -332,18 +356,16 @@ Json open_gaps_json(const OpenGaps& gaps) {
         {"open_gaps", gaps.count}, {"longest_open_gap_mm", gaps.longest_mm}, {"open_gaps_mm", gaps.total_mm}};
 }
 
-Json doubts_json(const FileResult& result) {
-    OpenGaps open_gaps;
-    InvertedLayers inverted;
-    for (const LayerDoubts& of_file : result.doubts) {
-        open_gaps += of_file.open_gaps;
-        inverted.rings += of_file.inverted.rings;
-        inverted.volume_mm3 += of_file.inverted.volume_mm3;
+void add_findings(Json& stats, const FileResult& result) {
+    for (const Finding& found : result.findings.total) {
+        const FindingDescription& row = description(found.kind);
+        add_numbers(
+            stats,
+            {{row.count_key, found.count}, {row.largest_key, found.largest}, {row.amount_key, found.amount}});
     }
-    Json found = open_gaps.count > 0 ? open_gaps_json(open_gaps) : Json::object();
-    if (inverted.rings > 0)
-        found.update({{"inverted_rings", inverted.rings}, {"inverted_mm3", inverted.volume_mm3}});
-    return found;
+    Json& findings = stats["findings"] = Json::array();
+    for (const Finding& found : result.findings.by_file)
+        findings.push_back(finding_json(result, found));
 }
 
 Json processes_json(const std::vector<ProcessFigures>& figures) {
@@ -405,7 +427,7 @@ Json stats_json(const Command& command, const FileJob& job, const FileResult& re
             repairs.back()["path"] = result.files[repair.file].path;
         }
     }
-    stats.update(doubts_json(result));
+    add_findings(stats, result);
     if (Json near = near_faces_json(result); !near.empty())
         stats["near_faces"] = std::move(near);
     if (job.repair.close_gaps_mm)

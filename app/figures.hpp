@@ -58,9 +58,8 @@ template <class Places, class Describe>
 [[nodiscard]] std::string size_text(const Box3& box);
 
 [[nodiscard]] Json open_gaps_json(const OpenGaps& gaps);
-/// Returns the gaps of open chains, and the rings that bound no material with their volume; without those
-/// that are not there.
-[[nodiscard]] Json doubts_json(const FileResult& result);
+/// Adds the numbers of the findings of all files, and `findings`, which lists them file by file.
+void add_findings(Json& stats, const FileResult& result);
 /// Returns the output of `lamella slice --stats`; docs/program.md lists the keys.
 [[nodiscard]] Json stats_json(const Command& command, const FileJob& job, const FileResult& result);
 [[nodiscard]] Json processes_json(const std::vector<ProcessFigures>& figures);

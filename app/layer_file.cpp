@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 #include "lamella/pipeline/layer_files.hpp"
-#include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 
 #include "numbers.hpp"
@@ -28,13 +28,6 @@ Box3 box_of(const LayerFileInfo& info, const LayerStack& layers) {
     box.min.z = layers.front().bottom;
     box.max.z = layers.back().top;
     return box;
-}
-
-/// Warns like warn_about of rings that bound no material.
-void warn_about_inverted(const LayerFile& file, const InvertedLayers& inverted, bool strict,
-                         Messages& messages) {
-    if (inverted.rings > 0)
-        warn_about(file, {inverted.text_of_file(file.planes().size())}, strict, messages);
 }
 
 } // namespace
@@ -67,10 +60,11 @@ void warn_about(const LayerFile& file, const std::vector<std::string>& warnings,
 void write_planes(LayerWriter& writer, const LayerFile& file, bool search_rings, bool strict,
                   Messages& messages, const Execution& execution, std::uint64_t max_memory) {
     if (search_rings && strict) // before standard output receives anything
-        warn_about_inverted(file, layer_doubts(file, InversionSearch::quick, execution, max_memory).inverted,
-                            strict, messages);
-    LayerDoubtSearch search(file.planes().size(), file.rounding, InversionSearch::quick, execution,
-                            max_memory);
+        warn_about(
+            file, layer_findings(file, LayerUse::kept, InversionSearch::quick, execution, max_memory).texts(),
+            strict, messages);
+    LayerFindingSearch search(file.planes().size(), LayerUse::kept, file.rounding, InversionSearch::quick,
+                              execution, max_memory);
     lamella::write_planes(
         writer, file.planes().size(),
         [&](std::size_t i) {
@@ -80,7 +74,7 @@ void write_planes(LayerWriter& writer, const LayerFile& file, bool search_rings,
             return plane;
         },
         file.for_planes(execution));
-    warn_about_inverted(file, search.doubts().inverted, strict, messages);
+    warn_about(file, search.findings().texts(), strict, messages);
 }
 
 LayersKept layers_kept(const LayerSteps& steps) {
@@ -91,18 +85,10 @@ StepChanges take_steps(const LayerSteps& steps, LayerFile& file, bool strict, Me
                        const Execution& execution, std::uint64_t max_memory) {
     SteppedFile stepped = lamella::take_steps(steps, std::move(file), execution, max_memory);
     file = std::move(stepped.file);
-    warn_about_inverted(file, stepped.inverted, strict, messages);
+    warn_about(file, stepped.findings.texts(), strict, messages);
     StepChanges changes{.planes = std::move(stepped.planes), .all = {}};
     for (const LayerChanges& plane : changes.planes)
         changes.all += plane;
-    if (stepped.hatch_lines_dropped > 0)
-        warn_about(file,
-                   {fmt::format("{} left out: the contours that they fill were changed",
-                                counted(stepped.hatch_lines_dropped, "hatch line"))},
-                   strict, messages);
-    if (const std::string nothing = nothing_left(changes.planes.size(), stepped.contours, changes.all);
-        !nothing.empty())
-        warn_about(file, {nothing}, strict, messages);
     return changes;
 }
 

@@ -415,15 +415,6 @@ std::string changes_text(const LayerSteps& steps, const LayerChanges& changes) {
     return text + (lost == 0 ? "; no ring lost" : fmt::format("; {} lost", counted(lost, "ring")));
 }
 
-std::string nothing_left(std::uint64_t layers, std::uint64_t contours, const LayerChanges& changes) {
-    if (contours > 0 || changes.changed_layers == 0)
-        return {};
-    return fmt::format(
-        "no contour is left in any of {}: --offset, --min-area and other options of what is made of "
-        "the layers took those of {}",
-        counted(layers, "layer"), grouped(changes.changed_layers));
-}
-
 const std::vector<std::string>& slice_at_names() {
     static const std::vector<std::string> names{"bottom", "middle", "top"};
     return names;

@@ -134,9 +134,6 @@ struct LayerStepOptions {
 /// Returns a text such as "3 layers other than sliced: 2 rings united, ..."; `than` describes the layers
 /// before the steps.
 [[nodiscard]] std::string changes_text(const LayerSteps& steps, const LayerChanges& changes);
-/// Returns a warning if no contour is left after the steps; else "".
-[[nodiscard]] std::string nothing_left(std::uint64_t layers, std::uint64_t contours,
-                                       const LayerChanges& changes);
 
 [[nodiscard]] const std::vector<std::string>& slice_at_names();
 

@@ -27,20 +27,15 @@ std::vector<std::string> run_warnings(const FileJob& job, const FileResult& resu
     for (const PlateFile& file : result.files)
         for (const std::string& warning : file.warnings)
             add(input_name(file.path), warning);
-    for (std::size_t i = 0; i < result.doubts.size(); ++i)
-        for (const std::string& doubt : result.doubts[i].texts())
-            add(input_name(result.files[i].path), doubt + ask_info(result.files[i].path));
-    for (std::size_t file = 0; file < result.files.size(); ++file)
-        if (const std::string text = result.near_faces[file].text(result.report.layers); !text.empty())
-            add(input_name(result.files[file].path), text);
-    if (!job.shard && result.changes) // other shards may have contours
-        if (const std::string nothing =
-                nothing_left(result.report.layers, result.report.contours, *result.changes);
-            !nothing.empty())
-            add(inputs_name(job.inputs), nothing);
-    for (std::size_t file = 0; file < result.files.size(); ++file)
-        if (result.unreached_by_file[file].layers > 0)
-            add(input_name(result.files[file].path), result.unreached_by_file[file].text());
+    for (const Finding& finding : result.findings.by_file) {
+        if (finding.file == Finding::all_files) {
+            add(inputs_name(job.inputs), finding.text());
+            continue;
+        }
+        const std::string& path = result.files[finding.file].path;
+        const bool of_mesh = description(finding.kind).origin == FindingOrigin::mesh;
+        add(input_name(path), finding.text() + (of_mesh ? ask_info(path) : std::string()));
+    }
     for (const std::string& warning : result.warnings)
         add(output_name(job.output), warning);
     for (const std::string& warning : result.report_warnings)

@@ -120,7 +120,7 @@ std::vector<RegionFigures> region_figures(std::span<const ExposureResult> exposu
 
 Json scan_json(const FileResult& result, const ScanStrategy& strategy) {
     Json scan = with_density(result.exposures, result.volume_mm3);
-    scan["unreached_layers"] = result.unreached.layers;
+    scan["unreached_layers"] = result.findings.of(FindingKind::unreached_material).layers;
     scan["strategy"] = strategy_json(strategy);
     return scan;
 }

@@ -14,7 +14,7 @@ from pathlib import Path
 # The levels, lowest first. A module may include itself and its modules in MODULES, which are on lower levels.
 LEVELS = [
     ["core"],
-    ["mesh", "contour", "system"],
+    ["mesh", "contour", "system", "findings"],
     ["slicing", "polygon", "raster", "container"],
     ["scan", "read", "write"],
     ["pipeline"],
@@ -30,15 +30,16 @@ MODULES = {
     "mesh": ["core"],
     "contour": ["core"],
     "system": ["core"],
+    "findings": ["core"],
     "container": ["core", "system"],
-    "read": ["core", "system", "container", "mesh", "contour"],
+    "read": ["core", "findings", "system", "container", "mesh", "contour"],
     "slicing": ["core", "mesh", "contour"],  # not container: engines know no formats
     "polygon": ["core", "contour"],  # not mesh: layers of any source
     "raster": ["core", "contour"],  # not container: pixels, not files
     "scan": ["core", "contour", "polygon"],  # not mesh: layers of any source
-    "write": ["core", "system", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
-    "c": ["core", "mesh", "contour", "read", "slicing", "write", "pipeline"],  # only what it passes on
-    "pipeline": ["core", "system", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "scan", "write"],
+    "write": ["core", "findings", "system", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
+    "c": ["core", "findings", "mesh", "contour", "read", "slicing", "write", "pipeline"],  # only what it passes on
+    "pipeline": ["core", "findings", "system", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "scan", "write"],
 }
 
 # Third-party headers of the library. Each may be included by one source (zlib by those that compress and decompress,

@@ -29,6 +29,7 @@
 // Whole jobs in bounded memory, by one process or many: slice or scan files, join shards, verify and compare.
 #include "lamella/pipeline/compare_files.hpp"
 #include "lamella/pipeline/layer_files.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/pipeline/merge.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/scan_layers.hpp"

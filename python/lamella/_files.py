@@ -467,10 +467,7 @@ def _filled(stack: Stack, rule: str, strict: bool, threads: int, progress: Optio
     for part in stack.parts:
         if part.exposure is not None:
             raise UsageError(f"{stack.path}: holds scan vectors ({part.label}), and fill is for contours: fill before scan")
-    filled, lost = _lamella.filled(stack, rule, threads, progress)
-    warnings = [f"{lost} hatch line{'s' if lost > 1 else ''} left out: the contours that they fill were changed"] * (lost > 0)
-    if stack.contours.any() and not any(part.contours.any() for part in filled.parts):
-        warnings.append(f"no contour is left in any of {len(stack)} layers: none bounds material by the rule {rule}")
+    filled, warnings = _lamella.filled(stack, rule, threads, progress)
     _told(stack.path, warnings, strict)
     return filled
 

@@ -2,6 +2,7 @@
 
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/pipeline/verify.hpp"
 #include "lamella/polygon/compare.hpp"
 #include "lamella/polygon/layer_steps.hpp"
@@ -26,6 +27,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -277,14 +279,14 @@ std::vector<std::string> write_mesh_file(const std::string& path, const std::str
     return warnings;
 }
 
-/// Returns the stack after a fill rule for each of its parts, and the number of hatch lines that are left out
-/// because the contours that they fill were changed.
-std::pair<StackPointer, std::uint64_t> filled(const Stack& stack, const std::string& rule, unsigned threads,
-                                              const py::object& progress) {
+/// Returns the stack after a fill rule for each of its parts, and a line for each finding.
+std::pair<StackPointer, std::vector<std::string>> filled(const Stack& stack, const std::string& rule,
+                                                         unsigned threads, const py::object& progress) {
     return result_of(threads, progress, [&](const Execution& execution) {
         ChangedStacks changed =
             take_steps({.fill = fill_rule(rule)}, plain_parts(stack), {.execution = execution});
         std::uint64_t lost = 0;
+        std::uint64_t contours = 0;
         std::vector<StackPointer> parts;
         for (std::size_t i = 0; i < changed.parts.size(); ++i) {
             const Stack& before = stack.parts.empty() ? stack : *stack.parts[i];
@@ -295,15 +297,26 @@ std::pair<StackPointer, std::uint64_t> filled(const Stack& stack, const std::str
                 const bool kept = same_contours(layer.get(), changed.parts[i][k]);
                 hatches.push_back(kept ? layer.hatches() : PointArray());
                 lost += kept ? 0 : layer.hatches().size() / 2;
+                contours += changed.parts[i][k].contours();
             }
             part.layers = shared(std::move(changed.parts[i]), part.rule, std::move(hatches));
             part.box = box_of(part.layers);
         }
+        Findings found;
+        if (lost > 0)
+            found.add({.kind = FindingKind::outdated_hatch_lines, .count = lost});
+        add_nothing_left(found,
+                         std::accumulate(changed.planes.begin(), changed.planes.end(), LayerChanges(),
+                                         [](LayerChanges sum, const LayerChanges& plane) {
+                                             sum += plane;
+                                             return sum;
+                                         }),
+                         changed.planes.size(), contours);
         if (stack.parts.empty())
-            return std::pair(parts.front(), lost);
+            return std::pair(parts.front(), found.texts());
         auto together = std::make_shared<Stack>(stack);
         together->parts = std::move(parts);
-        return std::pair(std::move(together), lost);
+        return std::pair(std::move(together), found.texts());
     });
 }
 

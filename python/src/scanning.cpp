@@ -3,7 +3,7 @@
 #include "lamella/contour/exposure.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/layer_limits.hpp"
-#include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/scan/strategy_fields.hpp"
@@ -173,49 +173,62 @@ std::vector<ScanFigures> measured(const std::vector<LayerPointer>& vectors,
     return figures;
 }
 
-/// The losses of layers that arrive one by one.
-struct ScanLosses {
-    LayerDoubts found;
-    std::uint64_t hatches = 0;
+/// Adds the hatch lines of a slice file, which are replaced.
+Findings with_hatch_lines(Findings findings, std::uint64_t hatch_lines) {
+    if (hatch_lines > 0)
+        findings.add({.kind = FindingKind::replaced_hatch_lines, .count = hatch_lines});
+    return findings;
+}
 
+/// Searches layers of a slice file that arrive one by one.
+class LossSearch {
+  public:
     /// Adds the layers of the parts on the next plane.
     void add(const std::vector<LayerPointer>& parts) {
-        OpenGaps gaps;
-        InvertedRings inverted;
-        for (const LayerPointer& part : parts) {
-            hatches += part->hatches().size() / 2;
-            gaps += open_gaps(part->get());
-            inverted += result_of_points(part->get().points.size(), [part](const Execution& execution) {
-                return inverted_rings(part->get(), {}, InversionSearch::full, layer_limits(execution));
-            });
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            hatch_lines_ += parts[i]->hatches().size() / 2;
+            // A call that Ctrl-C interrupts may go on for a while; what it uses must live as long.
+            static_cast<void>(
+                result_of_points(parts[i]->get().points.size(),
+                                 [search = search_, plane = planes_, i, part = parts[i]](const Execution&) {
+                                     search->look_at(plane, i, part->get());
+                                     return true;
+                                 }));
         }
-        const Layer& layer = parts.front()->get();
-        ++found.layers;
-        found.add(layer.z, layer.thickness(), gaps, inverted);
+        ++planes_;
     }
+    [[nodiscard]] std::vector<std::string> texts() const {
+        return with_hatch_lines(search_->findings(), hatch_lines_).texts();
+    }
+
+  private:
+    std::shared_ptr<LayerFindingSearch> search_ =
+        std::make_shared<LayerFindingSearch>(0, LayerUse::scanned, Rounding(), InversionSearch::full);
+    std::size_t planes_ = 0;
+    std::uint64_t hatch_lines_ = 0;
 };
 
 void bind_losses(py::module_& module) {
-    py::class_<ScanLosses>(module, "ScanLosses")
+    py::class_<LossSearch>(module, "ScanLosses")
         .def(py::init())
-        .def("add", &ScanLosses::add)
-        .def("texts", [](const ScanLosses& self) { return self.found.scan_losses(self.hatches); });
+        .def("add", &LossSearch::add)
+        .def("texts", &LossSearch::texts);
     module.def("scan_losses", [](const Stack& stack) {
         return result_of(0, py::none(), [&](const Execution& execution) {
-            std::uint64_t hatches = 0;
+            std::uint64_t hatch_lines = 0;
             for (const LayerPointer& layer : stack.layers)
-                hatches += layer->hatches().size() / 2;
-            return layer_doubts(plain_parts(stack), stack.rounding, InversionSearch::full, execution)
-                .scan_losses(hatches);
+                hatch_lines += layer->hatches().size() / 2;
+            return with_hatch_lines(layer_findings(plain_parts(stack), LayerUse::scanned, stack.rounding,
+                                                   InversionSearch::full, execution),
+                                    hatch_lines)
+                .texts();
         });
     });
     module.def("inverted_layers", [](const Stack& stack, unsigned threads, const py::object& progress) {
-        return result_of(threads, progress, [&](const Execution& execution) -> std::vector<std::string> {
-            const InvertedLayers inverted =
-                layer_doubts(plain_parts(stack), stack.rounding, InversionSearch::quick, execution).inverted;
-            if (inverted.rings == 0)
-                return {};
-            return {inverted.text_of_file(stack.layers.size())};
+        return result_of(threads, progress, [&](const Execution& execution) {
+            return layer_findings(plain_parts(stack), LayerUse::kept, stack.rounding, InversionSearch::quick,
+                                  execution)
+                .texts();
         });
     });
 }

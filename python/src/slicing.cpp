@@ -2,7 +2,7 @@
 
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/layering.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -114,7 +114,8 @@ FileTexts doubts_of(const Stack& stack, const PlatePointer& plate) {
     return result_of(0, py::none(), [&](const Execution& execution) {
         FileTexts texts;
         for (std::size_t file = 0; file < files.size(); ++file)
-            for (std::string& text : layer_doubts(files[file], {}, InversionSearch::quick, execution).texts())
+            for (std::string& text :
+                 layer_findings(files[file], LayerUse::cut, {}, InversionSearch::quick, execution).texts())
                 texts.emplace_back(file, std::move(text));
         return texts;
     });
@@ -130,9 +131,8 @@ FileTexts near_faces_of(const PlatePointer& plate, const CutPlan& cuts, unsigned
             for (const PlateShape& shape : plate->mended.shapes)
                 if (shape.input == file)
                     meshes.push_back(shape.mesh);
-            const NearFaceLayers found = near_faces(joined(meshes, execution), cuts.plan, execution);
-            if (found.layers > 0)
-                texts.emplace_back(file, found.text(cuts.plan.layers.size()));
+            for (std::string& text : near_faces(joined(meshes, execution), cuts.plan, execution).texts())
+                texts.emplace_back(file, std::move(text));
         }
         return texts;
     });

@@ -8,7 +8,7 @@
 #include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/mesh.hpp"
 #include "lamella/mesh/transform.hpp"
-#include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -185,7 +185,7 @@ lamella_layers sliced(const Plate& plate, const Cut& cut, const lamella_settings
     job.layering.cut = cut;
     job.max_memory = memory_of(settings);
     lamella_layers result{slice(plate, plan_of(job, plate, execution), {.execution = execution})};
-    warn(layer_doubts({&result.layers, 1}, {}, InversionSearch::quick, execution).texts());
+    warn(layer_findings({&result.layers, 1}, LayerUse::cut, {}, InversionSearch::quick, execution).texts());
     return result;
 }
 

@@ -20,20 +20,20 @@ std::string where(const Layer& layer) {
     return fmt::format("layer {} (z {:.7g} mm)", layer.index, layer.z);
 }
 
-void Finding::add(const Layer& layer, const Point2& at, std::uint64_t times) {
+void LocatedCount::add(const Layer& layer, const Point2& at, std::uint64_t times) {
     if (total == 0)
         position = fmt::format("{} at ({:.7g}, {:.7g})", where(layer), at.x, at.y);
     total += times;
 }
 
-void Finding::add(const Finding& other) {
+void LocatedCount::add(const LocatedCount& other) {
     if (total == 0)
         position = other.position;
     total += other.total;
     or_more = or_more || other.or_more;
 }
 
-Finding& ContourFindings::of(ContourDefectKind kind) {
+LocatedCount& ContourFindings::of(ContourDefectKind kind) {
     switch (kind) {
     case ContourDefectKind::open:
         return open_chains;
@@ -57,7 +57,7 @@ void ContourFindings::add(const ContourFindings& other) {
     overlapping.add(other.overlapping);
 }
 
-void append_finding(const Finding& finding, const FindingWords& words, std::vector<std::string>& lines) {
+void append_finding(const LocatedCount& finding, const FindingWords& words, std::vector<std::string>& lines) {
     if (finding.total > 0)
         lines.push_back(fmt::format(
             "{} {} {}the first in {}", finding.total, finding.total == 1 ? words.one : words.many,

@@ -16,24 +16,24 @@
 namespace lamella {
 
 /// Number of defects of one kind, and the position of the first one in the order of layers.
-struct Finding {
+struct LocatedCount {
     std::uint64_t total = 0;
     bool or_more = false; ///< the search ended at this number
     std::string position; ///< position of the first: "layer 12 (z 0.375 mm) at (1, 2)"
 
     void add(const Layer& layer, const Point2& at, std::uint64_t times = 1);
-    void add(const Finding& other);
+    void add(const LocatedCount& other);
 };
 
 /// Findings of each ContourDefectKind.
 struct ContourFindings {
-    Finding open_chains;
-    Finding crossings;
-    Finding misoriented;
-    Finding tangled;
-    Finding overlapping;
+    LocatedCount open_chains;
+    LocatedCount crossings;
+    LocatedCount misoriented;
+    LocatedCount tangled;
+    LocatedCount overlapping;
 
-    [[nodiscard]] Finding& of(ContourDefectKind kind);
+    [[nodiscard]] LocatedCount& of(ContourDefectKind kind);
     void add(const ContourFindings& other);
 };
 
@@ -68,6 +68,6 @@ inline constexpr FindingWords tangled_words{"ring bounds no material though its 
 
 /// Adds a line, such as "2 rings run the wrong way round, the first in layer 12 (z 0.375 mm) at (1, 2)", if
 /// there is any finding.
-void append_finding(const Finding& finding, const FindingWords& words, std::vector<std::string>& lines);
+void append_finding(const LocatedCount& finding, const FindingWords& words, std::vector<std::string>& lines);
 
 } // namespace lamella

@@ -154,16 +154,16 @@ SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution&
         PlaneSteps{.steps = steps,
                    .limits = layer_limits(execution, max_memory, executor.workers()),
                    .names = names_of(result.file)});
-    LayerDoubtSearch doubts(planes, result.file.rounding,
-                            steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick, execution,
-                            max_memory);
+    LayerFindingSearch search(planes, LayerUse::kept, result.file.rounding,
+                              steps.offset_mm != 0 ? InversionSearch::full : InversionSearch::quick,
+                              execution, max_memory);
     std::vector<PlaneSums> sums(executor.workers(), PlaneSums(result.file.parts.size()));
     std::vector<PlaneContent> contents(planes);
     ProgressMeter progress(execution, Stage::polygon, planes);
     executor.for_chunks(planes, 1, [&](std::uint64_t i, std::uint64_t, unsigned worker) {
         ScanVectors before = result.file.plane(i);
         if (steps.fill == FillRule::none)
-            doubts.look_at(i, result.file, before);
+            search.look_at(i, result.file, before);
         PlaneSteps::Plane plane = stepper->take(std::move(before));
         result.planes[i] = plane.changes;
         contents[i] = sums[worker].add(plane);
@@ -177,7 +177,13 @@ SteppedFile take_steps(const LayerSteps& steps, LayerFile file, const Execution&
         sums.front().add(sums[worker]);
     result.contours = sums.front().contours;
     result.hatch_lines_dropped = sums.front().hatch_lines_dropped;
-    result.inverted = doubts.doubts().inverted;
+    result.findings = search.findings();
+    if (result.hatch_lines_dropped > 0)
+        result.findings.add({.kind = FindingKind::outdated_hatch_lines, .count = result.hatch_lines_dropped});
+    LayerChanges all;
+    for (const LayerChanges& plane : result.planes)
+        all += plane;
+    add_nothing_left(result.findings, all, planes, result.contours);
     if (const std::shared_ptr<const LayerStream> before = result.file.stream) {
         LayerStream stream{.planes = before->planes,
                            .contents = std::move(contents),

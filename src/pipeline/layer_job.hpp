@@ -25,6 +25,7 @@ struct LayerJob {
     std::vector<std::uint32_t> files = {};
     std::vector<PlateNegative> negatives = {};
     Rounding rounding = {}; ///< of the coordinates of the layers
+    bool of_mesh = true;    ///< false for the layers of a slice file, whose findings have other cures
 
     std::optional<double> close_gaps_mm = {}; ///< see RepairPolicies
     LayerSteps steps = {};

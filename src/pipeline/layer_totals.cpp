@@ -17,12 +17,12 @@ namespace lamella {
 LayerTotals::LayerTotals(const LayerJob& job, std::span<const PlannedLayer> planes)
     : closed_(job.close_gaps_mm ? planes.size() : 0), changes_(job.steps.any() ? planes.size() : 0),
       statistics_(job.statistics ? planes.size() : 0), parts_(job.supports.size()), files_(job.files),
-      has_changes_(job.steps.any()) {
+      of_mesh_(job.of_mesh), has_changes_(job.steps.any()) {
     files_.resize(std::max({files_.size(), parts_.size(), std::size_t{1}}));
     assert(std::is_sorted(files_.begin(), files_.begin() + static_cast<std::ptrdiff_t>(parts_.size())));
     rows_.reserve(planes.size());
     for (const PlannedLayer& plane : planes)
-        rows_.push_back({.z = plane.z, .thickness = plane.top - plane.bottom});
+        rows_.push_back({.height = {.z = plane.z, .thickness = plane.top - plane.bottom}});
     if (job.scan)
         for (Exposure& exposure : plane_exposures(job.supports, *job.scan))
             exposures_.push_back({std::move(exposure), {}});
@@ -45,11 +45,15 @@ void LayerTotals::add(std::size_t plane, std::span<const Layer> parts, std::vect
         changes_[plane] = changes;
     if (bodies.empty())
         bodies = parts;
-    std::vector<OpenGaps> gaps; // gaps of each body; empty if there are none
     for (std::size_t i = 0; i < bodies.size(); ++i)
         if (bodies[i].open_chains() > 0) {
-            gaps.resize(bodies.size());
-            gaps[i] = open_gaps(bodies[i]);
+            const OpenGaps gaps = open_gaps(bodies[i]);
+            PlaneFinding open =
+                finding(of_mesh_ ? FindingKind::open_chains : FindingKind::dropped_open_chains, plane, i);
+            open.count = gaps.count;
+            open.amount = gaps.total_mm;
+            open.largest = gaps.longest_mm;
+            findings_.add(open);
         }
     LayerMeasure together;
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -66,17 +70,14 @@ void LayerTotals::add(std::size_t plane, std::span<const Layer> parts, std::vect
                       .z = first.z,
                       .thickness = first.thickness(),
                       .measure = together,
-                      .open_gaps = {},
-                      .inverted = {},
+                      .findings = {},
                       .joins = std::move(joins),
                       .hash = content_hash(parts.size() == 1 ? first : merged(parts)),
                       .changes = changes,
                       .scan = {},
                       .scan_hash = 0};
-        for (const OpenGaps& of_part : gaps)
-            statistics.open_gaps += of_part;
     }
-    add_doubts(plane, gaps, inverted);
+    add_inverted(plane, inverted);
 }
 
 void LayerTotals::add(std::size_t plane, const PlaneVectors& vectors) {
@@ -84,38 +85,37 @@ void LayerTotals::add(std::size_t plane, const PlaneVectors& vectors) {
     rows_[plane].scan_hash = vectors.hash;
     std::copy(vectors.figures.begin(), vectors.figures.end(),
               vectors_.begin() + static_cast<std::ptrdiff_t>(plane * exposures_.size()));
-    add_doubts(plane, {}, vectors.inverted, vectors.unreached_mm2);
+    add_inverted(plane, vectors.inverted);
+    for (std::size_t i = 0; i < vectors.unreached_mm2.size(); ++i)
+        if (vectors.unreached_mm2[i] > 0) {
+            PlaneFinding unreached = finding(FindingKind::unreached_material, plane, i);
+            unreached.count = 1;
+            unreached.amount = vectors.unreached_mm2[i];
+            findings_.add(unreached);
+        }
 }
 
-/// Adds the doubts about the bodies on a plane, the parts first. An empty span means that no body has any.
-void LayerTotals::add_doubts(std::size_t plane, std::span<const OpenGaps> gaps,
-                             std::span<const InvertedRings> inverted, std::span<const double> unreached_mm2) {
-    std::vector<Doubt> found; // one for each file
-    for (std::size_t i = 0; i < files_.size(); ++i) {
-        const bool open = i < gaps.size() && gaps[i].count > 0;
-        const bool turned = i < inverted.size() && inverted[i].rings > 0;
-        const double unreached = i < unreached_mm2.size() ? unreached_mm2[i] : 0;
-        if (!open && !turned && unreached == 0)
+PlaneFinding LayerTotals::finding(FindingKind kind, std::size_t plane, std::size_t body) const {
+    return {.kind = kind,
+            .file = files_[body],
+            .part = body < parts_.size() ? static_cast<std::uint32_t>(body) : PlaneFinding::no_part,
+            .plane = plane};
+}
+
+/// Adds the inverted rings of the bodies on a plane, the parts first. An empty span means that no body has
+/// any.
+void LayerTotals::add_inverted(std::size_t plane, std::span<const InvertedRings> inverted) {
+    for (std::size_t i = 0; i < inverted.size(); ++i) {
+        if (inverted[i].rings == 0)
             continue;
-        auto doubt = std::find_if(found.begin(), found.end(),
-                                  [&](const Doubt& of_file) { return of_file.file == files_[i]; });
-        if (doubt == found.end())
-            doubt = found.insert(doubt, {.file = files_[i], .plane = plane, .open_gaps = {}, .inverted = {}});
-        if (open)
-            doubt->open_gaps += gaps[i];
-        doubt->unreached_mm2 += unreached;
-        if (!turned)
-            continue;
-        doubt->inverted += inverted[i];
+        PlaneFinding rings =
+            finding(of_mesh_ ? FindingKind::inverted_rings : FindingKind::reversible_rings, plane, i);
+        rings.count = inverted[i].rings;
+        rings.amount = inverted[i].area_mm2;
+        findings_.add(rings);
         if (i < parts_.size())
             parts_[i].inverted_rings.fetch_add(inverted[i].rings, std::memory_order_relaxed);
-        if (!statistics_.empty())
-            statistics_[plane].inverted += inverted[i];
     }
-    if (found.empty())
-        return;
-    const std::lock_guard lock(mutex_);
-    doubts_.insert(doubts_.end(), found.begin(), found.end());
 }
 
 std::uint64_t LayerTotals::points() const noexcept {
@@ -138,14 +138,12 @@ void LayerTotals::gather(Communicator& processes) {
         .put_all(std::span<const FileResult::Gaps>(closed_))
         .put_all(std::span<const LayerChanges>(changes_))
         .put_all(std::span<const ScanFigures>(vectors_))
-        .put_all(std::span<const Doubt>(doubts_));
+        .put_all(std::span<const PlaneFinding>(findings_.take()));
     for (const LayerStatistics& layer : statistics_)
         mine.put(layer.index)
             .put(layer.z)
             .put(layer.thickness)
             .put(layer.measure)
-            .put(layer.open_gaps)
-            .put(layer.inverted)
             .put_all(std::span(layer.joins))
             .put(layer.hash)
             .put(layer.changes);
@@ -153,7 +151,6 @@ void LayerTotals::gather(Communicator& processes) {
     closed_.clear();
     changes_.clear();
     vectors_.clear();
-    doubts_.clear();
     statistics_.clear();
     parts_ = std::vector<Counts>(parts_.size());
     const auto append = [](auto& to, const auto& more) {
@@ -172,17 +169,16 @@ void LayerTotals::gather(Communicator& processes) {
         append(closed_, from.get_all<FileResult::Gaps>());
         append(changes_, from.get_all<LayerChanges>());
         append(vectors_, from.get_all<ScanFigures>());
-        for (Doubt doubt : from.get_all<Doubt>()) {
-            doubt.plane += below;
-            doubts_.push_back(doubt);
-        }
+        std::vector<PlaneFinding> found = from.get_all<PlaneFinding>();
+        for (PlaneFinding& one : found)
+            one.plane += below;
+        findings_.add(found);
         while (!from.empty()) // in the order of put()
             statistics_.push_back({.index = from.get<std::uint64_t>(),
                                    .z = from.get<double>(),
                                    .thickness = from.get<double>(),
                                    .measure = from.get<LayerMeasure>(),
-                                   .open_gaps = from.get<OpenGaps>(),
-                                   .inverted = from.get<InvertedRings>(),
+                                   .findings = {},
                                    .joins = from.get_all<GapJoin>(),
                                    .hash = from.get<std::uint64_t>(),
                                    .changes = from.get<LayerChanges>(),
@@ -191,47 +187,23 @@ void LayerTotals::gather(Communicator& processes) {
     }
 }
 
-/// Adds doubts in the order of the planes, so that sums have the same bits for every order of threads.
-void LayerTotals::store_doubts(FileResult& result) const {
-    result.doubts.assign(*std::max_element(files_.begin(), files_.end()) + std::size_t{1},
-                         LayerDoubts{.layers = rows_.size()});
-    result.unreached_by_file.resize(result.doubts.size());
-    std::vector<Doubt> doubts = doubts_;
-    std::sort(doubts.begin(), doubts.end(), [](const Doubt& a, const Doubt& b) {
-        return a.plane != b.plane ? a.plane < b.plane : a.file < b.file;
-    });
-    double unreached_mm2 = 0; // of all files on the plane
-    for (std::size_t i = 0; i < doubts.size(); ++i) {
-        const Doubt& doubt = doubts[i];
-        const Row& row = rows_[doubt.plane];
-        result.doubts[doubt.file].add(row.z, row.thickness, doubt.open_gaps, doubt.inverted);
-        result.unreached_by_file[doubt.file].add(doubt.unreached_mm2, row.z);
-        unreached_mm2 += doubt.unreached_mm2;
-        if (i + 1 == doubts.size() || doubts[i + 1].plane != doubt.plane)
-            result.unreached.add(std::exchange(unreached_mm2, 0), row.z);
-    }
-    for (std::size_t begin = 0, end = 0; begin < parts_.size(); begin = end) {
-        while (end < parts_.size() && files_[end] == files_[begin])
-            ++end;
-        // Labels are omitted if all parts of the file are affected.
-        const auto labels = [&](std::atomic<std::uint64_t> Counts::*count) {
-            std::vector<std::string> found;
-            for (std::size_t i = begin; i < end; ++i)
-                if (parts_[i].*count > 0)
-                    found.push_back(result.parts[i].label);
-            return found.size() < end - begin ? found : std::vector<std::string>();
-        };
-        LayerDoubts& of_file = result.doubts[files_[begin]];
-        of_file.open_parts = labels(&Counts::open_chains);
-        of_file.inverted_parts = labels(&Counts::inverted_rings);
-    }
+void LayerTotals::store_findings(FileResult& result) const {
+    std::vector<PlaneHeight> heights;
+    for (const Row& row : rows_)
+        heights.push_back(row.height);
+    std::vector<std::string> labels;
+    for (const PartResult& part : result.parts)
+        labels.push_back(part.label);
+    result.findings = findings_.sums(heights, labels, std::span(files_).first(parts_.size()));
+    if (!statistics_.empty())
+        for (const PlaneFinding& found : findings_.by_plane())
+            result.layers[found.plane].findings.push_back(found);
 }
 
 void LayerTotals::store_in(FileResult& result) const {
-    store_doubts(result);
     for (std::size_t i = 0; i < closed_.size(); ++i) {
-        if (closed_[i].closed > 0)
-            result.gaps.add(rows_[i].z);
+        if (closed_[i].closed > 0 && result.gaps.layers++ == 0)
+            result.gaps.first_z = rows_[i].height.z;
         result.gaps.closed += closed_[i].closed;
         result.gaps.longest_mm = std::max(result.gaps.longest_mm, closed_[i].longest_mm);
         result.gaps.total_mm += closed_[i].total_mm;
@@ -243,6 +215,7 @@ void LayerTotals::store_in(FileResult& result) const {
     for (const LayerStatistics& layer : statistics_)
         result.volume_mm3 += layer.measure.area_mm2 * layer.thickness;
     result.layers = statistics_;
+    store_findings(result);
     result.exposures = exposures_;
     const std::size_t each = exposures_.size();
     for (std::size_t i = 0; i < vectors_.size(); ++i)

@@ -3,6 +3,7 @@
 // Gathers figures of the layers that are written.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/findings/findings.hpp"
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/plan.hpp"
@@ -12,7 +13,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <mutex>
 #include <span>
 #include <vector>
 
@@ -28,10 +28,12 @@ class LayerTotals {
     /// Adds the layers of all parts on one of the planes, as they are written, with the closed gaps and the
     /// changes by layer steps. `inverted` has the inverted rings of each body, if they are already known.
     /// `bodies` are the parts and the negative volumes before the subtraction; they, not `parts`, are
-    /// examined for doubts about the mesh. May be called from any thread, once for each plane.
+    /// examined for findings about the mesh. May be called from any thread, once for each plane.
     void add(std::size_t plane, std::span<const Layer> parts, std::vector<GapJoin> joins,
              const LayerChanges& changes, std::span<const InvertedRings> inverted = {},
              std::span<const Layer> bodies = {});
+    /// Adds a finding about a file on one of the planes, which every process knows; after `gather`.
+    void add(const PlaneFinding& found) { findings_.add(found); }
     /// Adds the figures of the scan vectors of a plane, and the material without vectors. May be called from
     /// any thread, once for each plane.
     void add(std::size_t plane, const PlaneVectors& vectors);
@@ -47,18 +49,8 @@ class LayerTotals {
 
   private:
     struct Row {
-        double z = 0;
-        double thickness = 0;
+        PlaneHeight height;
         std::uint64_t scan_hash = 0;
-    };
-    /// A sign of a defect in the mesh of a file, found on a plane.
-    struct Doubt {
-        std::uint32_t file = 0;
-        std::uint32_t unused = 0; ///< padding, so that no uninitialised bytes are sent between processes
-        std::uint64_t plane = 0;  ///< index in rows_
-        OpenGaps open_gaps;
-        InvertedRings inverted;
-        double unreached_mm2 = 0; ///< see PlaneVectors
     };
     struct Counts {
         std::atomic<std::uint64_t> contours{0};
@@ -67,9 +59,10 @@ class LayerTotals {
         std::atomic<std::uint64_t> points{0};
     };
 
-    void add_doubts(std::size_t plane, std::span<const OpenGaps> gaps,
-                    std::span<const InvertedRings> inverted, std::span<const double> unreached_mm2 = {});
-    void store_doubts(FileResult& result) const;
+    /// Returns a finding about a body on a plane.
+    [[nodiscard]] PlaneFinding finding(FindingKind kind, std::size_t plane, std::size_t body) const;
+    void add_inverted(std::size_t plane, std::span<const InvertedRings> inverted);
+    void store_findings(FileResult& result) const;
 
     // One entry for each plane. There may be millions, so vectors that the job does not need stay empty.
     std::vector<Row> rows_;
@@ -80,8 +73,8 @@ class LayerTotals {
     std::vector<ScanFigures> vectors_;        ///< the figures of each exposure, plane by plane
     std::vector<Counts> parts_;
     std::vector<std::uint32_t> files_; ///< of each body
-    std::mutex mutex_;
-    std::vector<Doubt> doubts_; ///< in any order
+    FindingLog findings_;
+    bool of_mesh_;
     bool has_changes_;
 };
 

@@ -2,7 +2,7 @@
 
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy_fields.hpp"
 
@@ -50,7 +50,7 @@ struct ShardFile {
     double thinnest_mm = 0;     ///< of its lowest and its highest layer
     double rounded_heights = 0; ///< sum of the largest moves of top and bottom by the format
     std::vector<std::string> warnings = {};
-    InvertedLayers inverted = {};
+    Findings findings = {}; ///< in its layers
 };
 
 ShardFile look_at(const std::string& path, const LayerReadOptions& reading, const Execution& execution) {
@@ -83,7 +83,7 @@ ShardFile look_at(const std::string& path, const LayerReadOptions& reading, cons
             {part.label, file.stream ? file.stream->boxes[i] : part_box(part.layers, part.hatches, execution),
              part.exposure, part.support});
     }
-    shard.inverted = layer_doubts(file, InversionSearch::quick, execution).inverted;
+    shard.findings = layer_findings(file, LayerUse::kept, InversionSearch::quick, execution);
     return shard;
 }
 
@@ -503,9 +503,8 @@ MergeResult merge_layer_files(std::span<const std::string> paths, const std::str
     else
         write_anew(shards, output, to, writing, reading, result, execution);
     for (const ShardFile& shard : shards)
-        if (shard.inverted.rings > 0)
-            result.file_warnings.push_back(
-                fmt::format("{}: {}", shard.path, shard.inverted.text_of_file(shard.layers)));
+        for (const std::string& text : shard.findings.texts())
+            result.file_warnings.push_back(fmt::format("{}: {}", shard.path, text));
     return result;
 }
 

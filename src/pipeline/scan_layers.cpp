@@ -54,6 +54,7 @@ FileResult scan_planes(const std::string& path, const LayerFormat& format, std::
     result.threads = executor.workers();
     LayerJob job{.names = names_of(info, name),
                  .rounding = rounding,
+                 .of_mesh = false,
                  .scan = strategy,
                  .statistics = true,
                  .limits = layer_limits(execution, max_memory, executor.workers())};
@@ -77,13 +78,8 @@ FileResult scan_planes(const std::string& path, const LayerFormat& format, std::
 
     processor.set_times(result.seconds);
     processor.totals().store_in(result);
-    if (options.strict) {
-        std::vector<std::string> losses = result.doubts.front().scan_losses();
-        if (result.unreached.layers > 0)
-            losses.push_back(result.unreached.text());
-        if (!losses.empty())
-            throw Error(ErrorKind::defect, fmt::format("{}: {}", name.empty() ? path : name, losses.front()));
-    }
+    if (const Finding* found = result.findings.first_warning(); options.strict && found != nullptr)
+        throw Error(ErrorKind::defect, fmt::format("{}: {}", name.empty() ? path : name, found->text()));
     output.finish_file(result);
     result.seconds.total = total.seconds();
     return result;

@@ -3,6 +3,7 @@
 #include "lamella/contour/close_gaps.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/mesh/inspect.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/pipeline/scan_layers.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 
@@ -293,22 +294,12 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
 void refuse_defects(const FileJob& job, const FileResult& result) {
     if (!job.strict)
         return;
-    const auto refuse = [](const std::string& name, const std::string& text) {
-        throw Error(ErrorKind::defect, fmt::format("{}: {}", name, text));
-    };
-    for (std::size_t file = 0; file < result.files.size(); ++file)
-        if (result.near_faces[file].layers > 0)
-            refuse(result.files[file].path, result.near_faces[file].text(result.report.layers));
-    for (std::size_t file = 0; file < result.doubts.size(); ++file)
-        if (const std::vector<std::string> doubts = result.doubts[file].texts(); !doubts.empty())
-            refuse(job.inputs[file].path, doubts.front());
-    // If a shard has no contours, other shards may still have some.
-    if (!job.shard && result.changes && result.changes->changed_layers > 0 && result.report.contours == 0)
-        refuse(name_of(job.inputs),
-               fmt::format("nothing is left of any of {} layers after the steps", result.report.layers));
-    for (std::size_t file = 0; file < result.files.size(); ++file)
-        if (result.unreached_by_file[file].layers > 0)
-            refuse(result.files[file].path, result.unreached_by_file[file].text());
+    if (const Finding* found = result.findings.first_warning(); found != nullptr)
+        throw Error(ErrorKind::defect,
+                    fmt::format("{}: {}",
+                                found->file == Finding::all_files ? name_of(job.inputs)
+                                                                  : result.files[found->file].path,
+                                found->text()));
 }
 
 /// Slices a job. `feed_of` opens the files; it is called after the job has been checked.
@@ -387,12 +378,19 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     figures.slice_seconds = done.seconds;
     gather(processes, result.seconds, result.report);
     totals.gather(processes);
-    totals.store_in(result);
-    result.unreached_by_file.resize(result.files.size());
-    result.near_faces.resize(result.files.size());
     for (const Feed::NearPlane& near : feed.near_faces())
         if (all.begin <= near.plane && near.plane < all.end)
-            result.near_faces[near.file].add(plan.layers[near.plane].z, near.area_mm2, near.farthest_mm);
+            totals.add({.kind = FindingKind::near_faces,
+                        .file = static_cast<std::uint32_t>(near.file),
+                        .part = PlaneFinding::no_part,
+                        .plane = near.plane - all.begin,
+                        .count = 1,
+                        .amount = near.area_mm2,
+                        .largest = near.farthest_mm});
+    totals.store_in(result);
+    // If a shard has no contours, other shards may still have some.
+    if (!job.shard && result.changes)
+        add_nothing_left(result.findings, *result.changes, result.report.layers, result.report.contours);
     refuse_defects(job, result);
 
     const Stopwatch writing;

@@ -14,8 +14,8 @@ namespace lamella {
 
 /// Findings about the contours of one number.
 struct ContourRow {
-    Finding missing;
-    Finding elsewhere; ///< the area is not that at the depth of the contour
+    LocatedCount missing;
+    LocatedCount elsewhere; ///< the area is not that at the depth of the contour
 
     void add(const ContourRow& other) {
         missing.add(other.missing);
@@ -24,12 +24,12 @@ struct ContourRow {
 };
 
 struct PlaneFindings : ContourFindings {
-    Finding outside;
-    Finding too_short;
-    Finding misplaced;
-    Finding miscovered;
-    Finding unreached;
-    Finding inverted;
+    LocatedCount outside;
+    LocatedCount too_short;
+    LocatedCount misplaced;
+    LocatedCount miscovered;
+    LocatedCount unreached;
+    LocatedCount inverted;
     std::map<std::uint32_t, ContourRow> rows; ///< by contour number; only contours with findings
     std::uint64_t contour_vectors = 0;
     std::uint64_t hatch_vectors = 0;

@@ -2,7 +2,7 @@
 
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
-#include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 
 #include "contour/area_moments.hpp"
 #include "contour/same_height.hpp"
@@ -306,9 +306,8 @@ Verification verify_planes(std::span<const Layer> layers, const LayerAt& layer_a
                     "hatch lines were not checked: no contour bounds the area that they fill"));
     if (options.mesh) {
         compare_areas(layers, checks, frame.origin, options, execution, result);
-        if (const NearFaceLayers near = near_faces(*options.mesh, plan_of(layers, options), execution);
-            near.layers > 0)
-            result.findings.push_back(near.text(layers.size()));
+        for (const std::string& text : near_faces(*options.mesh, plan_of(layers, options), execution).texts())
+            result.findings.push_back(text);
         result.heights =
             covered_heights(layers, *options.mesh, options.granted(), execution, result.findings);
     }

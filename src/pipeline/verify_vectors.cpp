@@ -185,7 +185,7 @@ class VectorCheck {
 
     /// Finds lines whose midpoints are farther within the material than `depth`.
     static void find_in_thick(const EdgeTree& edges, double depth, const Layer& layer,
-                              std::span<const Point2> hatches, Finding& found) {
+                              std::span<const Point2> hatches, LocatedCount& found) {
         for (std::size_t i = 0; i + 1 < hatches.size(); i += 2) {
             const Point2& a = hatches[i];
             const Point2& b = hatches[i + 1];
@@ -199,7 +199,7 @@ class VectorCheck {
     /// within the material.
     class Followed {
       public:
-        Followed(const EdgeTree& edges, double distance, const Layer& layer, Finding& outside)
+        Followed(const EdgeTree& edges, double distance, const Layer& layer, LocatedCount& outside)
             : edges_(edges), squared_(distance * distance), layer_(layer), outside_(outside) {}
 
         void mark(const Point2& from, const Point2& to) {
@@ -216,7 +216,7 @@ class VectorCheck {
         const EdgeTree& edges_;
         double squared_;
         const Layer& layer_;
-        Finding& outside_;
+        LocatedCount& outside_;
         bool known_ = false;
         bool inside_ = false; ///< at at_
         Point2 at_;
@@ -230,7 +230,7 @@ class VectorCheck {
 
 /// A kind of finding, its member in the checks of planes, and its count for the file.
 struct KindOfFinding {
-    Finding PlaneFindings::*found;
+    LocatedCount PlaneFindings::*found;
     std::uint64_t VectorVerification::*total;
     FindingWords words;
 };
@@ -269,7 +269,7 @@ std::array<KindOfFinding, 9> kinds_of_findings(bool strategy) {
 }
 
 void append_row(std::uint32_t number, const ContourRow& row, std::vector<std::string>& findings) {
-    const auto append_finding_of = [&](const Finding& finding, const char* what) {
+    const auto append_finding_of = [&](const LocatedCount& finding, const char* what) {
         if (finding.total > 0)
             findings.push_back(fmt::format("contour {} {} on {}, the first is {}", number, what,
                                            counted(finding.total, "layer"), finding.position));
@@ -357,7 +357,7 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
     progress.finish();
 
     for (const KindOfFinding& kind : kinds_of_findings(options.strategy.has_value())) {
-        Finding all;
+        LocatedCount all;
         for (const PlaneFindings& check : checks)
             all.add(check.*kind.found);
         result.*kind.total = all.total;

@@ -25,7 +25,8 @@ using test::Solid;
 /// What is found but for level faces near a plane, which are no error.
 std::vector<std::string> errors_of(const Verification& found, const Mesh& mesh, const Plan& plan) {
     std::vector<std::string> errors = found.findings;
-    std::erase(errors, near_faces(mesh, plan).text(plan.layers.size()));
+    for (const std::string& near : near_faces(mesh, plan).texts())
+        std::erase(errors, near);
     return errors;
 }
 

@@ -361,10 +361,11 @@ class Scan(ProgramTest):
         self.fail_with(4, "wall.stl: " + thin, *slicing, *leaving, "-o", "x.ilt", "--strict")
         self.succeed(*slicing, "-o", "layers.npz")
         result = self.succeed("scan", "layers.npz", "-o", "again.json", "--stats", "stats.json", *leaving)
-        self.assertRegex(result.err, f"layers.npz: {thin}")
+        of_wall = thin.replace("layers, the", 'layers of the part "wall", the')
+        self.assertRegex(result.err, f"layers.npz: {of_wall}")
         self.assertAlmostEqual(json.loads(self.bytes_of("stats.json"))["scan"]["unreached_mm2"], 1.92, places=4)
-        self.fail_with(4, "error: layers.npz: " + thin, "scan", "layers.npz", "-o", "x.ilt", "--strict", *leaving)
-        self.fail_with(4, "error: standard input: " + thin, "scan", "-", "-o", "x.ilt", "--strict", *leaving,
+        self.fail_with(4, "error: layers.npz: " + of_wall, "scan", "layers.npz", "-o", "x.ilt", "--strict", *leaving)
+        self.fail_with(4, "error: standard input: " + of_wall, "scan", "-", "-o", "x.ilt", "--strict", *leaving,
                        stdin=self.bytes_of("layers.npz"))
         self.write("more.toml", 'accepted_mm2 = 0.5\n[contours]\nthin_walls = "leave out"\n')
         self.succeed(*slicing, "--strategy", "more.toml", "-o", "y.ilt", "--strict")

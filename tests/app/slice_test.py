@@ -8,7 +8,7 @@ import re
 from program import ON_WINDOWS, ProgramTest, binary_stl, box_triangles, main, needs_posix, open_box
 
 STATS_KEYS = ["lamella", "options", "input", "engine", "threads", "seconds", "peak_rss_bytes", "points",
-              "contours", "open_chains", "volume_mm3", "hash", "layers"]
+              "contours", "open_chains", "volume_mm3", "hash", "findings", "layers"]
 INPUT_KEYS = ["path", "triangles", "vertices", "bbox", "unit", "volume_mm3", "defects"]
 DEFECT_KEYS = ["boundary_edges", "nonmanifold_edges", "orientation_conflicts", "duplicate_triangles",
                "degenerate_triangles", "inverted_shells"]
@@ -144,7 +144,7 @@ class Slice(ProgramTest):
         for engine in PAPER_ENGINES:
             with self.subTest(engine):
                 stats = self.stats("sheet.stl", "--engine", engine)
-                self.assertEqual(list(stats), STATS_KEYS[:-1] + ["matching", "layers"])
+                self.assertEqual(list(stats), STATS_KEYS[:-2] + ["matching", "findings", "layers"])
                 self.assertGreater(stats["seconds"]["weld"], 0)
                 matching = stats["matching"]
                 self.assertEqual(list(matching), MATCHING_KEYS)
@@ -188,6 +188,10 @@ class Slice(ProgramTest):
         stats = self.stats(*options)
         self.assertLess(stats["layers"][0]["area_mm2"], 99)
         [near] = stats["near_faces"]
+        [found] = stats["findings"]
+        self.assertEqual((found["kind"], found["path"], found["layers"]), ("near_faces", near["path"], near["layers"]))
+        self.assertEqual(found["amount_mm2"], near["area_mm2"])
+        self.assertIn(found["text"], result.err)
         self.assertEqual((near["path"], near["layers"]), ("tilted.stl", int(layers)))
         self.assertGreaterEqual(near["area_mm2"], 100 - 1e-3)
         self.assertLess(near["farthest_mm"], float(snap))
@@ -303,7 +307,7 @@ class Slice(ProgramTest):
         whole = r"10 rings bound no material in 10 of 10 layers, first at z = 0\.5 mm \(6000 mm3 lost\): .*triangles face inwards"
         self.write("inverted.stl", binary_stl([(a, c, b) for a, b, c in box_triangles(20, 30, 10)]))
         result = self.succeed("slice", "inverted.stl", "-o", "inverted.cli", "--layer-height", "1")
-        self.assertRegex(result.err, rf"^lamella: warning: inverted\.stl: {whole}; --orient turns .*; see lamella info inverted\.stl\n$")
+        self.assertRegex(result.err, rf"^lamella: warning: inverted\.stl: {whole}, which --orient corrects, .*; see lamella info inverted\.stl\n$")
         for name, x in [("left", -30), ("right", 40)]:
             inverted = [tuple((px + x, py, pz) for px, py, pz in (a, c, b)) for a, b, c in box_triangles(20, 30, 10)]
             self.write(f"{name}.stl", binary_stl(box_triangles(20, 30, 10) + inverted))
@@ -452,7 +456,7 @@ class Slice(ProgramTest):
         for option in ["--offset=-100", "--min-area=1000"]:
             result = self.succeed("slice", "box.stl", "-o", "box.cli", option)
             self.assertRegex(result.err, r"^lamella: warning: box\.stl: no contour is left in any of 100 layers: .* of 100\n$")
-            self.fail_with(4, "nothing is left of any of 100 layers", "slice", "box.stl", "-o", "strict.cli", option, "--strict")
+            self.fail_with(4, "no contour is left in any of 100 layers", "slice", "box.stl", "-o", "strict.cli", option, "--strict")
             self.assertFalse(self.path("strict.cli").exists())
         # What leaves some contours, or found none, is as it was asked for.
         self.assertEqual(self.succeed("slice", "box.stl", "-o", "box.cli", "--offset=-1").err, "")
@@ -464,7 +468,7 @@ class Slice(ProgramTest):
         result = self.succeed("slice", "open.stl", "-o", "open.cli", "--layer-height", "1")
         self.assertIn("10 open chains", result.err)
         self.assertIn("10 rings bound no material", result.err)
-        self.assertIn("contours around them stay open, or triangles face inwards", result.err)
+        self.assertIn("triangles face inwards, which --orient corrects, or contours around them are open", result.err)
 
     def test_a_list_of_heights_may_begin_with_a_byte_order_mark(self):
         self.box()

@@ -9,14 +9,6 @@
 
 namespace lamella::test {
 
-inline void expect_same(const OpenGaps& one, const OpenGaps& other) {
-    EXPECT_EQ(one.count, other.count);
-    EXPECT_EQ(one.longest_mm, other.longest_mm);
-    EXPECT_EQ(one.total_mm, other.total_mm);
-    EXPECT_EQ(one.from, other.from);
-    EXPECT_EQ(one.to, other.to);
-}
-
 inline void expect_same(const LayerChanges& one, const LayerChanges& other) {
     for (std::uint64_t LayerChanges::*count :
          {&LayerChanges::changed_layers, &LayerChanges::groups_united, &LayerChanges::rings_united,
@@ -44,8 +36,7 @@ inline void expect_same(const LayerStatistics& one, const LayerStatistics& other
         EXPECT_EQ(one.measure.*count, other.measure.*count);
     EXPECT_EQ(one.measure.area_mm2, other.measure.area_mm2);
     EXPECT_EQ(one.measure.perimeter_mm, other.measure.perimeter_mm);
-    expect_same(one.open_gaps, other.open_gaps);
-    EXPECT_EQ(one.inverted, other.inverted);
+    EXPECT_EQ(one.findings, other.findings);
     expect_same(one.changes, other.changes);
     ASSERT_EQ(one.scan.size(), other.scan.size());
     for (std::size_t i = 0; i < one.scan.size(); ++i)
@@ -73,33 +64,9 @@ inline void expect_same(const FileResult& one, const FileResult& other) {
     for (std::uint64_t SliceReport::*count :
          {&SliceReport::layers, &SliceReport::contours, &SliceReport::open_chains, &SliceReport::points})
         EXPECT_EQ(one.report.*count, other.report.*count);
-    ASSERT_EQ(one.doubts.size(), other.doubts.size());
-    for (std::size_t i = 0; i < one.doubts.size(); ++i) {
-        const LayerDoubts& doubts = one.doubts[i];
-        const LayerDoubts& same = other.doubts[i];
-        EXPECT_EQ(doubts.texts(), same.texts());
-        EXPECT_EQ(doubts.layers, same.layers);
-        EXPECT_EQ(doubts.open.layers, same.open.layers);
-        EXPECT_EQ(doubts.open.first_z, same.open.first_z);
-        expect_same(doubts.open_gaps, same.open_gaps);
-        EXPECT_EQ(doubts.inverted.layers, same.inverted.layers);
-        EXPECT_EQ(doubts.inverted.first_z, same.inverted.first_z);
-        EXPECT_EQ(doubts.inverted.rings, same.inverted.rings);
-        EXPECT_EQ(doubts.inverted.volume_mm3, same.inverted.volume_mm3);
-    }
-    ASSERT_EQ(one.near_faces.size(), other.near_faces.size());
-    for (std::size_t i = 0; i < one.near_faces.size(); ++i) {
-        EXPECT_EQ(one.near_faces[i].layers, other.near_faces[i].layers);
-        EXPECT_EQ(one.near_faces[i].first_z, other.near_faces[i].first_z);
-        EXPECT_EQ(one.near_faces[i].area_mm2, other.near_faces[i].area_mm2);
-        EXPECT_EQ(one.near_faces[i].farthest_mm, other.near_faces[i].farthest_mm);
-    }
-    EXPECT_EQ(one.unreached.area_mm2, other.unreached.area_mm2);
-    EXPECT_EQ(one.unreached.layers, other.unreached.layers);
-    EXPECT_EQ(one.unreached.first_z, other.unreached.first_z);
-    ASSERT_EQ(one.unreached_by_file.size(), other.unreached_by_file.size());
-    for (std::size_t i = 0; i < one.unreached_by_file.size(); ++i)
-        EXPECT_EQ(one.unreached_by_file[i].text(), other.unreached_by_file[i].text());
+    EXPECT_EQ(one.findings.texts(), other.findings.texts());
+    EXPECT_EQ(one.findings.by_file, other.findings.by_file);
+    EXPECT_EQ(one.findings.total, other.findings.total);
     EXPECT_EQ(one.gaps.closed, other.gaps.closed);
     EXPECT_EQ(one.gaps.longest_mm, other.gaps.longest_mm);
     EXPECT_EQ(one.gaps.total_mm, other.gaps.total_mm);

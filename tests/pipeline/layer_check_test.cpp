@@ -27,8 +27,9 @@ TEST(LayerCheck, CountsEachKindOfDefectAndTheFirst) {
     const LayerCheck sound =
         check_layer(at(layer_of({rectangle(0, 0, 9, 9), reversed(rectangle(1, 1, 8, 8))})), {});
     EXPECT_EQ(sound.measure.area_mm2, 81 - 49);
-    for (const Finding* finding : {&sound.found.open_chains, &sound.found.crossings, &sound.found.misoriented,
-                                   &sound.found.tangled, &sound.found.overlapping})
+    for (const LocatedCount* finding :
+         {&sound.found.open_chains, &sound.found.crossings, &sound.found.misoriented, &sound.found.tangled,
+          &sound.found.overlapping})
         EXPECT_EQ(finding->total, 0U);
 
     const LayerCheck chains = check_layer(at(layer_of({}, {{{1, 2}, {3, 4}}, {{5, 6}, {7, 8}}})), {});

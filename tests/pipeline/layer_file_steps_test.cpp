@@ -43,8 +43,7 @@ void expect_same(const SteppedFile& found, const SteppedFile& expected) {
     ASSERT_FALSE(expected.file.stream);
     EXPECT_EQ(found.contours, expected.contours);
     EXPECT_EQ(found.hatch_lines_dropped, expected.hatch_lines_dropped);
-    EXPECT_EQ(found.inverted.rings, expected.inverted.rings);
-    EXPECT_EQ(found.inverted.first_z, expected.inverted.first_z);
+    EXPECT_EQ(found.findings.by_file, expected.findings.by_file);
     ASSERT_EQ(found.planes.size(), expected.planes.size());
     for (std::size_t i = 0; i < found.planes.size(); ++i) {
         EXPECT_EQ(found.planes[i].changed_layers, expected.planes[i].changed_layers);
@@ -85,10 +84,11 @@ TEST(LayerFileSteps, DropHatchLinesOfContoursThatChange) {
     EXPECT_EQ(filled.hatch_lines_dropped, planes / 3);
     EXPECT_EQ(filled.file.hatch_lines(0), planes - planes / 3);
     EXPECT_EQ(filled.contours, 2 * planes);
-    EXPECT_EQ(filled.inverted.rings, 0U) << "the rule says where material is";
+    EXPECT_EQ(filled.findings.of(FindingKind::reversible_rings).count, 0U)
+        << "the rule says where material is";
     const SteppedFile larger = take_steps({.offset_mm = 0.1}, file_of(LayersKept::none));
     EXPECT_EQ(larger.hatch_lines_dropped, planes);
-    EXPECT_EQ(larger.inverted.rings, planes / 5);
+    EXPECT_EQ(larger.findings.of(FindingKind::reversible_rings).count, planes / 5);
     EXPECT_NEAR(larger.file.stream->boxes[0].min.x, -0.1, 1e-9);
 }
 

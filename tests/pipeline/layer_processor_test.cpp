@@ -181,10 +181,9 @@ TEST(LayerProcessor, FindsInvertedRingsBeforeStepsRemoveThemUnlessAFillRuleDefin
                 job.steps.largest_only = steps;
                 SCOPED_TRACE(testing::Message() << scans << static_cast<int>(fill) << steps);
                 const Written written = process(job, planes);
-                ASSERT_EQ(written.result.doubts.size(), 1U);
-                const InvertedLayers& found = written.result.doubts.front().inverted;
-                EXPECT_EQ(found.rings, fill == FillRule::none ? 2U : 0U);
-                EXPECT_DOUBLE_EQ(found.volume_mm3, fill == FillRule::none ? 6 : 0);
+                const Finding& found = written.result.findings.of(FindingKind::inverted_rings);
+                EXPECT_EQ(found.count, fill == FillRule::none ? 2U : 0U);
+                EXPECT_DOUBLE_EQ(found.amount, fill == FillRule::none ? 6 : 0);
                 EXPECT_EQ(written.result.changes.has_value(), job.steps.any());
             }
 }
@@ -201,9 +200,8 @@ TEST(LayerProcessor, SubtractsNegativeVolumesAndReportsTheirDefectsAsThoseOfThei
     const Written written = process(job, planes);
     EXPECT_NEAR(area_of(written.parts[0].layers.front()), 100 - 16, 1e-9);
     EXPECT_TRUE(same_contours(written.parts[1].layers.front(), other)) << "not subtracted from it";
-    ASSERT_EQ(written.result.doubts.size(), 2U);
-    EXPECT_EQ(written.result.doubts[0].open_gaps.count, 0U);
-    EXPECT_EQ(written.result.doubts[1].open_gaps.count, 1U);
+    EXPECT_EQ(written.result.findings.of(FindingKind::open_chains, 0).count, 0U);
+    EXPECT_EQ(written.result.findings.of(FindingKind::open_chains, 1).count, 1U);
     EXPECT_EQ(written.result.report.open_chains, 0U) << "none is written";
 }
 
@@ -211,12 +209,12 @@ TEST(LayerProcessor, ClosesGapsBeforeItCountsThemAndTakesSteps) {
     const Layer open = test::normal_layer({}, {{{0, 0}, {10, 0}, {10, 10}, {0, 10}, {0, 0.1}}});
     const Planes planes{{at(open, 0)}, {at(open, 1)}};
     LayerJob job = job_of(1);
-    EXPECT_EQ(process(job, planes).result.doubts.front().open_gaps.count, 2U);
+    EXPECT_EQ(process(job, planes).result.findings.of(FindingKind::open_chains).count, 2U);
     job.close_gaps_mm = 0.2;
     job.steps.offset_mm = -1;
     const Written written = process(job, planes);
     EXPECT_EQ(written.result.gaps.closed, 2U);
-    EXPECT_EQ(written.result.doubts.front().open_gaps.count, 0U);
+    EXPECT_EQ(written.result.findings.of(FindingKind::open_chains).count, 0U);
     EXPECT_NEAR(area_of(written.parts.front().layers.front()), 64, 0.5);
 }
 

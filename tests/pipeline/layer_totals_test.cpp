@@ -87,10 +87,10 @@ TEST(LayerTotals, SayWhereLayersAreOpenAndWhatWasClosed) {
     totals.add(0, std::span(&empty, 1), {GapJoin{{}, {}, 0.5}, GapJoin{{}, {}, 0.25}}, {});
     totals.add(1, std::span(&open, 1), {}, {});
     const FileResult result = told(totals, 1);
-    ASSERT_EQ(result.doubts.size(), 1U);
-    EXPECT_EQ(result.doubts[0].open.layers, 1U);
-    EXPECT_EQ(result.doubts[0].open.first_z, above.z);
-    EXPECT_EQ(result.doubts[0].open_gaps.longest_mm, 5);
+    const Finding& chains = result.findings.of(FindingKind::open_chains, 0);
+    EXPECT_EQ(chains.layers, 1U);
+    EXPECT_EQ(chains.first_z, above.z);
+    EXPECT_EQ(chains.largest, 5);
     EXPECT_EQ(result.report.open_chains, 1U);
     EXPECT_EQ(result.gaps.closed, 2U);
     EXPECT_EQ(result.gaps.layers, 1U);
@@ -235,23 +235,24 @@ TEST(LayerTotals, NameTheFileAndThePartsThatHaveADefect) {
     result.parts.resize(4);
     result.parts[2].label = "bracket";
     totals.store_in(result);
-    ASSERT_EQ(result.doubts.size(), 3U);
-    EXPECT_TRUE(result.doubts[0].texts().empty());
-    EXPECT_EQ(result.doubts[1].texts(),
-              std::vector<std::string>(
-                  {"2 rings bound no material in 2 of 4 layers of the part \"bracket\", first at z = 0.75 mm "
-                   "(4 mm3 "
-                   "lost): they run clockwise outside of material because triangles face inwards; `orient` "
-                   "turns these round"}));
     EXPECT_EQ(
-        result.doubts[2].texts(),
+        result.findings.texts(),
         std::vector<std::string>(
             {"3 open chains in 3 of 4 layers, first at z = 0.25 mm: contours do not close where the mesh "
-             "has holes or flipped triangles, the longest gap is 5 mm"}));
+             "has holes or flipped triangles, the longest gap is 5 mm",
+             "2 rings bound no material in 2 of 4 layers of the part \"bracket\", first at z = 0.75 mm "
+             "(4 mm3 lost): they run clockwise outside of material: triangles face inwards, which "
+             "`orient` corrects, or contours around them are open"}));
+    EXPECT_EQ(result.findings.by_file[0].file, 2U);
+    EXPECT_EQ(result.findings.by_file[1].file, 1U);
     EXPECT_EQ(result.parts[2].inverted_rings, 2U);
-    EXPECT_EQ(result.layers[1].inverted.rings, 1U);
-    EXPECT_EQ(result.layers[1].inverted.area_mm2, 4);
-    EXPECT_EQ(result.layers[0].inverted.rings, 0U);
+    ASSERT_EQ(result.layers[1].findings.size(), 2U);
+    EXPECT_EQ(result.layers[1].findings[1].kind, FindingKind::inverted_rings);
+    EXPECT_EQ(result.layers[1].findings[1].count, 1U);
+    EXPECT_EQ(result.layers[1].findings[1].amount, 4);
+    ASSERT_EQ(result.layers[0].findings.size(), 1U);
+    EXPECT_EQ(result.layers[0].findings[0].kind, FindingKind::open_chains);
+    EXPECT_TRUE(result.layers[2].findings.empty());
 }
 
 } // namespace

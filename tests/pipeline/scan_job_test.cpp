@@ -198,22 +198,26 @@ TEST_F(ScanJob, HasTheSameBytesInShards) {
         EXPECT_EQ(merged_shards(scanned, count), content("whole.cli"));
 }
 
+const Finding& unreached(const FileResult& result) {
+    return result.findings.of(FindingKind::unreached_material);
+}
+
 TEST_F(ScanJob, MeasuresMaterialThatNoVectorReaches) {
     FileJob scanned = job("job.cli"); // the outermost contour is at 0.05
     write_stl(path("wall.stl"), make_box(0.08, 10, 2));
     scanned.inputs.push_back({.path = path("wall.stl"), .placement = translation(30, 0, -2)});
-    EXPECT_EQ(slice_file(scanned).unreached.layers, 0U) << "a line along its middle";
+    EXPECT_EQ(unreached(slice_file(scanned)).layers, 0U) << "a line along its middle";
     scanned.scan->contours.thin_walls = ThinWalls::leave_out;
     const FileResult one = slice_file(scanned, {.threads = 1});
-    EXPECT_NEAR(one.unreached.area_mm2, 4 * 0.8, 1e-5);
-    EXPECT_EQ(one.unreached.layers, 4U);
-    ASSERT_EQ(one.unreached_by_file.size(), 2U);
-    EXPECT_EQ(one.unreached_by_file[0].layers, 0U);
-    EXPECT_EQ(one.unreached_by_file[1].area_mm2, one.unreached.area_mm2) << "the wall's";
-    EXPECT_GT(one.unreached.first_z, -2);
-    EXPECT_LT(one.unreached.first_z, -1.5); // the lowest plane of the wall
-    EXPECT_TRUE(one.unreached.text().starts_with("3.2 mm2 of material on 4 layers, the lowest at z = -1.7"))
-        << one.unreached.text();
+    EXPECT_NEAR(unreached(one).amount, 4 * 0.8, 1e-5);
+    EXPECT_EQ(unreached(one).layers, 4U);
+    EXPECT_EQ(one.findings.of(FindingKind::unreached_material, 0).layers, 0U);
+    EXPECT_EQ(one.findings.of(FindingKind::unreached_material, 1).amount, unreached(one).amount)
+        << "the wall's";
+    EXPECT_GT(unreached(one).first_z, -2);
+    EXPECT_LT(unreached(one).first_z, -1.5); // the lowest plane of the wall
+    EXPECT_TRUE(unreached(one).text().starts_with("3.2 mm2 of material on 4 layers, the lowest at z = -1.7"))
+        << unreached(one).text();
     double of_contours = 0;
     for (const ExposureResult& all : one.exposures)
         if (all.exposure.contour == 1)
@@ -226,7 +230,7 @@ TEST_F(ScanJob, MeasuresMaterialThatNoVectorReaches) {
     for (const std::uint32_t number : {1U, 2U, 3U}) {
         FileJob shard = scanned;
         shard.shard = Shard{number, 3};
-        of_shards += slice_file(shard).unreached.layers;
+        of_shards += unreached(slice_file(shard)).layers;
     }
     EXPECT_EQ(of_shards, 4U);
 
@@ -242,19 +246,19 @@ TEST_F(ScanJob, MeasuresMaterialThatNoVectorReaches) {
     }
     const FileResult of_layers =
         scan_layers(path("scanned.cli"), layer_format("cli", ""), stacks, {}, info, *scanned.scan);
-    EXPECT_EQ(of_layers.unreached.layers, 4U);
-    EXPECT_EQ(of_layers.unreached.area_mm2, one.unreached.area_mm2);
-    EXPECT_EQ(of_layers.unreached.first_z, one.unreached.first_z);
+    EXPECT_EQ(unreached(of_layers).layers, 4U);
+    EXPECT_EQ(unreached(of_layers).amount, unreached(one).amount);
+    EXPECT_EQ(unreached(of_layers).first_z, unreached(one).first_z);
     for (std::size_t i = 0; i < one.layers.size(); ++i)
         EXPECT_EQ(of_layers.layers[i].scan_hash, one.layers[i].scan_hash);
 
     scanned.strict = true;
     EXPECT_THROW(static_cast<void>(slice_file(scanned)), Error);
     scanned.scan->accepted_mm2 = 0.9;
-    EXPECT_EQ(slice_file(scanned).unreached.layers, 0U);
+    EXPECT_EQ(unreached(slice_file(scanned)).layers, 0U);
     scanned.scan->accepted_mm2 = 0;
     scanned.inputs.pop_back();
-    EXPECT_EQ(slice_file(scanned).unreached.layers, 0U);
+    EXPECT_EQ(unreached(slice_file(scanned)).layers, 0U);
 }
 
 TEST_F(ScanJob, HashesSeeTheOrderOfExposuresAndOfVectors) {

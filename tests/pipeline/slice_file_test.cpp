@@ -185,19 +185,18 @@ TEST_F(Processes, SnapAndWarnOfLevelFacesNearPlanesAlike) {
     job.layering.at = SliceAt::bottom;
     job.output = path("out.json");
     const FileResult bent = slice_file(job);
-    ASSERT_EQ(bent.near_faces.size(), 1U);
-    const NearFaceLayers& near = bent.near_faces.front();
+    const Finding& near = bent.findings.of(FindingKind::near_faces, 0);
     EXPECT_EQ(near.first_z, bent.layers.front().z);
-    EXPECT_GE(near.area_mm2, 100);
-    EXPECT_LT(near.farthest_mm, 1e-5);
-    const std::string text = near.text(bent.report.layers);
+    EXPECT_GE(near.amount, 100);
+    EXPECT_LT(near.largest, 1e-5);
+    const std::string text = near.text();
     EXPECT_NE(text.find("`snap_mm` 1e-"), std::string::npos) << text;
     EXPECT_LT(bent.layers.front().measure.area_mm2, 99);
     std::vector<FileResult> expected{bent};
     job.layering.snap_mm = 1e-5;
     expected.push_back(slice_file(job));
     const FileResult& snapped = expected.back();
-    EXPECT_EQ(snapped.near_faces.front().layers, 0U);
+    EXPECT_EQ(snapped.findings.of(FindingKind::near_faces).layers, 0U);
     EXPECT_NEAR(snapped.layers.front().measure.area_mm2, 100, 1e-3);
     EXPECT_NEAR(snapped.layers[5].measure.area_mm2, 40, 1e-3);
     const std::string bytes = content("out.json");
@@ -214,7 +213,7 @@ TEST_F(Processes, SnapAndWarnOfLevelFacesNearPlanesAlike) {
     job.layering.snap_mm = 0;
     for (std::uint32_t number = 1; number <= 3; ++number) {
         job.shard = Shard{.number = number, .count = 3};
-        layers += slice_file(job).near_faces.front().layers;
+        layers += slice_file(job).findings.of(FindingKind::near_faces).layers;
     }
     EXPECT_EQ(layers, near.layers);
     job.shard.reset();

@@ -837,7 +837,7 @@ def test_conversion_fills_as_the_program_does(program, tmp_path, rule):
 
 def test_filling_says_what_it_leaves_out(tmp_path, jobs):
     lamella.write(tmp_path / "inward.json", lamella.Stack([lamella.Layer([[(0, 0), (0, 4), (4, 4), (4, 0)]], 1, 0, 2)]))
-    with pytest.warns(lamella.DefectWarning, match="no contour is left in any of 1 layers"):
+    with pytest.warns(lamella.DefectWarning, match="no contour is left in any of 1 layer: fill removed"):
         lamella.convert(tmp_path / "inward.json", tmp_path / "x.json", fill="positive")
     with pytest.raises(lamella.UsageError, match="holds scan vectors .*, and fill is for contours: fill before scan$"):
         lamella.convert(jobs / "program.ilt", tmp_path / "x.ovf", fill="nonzero")

@@ -60,7 +60,7 @@ def test_what_no_vectors_are_made_of_is_reported(tmp_path):
     with pytest.warns(lamella.DefectWarning, match="^the mesh: 10 rings bound no material in 10 of 10 layers, first at z = 0.5 mm") as told:
         stack = lamella.slice(inward, 1)
     assert len(told) == 1
-    assert "orient=True turns" in str(told[0].message)
+    assert "orient=True corrects" in str(told[0].message)
     inside_out = "^layers: 10 rings bound no material in 10 of 10 layers, first at z = 0.5 mm .* filled\\(\"nonzero\"\\) turns"
     with pytest.warns(lamella.DefectWarning, match=inside_out):
         lamella.scan(stack)
@@ -74,8 +74,8 @@ def test_what_no_vectors_are_made_of_is_reported(tmp_path):
     with pytest.warns(lamella.DefectWarning) as told:
         lamella.scan(read)
     assert [str(warning.message) for warning in told] == [
-        f"{tmp_path}/a.json: 1 hatch line left out: layers are hatched anew",
         f"{tmp_path}/a.json: 1 open contour left out in 1 of 1 layer, first at z = 1 mm: only closed contours bound material",
+        f"{tmp_path}/a.json: 1 hatch line left out: layers are hatched anew",
     ]
 
 

@@ -4,7 +4,7 @@
 
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/execution.hpp"
-#include "lamella/pipeline/layer_warnings.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
 #include "lamella/pipeline/slice_file.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/layer_file.hpp"
@@ -32,9 +32,9 @@ struct SteppedFile {
     std::vector<LayerChanges> planes; ///< changes of each plane
     std::uint64_t contours = 0;       ///< that are left
     std::uint64_t hatch_lines_dropped = 0;
-    /// Rings that bounded no material before the steps. Not searched for if `LayerSteps::fill` defines the
-    /// material.
-    InvertedLayers inverted = {};
+    /// Dropped hatch lines, layers without any contour, and rings that bounded no material before the steps;
+    /// these are not searched for if `LayerSteps::fill` defines the material.
+    Findings findings = {};
 };
 
 /// Applies the steps to the layers of a file, in parallel. Drops the hatch lines of a layer whose contours

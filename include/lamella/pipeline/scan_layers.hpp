@@ -28,9 +28,8 @@ namespace lamella {
 /// each of which holds the vectors of one plane in memory.
 ///
 /// Returns the figures that `slice_file` returns with FileJob::scan and `layer_statistics`, without those of
-/// meshes. `doubts` has a single entry; LayerDoubts::scan_losses are its texts. Throws the errors of `scan`
-/// and `write_layers`, and, with LayerWriteOptions::strict, Error{defect} for such losses and for material
-/// that no vector reaches.
+/// meshes. All `findings` are those of file 0. Throws the errors of `scan` and `write_layers`, and, with
+/// LayerWriteOptions::strict, Error{defect} for the first finding.
 [[nodiscard]] FileResult scan_layers(const std::string& path, const LayerFormat& format,
                                      std::span<const LayerStack> parts, const Rounding& rounding,
                                      const LayerFileInfo& info, const ScanStrategy& strategy,

@@ -7,8 +7,8 @@
 #include "lamella/contour/open_gaps.hpp"
 #include "lamella/core/execution.hpp"
 #include "lamella/core/point.hpp"
+#include "lamella/findings/findings.hpp"
 #include "lamella/mesh/inspect.hpp"
-#include "lamella/pipeline/layer_warnings.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/processes.hpp"
 #include "lamella/pipeline/repair_policies.hpp"
@@ -113,10 +113,9 @@ struct LayerStatistics {
     std::uint64_t index = 0;
     double z = 0;
     double thickness = 0;
-    LayerMeasure measure;          ///< sum over all parts
-    OpenGaps open_gaps;            ///< sum over all parts, after contour gaps were closed
-    InvertedRings inverted;        ///< sum over all parts; see FileResult::doubts
-    std::vector<GapJoin> joins;    ///< gaps that were closed; with RepairPolicies::close_gaps_mm
+    LayerMeasure measure;               ///< sum over all parts
+    std::vector<PlaneFinding> findings; ///< sums over all parts, one for each kind; see FileResult::findings
+    std::vector<GapJoin> joins;         ///< gaps that were closed; with RepairPolicies::close_gaps_mm
     std::uint64_t hash = 0;        ///< content_hash of the contours of all parts in one layer (see `merged`)
     LayerChanges changes;          ///< changes by FileJob::steps
     std::vector<ScanFigures> scan; ///< one for each of FileResult::exposures, with FileJob::scan
@@ -133,7 +132,7 @@ struct PartResult {
     Box3 box; ///< box of the part as placed on the plate
     std::uint64_t contours = 0;
     std::uint64_t open_chains = 0;
-    std::uint64_t inverted_rings = 0; ///< see FileResult::doubts
+    std::uint64_t inverted_rings = 0; ///< see FileResult::findings
     std::uint64_t points = 0;
 };
 
@@ -156,7 +155,9 @@ struct FileResult {
     };
     std::vector<MeshRepair> repairs;
     /// Gaps of contours that were closed, and the layers with such gaps.
-    struct Gaps : AffectedLayers {
+    struct Gaps {
+        std::uint64_t layers = 0;
+        double first_z = 0; ///< height of the lowest of these layers, mm
         std::uint64_t closed = 0;
         double longest_mm = 0;
         double total_mm = 0;
@@ -174,14 +175,11 @@ struct FileResult {
     /// FileJob::scan. One beam exposes the parts of a layer one after the other. Jumps between layers are not
     /// counted. All other figures are those of the layers from which vectors are computed.
     std::vector<ExposureResult> exposures;
-    UnreachedMaterial unreached;                      ///< with FileJob::scan
-    std::vector<UnreachedMaterial> unreached_by_file; ///< the same for each of `files`
-    /// Signs of defects that were found in the layers, for each of `files`. Inverted rings are counted before
-    /// `steps`. The search for them is full with `scan`, an offset or negative volumes, otherwise quick (see
+    /// What was found in the layers, by file (index in `files`). Inverted rings are counted before `steps`.
+    /// The search for them is full with `scan`, an offset or negative volumes, otherwise quick (see
     /// InversionSearch). With a FillRule, which itself defines the material, none are counted.
-    std::vector<LayerDoubts> doubts;
-    std::vector<NearFaceLayers> near_faces; ///< layers whose cut depends on rounding, for each of `files`
-    std::uint64_t planned_layers = 0;       ///< number of layers of all shards together
+    Findings findings;
+    std::uint64_t planned_layers = 0; ///< number of layers of all shards together
     PlaneRange shard;        ///< range of the layers of this shard; all layers if there are no shards
     double bottom = 0;       ///< bottom of the first layer
     double top = 0;          ///< top of the last layer

@@ -1,0 +1,169 @@
+#pragma once
+
+// What is wrong in meshes and layers, or is lost on the way to a file: one table of kinds, and containers
+// that count.
+
+#include "lamella/core/api.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+LAMELLA_API_BEGIN
+namespace lamella {
+
+/// Kinds of findings, in the order in which they are reported. Each has a row in finding_kinds().
+enum class FindingKind : std::uint32_t {
+    open_chains,          ///< in layers of a mesh
+    inverted_rings,       ///< in layers of a mesh
+    near_faces,           ///< horizontal faces on a plane except for rounding
+    dropped_open_chains,  ///< contours of a slice file of which no scan vectors can be made
+    reversible_rings,     ///< inverted rings of a slice file
+    replaced_hatch_lines, ///< of a slice file, because new ones are made
+    outdated_hatch_lines, ///< of a slice file, whose contours were changed
+    nothing_left,         ///< no contour after the steps
+    unreached_material,   ///< by any scan vector
+};
+
+enum class Severity : std::uint8_t {
+    note,    ///< worth knowing; never an error
+    warning, ///< an error with `strict`
+};
+
+/// What a finding is about. Programs point to `lamella info` for defects of a mesh.
+enum class FindingOrigin : std::uint8_t {
+    mesh, ///< a defect of the mesh
+    job,  ///< a choice of the job, or content of a slice file
+};
+
+struct Finding;
+
+/// A row of the table of findings. Texts are templates with these fields: `{count}`, `{amount}`, `{largest}`
+/// (numbers of the finding), `{where}` ("in 3 of 20 layers, first at z = 0.25 mm"), `{on_layers}` ("on 3
+/// layers, the lowest at z = 0.25 mm"), `{layers}` ("20 layers": all of them), `{affected}` (the number of
+/// layers with the finding), and `{cure}`, the text of the function `cure`.
+struct FindingDescription {
+    FindingKind kind = {};
+    const char* name = ""; ///< for programs, such as "open_chains"
+    Severity severity = Severity::warning;
+    FindingOrigin origin = FindingOrigin::job;
+    const char* one = "";  ///< text if the count is 1
+    const char* many = ""; ///< text for other counts
+    /// Unit of the amount: "mm", "mm2"; or "mm3" for areas of layers, which are multiplied by the thickness
+    /// of their layers; "" if there is no amount.
+    const char* unit = "";
+    /// Names of the numbers in JSON, "" for numbers that are not written. The amount of one layer and of all
+    /// layers have different names if their units differ.
+    const char* count_key = "";
+    const char* amount_key = "";
+    const char* layer_amount_key = "";
+    const char* largest_key = "";
+    /// Returns a cause or a cure that depends on the numbers; null if the templates need none.
+    std::string (*cure)(const Finding& finding) = nullptr;
+};
+
+/// Returns the row of each kind, in the order of the kinds.
+[[nodiscard]] std::span<const FindingDescription> finding_kinds() noexcept;
+[[nodiscard]] const FindingDescription& description(FindingKind kind) noexcept;
+
+/// What was found of one kind in a part on a plane. Has no padding, so that processes can send it.
+struct PlaneFinding {
+    FindingKind kind = {};
+    std::uint32_t file = 0;   ///< index of the input
+    std::uint32_t part = 0;   ///< index of the part; see no_part
+    std::uint32_t unused = 0; ///< padding
+    std::uint64_t plane = 0;  ///< index of the plane
+    std::uint64_t count = 0;  ///< number of chains, rings, and so on
+    double amount = 0;        ///< sum of their lengths in mm, or areas in mm2
+    double largest = 0;       ///< the largest length, in mm
+
+    /// Part of findings that do not belong to a part.
+    static constexpr std::uint32_t no_part = ~std::uint32_t{0};
+
+    /// Adds findings of the same kind on the same plane.
+    void add(const PlaneFinding& other) noexcept;
+
+    friend bool operator==(const PlaneFinding&, const PlaneFinding&) = default;
+};
+
+/// What was found of one kind in a file, or in all files, over all layers.
+struct Finding {
+    FindingKind kind = {};
+    std::uint32_t file = 0; ///< index of the input; see all_files
+    std::uint64_t count = 0;
+    double amount = 0;                   ///< in the unit of the kind
+    double largest = 0;                  ///< mm
+    std::uint64_t layers = 0;            ///< number of layers with the finding
+    std::uint64_t of_layers = 0;         ///< number of all layers
+    double first_z = 0;                  ///< height of the lowest of these layers, mm
+    std::vector<std::string> parts = {}; ///< labels of the parts with the finding; empty if all parts have it
+
+    /// File of findings that do not belong to a single file.
+    static constexpr std::uint32_t all_files = ~std::uint32_t{0};
+
+    /// Returns one line: what was found, where, and a cure. Names options as fields between backquotes, such
+    /// as `orient`.
+    [[nodiscard]] std::string text() const;
+
+    friend bool operator==(const Finding&, const Finding&) = default;
+};
+
+/// Height and thickness of a plane, for sums over planes.
+struct PlaneHeight {
+    double z = 0;
+    double thickness = 0;
+};
+
+/// Findings of a job.
+struct Findings {
+    std::vector<Finding> by_file; ///< by ascending kind, then file
+    std::vector<Finding> total;   ///< over all files, by ascending kind
+
+    [[nodiscard]] bool empty() const noexcept { return by_file.empty(); }
+    /// Returns the finding of a kind over all files, or one that counts nothing.
+    [[nodiscard]] const Finding& of(FindingKind kind) const noexcept;
+    /// Returns the finding of a kind in a file, or one that counts nothing.
+    [[nodiscard]] const Finding& of(FindingKind kind, std::uint32_t file) const noexcept;
+    /// Returns the first finding that is an error with `strict`; null if there is none.
+    [[nodiscard]] const Finding* first_warning() const noexcept;
+    /// Returns a line for each finding, without the names of files.
+    [[nodiscard]] std::vector<std::string> texts() const;
+    /// Adds a finding. It must be the only one of its kind and file, and is added to the total of its kind by
+    /// its numbers.
+    void add(Finding finding);
+    /// Adds the findings of other files or kinds.
+    void add(const Findings& others);
+};
+
+/// Collects findings on planes, from any threads.
+class FindingLog {
+  public:
+    FindingLog() = default;
+    FindingLog(const FindingLog&) = delete;
+    FindingLog& operator=(const FindingLog&) = delete;
+
+    /// Keeps findings, except those that count nothing. O(found).
+    void add(std::span<const PlaneFinding> found);
+    void add(const PlaneFinding& found) { add({&found, 1}); }
+    /// Returns what was added, and forgets it.
+    [[nodiscard]] std::vector<PlaneFinding> take();
+    /// Returns sums over planes, which do not depend on the order of `add`. `planes` are the heights of all
+    /// planes, `labels` the labels of all parts, `files` the file of each part. O(n log n).
+    [[nodiscard]] Findings sums(std::span<const PlaneHeight> planes, std::span<const std::string> labels = {},
+                                std::span<const std::uint32_t> files = {}) const;
+    /// Returns the findings on each plane: the sum over all parts, by ascending plane and kind. O(n log n).
+    [[nodiscard]] std::vector<PlaneFinding> by_plane() const;
+
+  private:
+    [[nodiscard]] std::vector<PlaneFinding> sorted() const;
+
+    mutable std::mutex mutex_;
+    std::vector<PlaneFinding> found_; ///< in any order
+};
+
+} // namespace lamella
+LAMELLA_API_END

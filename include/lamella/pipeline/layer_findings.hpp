@@ -1,0 +1,77 @@
+#pragma once
+
+// Findings about layers with unsound contours, from a mesh or a slice file.
+
+#include "lamella/contour/layer.hpp"
+#include "lamella/contour/rounding.hpp"
+#include "lamella/core/execution.hpp"
+#include "lamella/core/layer_limits.hpp"
+#include "lamella/findings/findings.hpp"
+#include "lamella/mesh/mesh.hpp"
+#include "lamella/polygon/inverted_rings.hpp"
+#include "lamella/polygon/layer_steps.hpp"
+#include "lamella/read/layer_file.hpp"
+#include "lamella/slicing/plan.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+LAMELLA_API_BEGIN
+namespace lamella {
+
+/// Where layers come from, and what happens to them. This decides which of their defects matter.
+enum class LayerUse : std::uint8_t {
+    cut,     ///< layers of a mesh: open_chains, inverted_rings
+    scanned, ///< layers of a slice file, of which scan vectors are made: dropped_open_chains,
+             ///< reversible_rings
+    kept,    ///< layers of a slice file, which are written as they are: reversible_rings
+};
+
+/// Adds nothing_left, as a finding of all files, if steps removed the contours of all layers; `layers` is
+/// their number.
+void add_nothing_left(Findings& findings, const LayerChanges& changes, std::uint64_t layers,
+                      std::uint64_t contours);
+
+/// Finds the layers whose planes coincide with horizontal faces except for rounding, so that rounding decides
+/// whether the cut is above or below the face: near_faces of file 0. O(triangles + planes).
+[[nodiscard]] Findings near_faces(const Mesh& mesh, const Plan& plan, const Execution& execution = {});
+
+/// Finds defects in layers that pass plane by plane.
+class LayerFindingSearch {
+  public:
+    /// For this number of planes; 0 if it is not known, and then planes follow in order, on one thread.
+    /// `max_memory`: see layer_limits.
+    LayerFindingSearch(std::size_t planes, LayerUse use, const Rounding& rounding, InversionSearch search,
+                       const Execution& execution = {}, std::uint64_t max_memory = 0);
+
+    /// Searches the layer of a part on the plane at this position. May be called from any threads, but for
+    /// one plane from one thread at a time. Throws the errors of inverted_rings.
+    void look_at(std::size_t position, std::size_t part, const Layer& layer);
+    /// Searches the parts of a plane of a file that are not scan vectors.
+    void look_at(std::size_t position, const LayerFile& file, const ScanVectors& plane);
+    /// Returns the findings, as those of file 0; without labels of parts.
+    [[nodiscard]] Findings findings() const { return log_.sums(planes_); }
+
+  private:
+    std::vector<PlaneHeight> planes_;
+    FindingLog log_;
+    LayerUse use_;
+    Rounding rounding_;
+    InversionSearch search_;
+    LayerLimits limits_;
+};
+
+/// Finds defects in the layers of parts on the same planes, as those of file 0. Parallel over planes.
+/// `max_memory`: see layer_limits.
+[[nodiscard]] Findings layer_findings(std::span<const LayerStack> parts, LayerUse use,
+                                      const Rounding& rounding, InversionSearch search,
+                                      const Execution& execution = {}, std::uint64_t max_memory = 0);
+
+/// Finds defects in the parts of a file that are not scan vectors. The layers need not be in memory.
+[[nodiscard]] Findings layer_findings(const LayerFile& file, LayerUse use, InversionSearch search,
+                                      const Execution& execution = {}, std::uint64_t max_memory = 0);
+
+} // namespace lamella
+LAMELLA_API_END

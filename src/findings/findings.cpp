@@ -1,0 +1,214 @@
+#include "lamella/findings/findings.hpp"
+
+#include "core/counted.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+namespace lamella {
+namespace {
+
+/// Returns " of the part "ring"", " of the parts "a", "b" and 5 more"; "" for none, which means all.
+std::string of_parts(std::span<const std::string> labels) {
+    constexpr std::size_t few = 3;
+    if (labels.empty())
+        return {};
+    const std::size_t named = std::min(few, labels.size());
+    std::string text = fmt::format(" of the part{} \"{}\"", labels.size() == 1 ? "" : "s",
+                                   fmt::join(labels.first(named), "\", \""));
+    if (labels.size() > named)
+        text += fmt::format(" and {} more", labels.size() - named);
+    return text;
+}
+
+double shown_z(double z) {
+    constexpr double nearly_0 = 1e-7; // rounding error of 0 in single precision
+    return std::abs(z) < nearly_0 ? 0 : z;
+}
+
+auto kind_and_file(const Finding& finding) {
+    return std::pair(finding.kind, finding.file);
+}
+
+/// Adds numbers of the same kind to a total. Layers are counted by the caller, because files share planes.
+void add_numbers(Finding& total, const Finding& more) {
+    total.count += more.count;
+    total.amount += more.amount;
+    total.largest = std::max(total.largest, more.largest);
+}
+
+/// Returns the finding of this kind and file, which is inserted if there is none.
+Finding& find_or_insert(std::vector<Finding>& findings, FindingKind kind, std::uint32_t file) {
+    const auto at = std::lower_bound(
+        findings.begin(), findings.end(), std::pair(kind, file),
+        [](const Finding& finding, const auto& key) { return kind_and_file(finding) < key; });
+    if (at != findings.end() && kind_and_file(*at) == std::pair(kind, file))
+        return *at;
+    return *findings.insert(at, Finding{.kind = kind, .file = file});
+}
+
+const Finding& found_or_none(const std::vector<Finding>& findings, FindingKind kind, std::uint32_t file) {
+    static const Finding none;
+    const auto at = std::find_if(findings.begin(), findings.end(), [&](const Finding& finding) {
+        return kind_and_file(finding) == std::pair(kind, file);
+    });
+    return at == findings.end() ? none : *at;
+}
+
+/// Adds what was found on a plane. Calls for one finding must have ascending planes; `plane` is the last one.
+class Sums {
+  public:
+    Sums(std::vector<Finding>& findings, std::span<const PlaneHeight> planes)
+        : findings_(findings), planes_(planes) {}
+
+    void add(const PlaneFinding& found, std::uint32_t file) {
+        Finding& sum = find_or_insert(findings_, found.kind, file);
+        const PlaneHeight& plane = planes_[found.plane];
+        const bool of_volume = std::string_view(description(found.kind).unit) == "mm3";
+        sum.count += found.count;
+        sum.amount += found.amount * (of_volume ? plane.thickness : 1);
+        sum.largest = std::max(sum.largest, found.largest);
+        sum.of_layers = planes_.size();
+        std::uint64_t& last = last_plane_[{found.kind, file}];
+        if (sum.layers == 0)
+            sum.first_z = plane.z;
+        if (sum.layers == 0 || last != found.plane)
+            ++sum.layers;
+        last = found.plane;
+    }
+
+  private:
+    std::vector<Finding>& findings_;
+    std::span<const PlaneHeight> planes_;
+    std::map<std::pair<FindingKind, std::uint32_t>, std::uint64_t> last_plane_;
+};
+
+} // namespace
+
+void PlaneFinding::add(const PlaneFinding& other) noexcept {
+    count += other.count;
+    amount += other.amount;
+    largest = std::max(largest, other.largest);
+}
+
+std::string Finding::text() const {
+    const FindingDescription& row = description(kind);
+    const char* const words = count == 1 && *row.one != '\0' ? row.one : row.many;
+    const double z = shown_z(first_z);
+    return fmt::format(fmt::runtime(words), fmt::arg("count", count),
+                       fmt::arg("amount", fmt::format("{:.4g}", amount)),
+                       fmt::arg("largest", fmt::format("{:.6g}", largest)),
+                       fmt::arg("where", fmt::format("in {} of {}{}, first at z = {:.6g} mm", layers,
+                                                     counted(of_layers, "layer"), of_parts(parts), z)),
+                       fmt::arg("on_layers", fmt::format("on {}{}, the lowest at z = {:.6g} mm",
+                                                         counted(layers, "layer"), of_parts(parts), z)),
+                       fmt::arg("layers", counted(of_layers, "layer")), fmt::arg("affected", layers),
+                       fmt::arg("cure", row.cure != nullptr ? row.cure(*this) : std::string()));
+}
+
+const Finding& Findings::of(FindingKind kind) const noexcept {
+    return found_or_none(total, kind, Finding::all_files);
+}
+
+const Finding& Findings::of(FindingKind kind, std::uint32_t file) const noexcept {
+    return found_or_none(by_file, kind, file);
+}
+
+const Finding* Findings::first_warning() const noexcept {
+    const auto found = std::find_if(by_file.begin(), by_file.end(), [](const Finding& finding) {
+        return description(finding.kind).severity == Severity::warning;
+    });
+    return found == by_file.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> Findings::texts() const {
+    std::vector<std::string> texts;
+    for (const Finding& finding : by_file)
+        texts.push_back(finding.text());
+    return texts;
+}
+
+void Findings::add(Finding finding) {
+    Finding& sum = find_or_insert(total, finding.kind, Finding::all_files);
+    const bool first = sum.count == 0;
+    add_numbers(sum, finding);
+    sum.of_layers = std::max(sum.of_layers, finding.of_layers);
+    sum.layers = std::max(sum.layers, finding.layers);
+    sum.first_z = first ? finding.first_z : std::min(sum.first_z, finding.first_z);
+    find_or_insert(by_file, finding.kind, finding.file) = std::move(finding);
+}
+
+void Findings::add(const Findings& others) {
+    for (const Finding& finding : others.by_file)
+        add(finding);
+}
+
+void FindingLog::add(std::span<const PlaneFinding> found) {
+    const std::lock_guard lock(mutex_);
+    std::copy_if(found.begin(), found.end(), std::back_inserter(found_),
+                 [](const PlaneFinding& one) { return one.count > 0; });
+}
+
+std::vector<PlaneFinding> FindingLog::take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(found_, {});
+}
+
+/// Returns what was added by ascending plane, kind, file and part, so that sums have the same bits for every
+/// order of threads.
+std::vector<PlaneFinding> FindingLog::sorted() const {
+    std::vector<PlaneFinding> sorted;
+    {
+        const std::lock_guard lock(mutex_);
+        sorted = found_;
+    }
+    const auto key = [](const PlaneFinding& found) {
+        return std::tuple(found.plane, found.kind, found.file, found.part);
+    };
+    std::sort(sorted.begin(), sorted.end(),
+              [&](const PlaneFinding& a, const PlaneFinding& b) { return key(a) < key(b); });
+    return sorted;
+}
+
+Findings FindingLog::sums(std::span<const PlaneHeight> planes, std::span<const std::string> labels,
+                          std::span<const std::uint32_t> files) const {
+    Findings sums;
+    Sums by_file(sums.by_file, planes);
+    Sums total(sums.total, planes);
+    std::map<std::pair<FindingKind, std::uint32_t>, std::set<std::uint32_t>> parts;
+    for (const PlaneFinding& found : sorted()) {
+        by_file.add(found, found.file);
+        total.add(found, Finding::all_files);
+        if (found.part < labels.size())
+            parts[{found.kind, found.file}].insert(found.part);
+    }
+    // Labels are omitted if all parts of the file are affected.
+    for (Finding& finding : sums.by_file) {
+        const std::set<std::uint32_t>& affected = parts[{finding.kind, finding.file}];
+        if (affected.size() < static_cast<std::size_t>(std::count(files.begin(), files.end(), finding.file)))
+            for (const std::uint32_t part : affected)
+                finding.parts.push_back(labels[part]);
+    }
+    return sums;
+}
+
+std::vector<PlaneFinding> FindingLog::by_plane() const {
+    std::vector<PlaneFinding> planes;
+    for (const PlaneFinding& found : sorted()) // by plane, then kind
+        if (!planes.empty() && planes.back().plane == found.plane && planes.back().kind == found.kind)
+            planes.back().add(found);
+        else
+            planes.push_back(found);
+    return planes;
+}
+
+} // namespace lamella
