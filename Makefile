@@ -62,8 +62,8 @@ test: packages  ## build everything and run the tests: a few minutes
 # `make test`, and of each other build the suites that find what no other finds. .ci/run runs two parts at a time.
 test-ci: packages-ci test ci-asan ci-tsan ci-windows ci-web  ## run `make test`, and the tests of memory, threads, Windows and web of CI
 
-packages-ci: packages packages-viewer
-	@tools/install_packages.sh tools/packages-ci.txt tools/packages-web.txt tools/packages-windows.txt
+packages-ci:
+	@tools/install_packages.sh tools/packages.txt $(patsubst %,tools/packages-%.txt,test viewer ci web windows)
 
 ci-asan: packages-ci
 	cmake --preset asan-ubsan
