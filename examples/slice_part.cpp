@@ -1,9 +1,9 @@
 #include <lamella/io.hpp>
 
 int main() {
-    const lamella::MeshFile part = lamella::read_mesh("part.stl");
-    const lamella::Box3 box = lamella::bounding_box(part.mesh());
+    const lamella::Plate plate = lamella::load_plate(std::array{lamella::PlateInput{.path = "part.stl"}});
+    const lamella::Box3& box = plate.box;
     const lamella::Plan plan = lamella::plan_uniform(box.min.z, box.max.z, {.layer_height = 0.1});
-    const lamella::LayerStack layers = lamella::slice(part.mesh(), plan);
+    const lamella::LayerStack layers = lamella::slice(plate, plan);
     lamella::write_layers("part.cli", layers);
 }

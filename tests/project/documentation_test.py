@@ -6,12 +6,14 @@ In README.md and the pages of docs/, blocks marked `sh` are commands that a read
 blocks marked `cpp` are files of examples/. Blocks without a mark show what is printed.
 """
 
+import json
 import os
 import re
 import subprocess
 import sys
 import tempfile
 import unittest
+import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -142,6 +144,32 @@ class Documentation(unittest.TestCase):
         self.run_here(PROGRAM, "make", "rook", "-o", "part.stl")
         self.run_here(EXAMPLES / "lamella_example_slice_part")
         self.run_here(PROGRAM, "verify", "part.cli", "--mesh", "part.stl")
+
+    def test_the_example_subtracts_negative_volumes(self):
+        self.write_block_with_a_hole("part.stl")  # the content gives the format
+        self.run_here(EXAMPLES / "lamella_example_slice_part")
+        self.run_here(PROGRAM, "verify", "part.cli", "--mesh", "part.stl")
+        info = json.loads(self.run_here(PROGRAM, "info", "part.cli", "--json"))
+        self.assertAlmostEqual(info["volume_mm3"], 10 * (10 * 10 - 4 * 4), places=3)
+
+    def write_block_with_a_hole(self, name):
+        """Writes a 3MF file: a box of 10 mm, and a negative volume of 4 x 4 mm through it."""
+        vertices, triangles = "", ""
+        for box, (low, high, bottom, top) in enumerate([(0, 10, 0, 10), (3, 7, -1, 11)]):
+            for corner in range(8):
+                x, y, z = (high if corner & 1 else low, high if corner & 2 else low, top if corner & 4 else bottom)
+                vertices += f'<vertex x="{x}" y="{y}" z="{z}"/>'
+            for face in "021", "123", "456", "576", "014", "154", "263", "367", "042", "246", "135", "375":
+                triangles += '<triangle v1="{}" v2="{}" v3="{}"/>'.format(*(8 * box + int(corner) for corner in face))
+        volumes = "".join(
+            f'<volume firstid="{first}" lastid="{first + 11}"><metadata type="volume" key="volume_type" value="{role}"/></volume>'
+            for first, role in ((0, "ModelPart"), (12, "NegativeVolume")))
+        with zipfile.ZipFile(Path(self.folder, name), "w") as package:
+            package.writestr("[Content_Types].xml", "<Types/>")
+            package.writestr("3D/3dmodel.model", '<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">'
+                             f'<resources><object id="1"><mesh><vertices>{vertices}</vertices><triangles>{triangles}'
+                             '</triangles></mesh></object></resources><build><item objectid="1"/></build></model>')
+            package.writestr("Metadata/Slic3r_PE_model.config", f'<config><object id="1">{volumes}</object></config>')
 
     def test_the_example_streams_layers(self):
         printed = self.run_here(EXAMPLES / "lamella_example_stream_layers")

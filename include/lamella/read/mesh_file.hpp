@@ -95,6 +95,8 @@ struct MeshFile {
     /// Returns the mesh of instance i with its placement applied.
     [[nodiscard]] Mesh placed(std::size_t i) const;
     /// Returns all placed instances as one mesh (see `joined`). O(1) for a file with one instance of a soup.
+    /// Throws Error{usage} if the file has negative volumes, because one mesh cannot express them:
+    /// `load_plate` and `slice` of a plate subtract them.
     [[nodiscard]] Mesh mesh(const Execution& execution = {}) const;
 };
 
