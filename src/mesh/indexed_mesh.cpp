@@ -6,6 +6,7 @@
 #include "core/farthest.hpp"
 #include "core/pages.hpp"
 #include "mesh/folds.hpp"
+#include "mesh/singular.hpp"
 #include "mesh/used_vertices.hpp"
 #include "mesh/valid_mesh.hpp"
 
@@ -137,6 +138,9 @@ double volume(const IndexedMesh& mesh, const Execution& execution) {
 IndexedMesh transformed(IndexedMesh mesh, const Transform& map) {
     if (!finite(map))
         throw Error(ErrorKind::usage, "cannot place a part with a map that is not finite");
+    if (singular(map))
+        throw Error(ErrorKind::usage,
+                    "cannot place a part with a transform that flattens it: its determinant is 0");
     for (Point3& p : mesh.vertices)
         p = map(p);
     if (map.determinant() < 0)

@@ -3,10 +3,14 @@
 #include "lamella/core/error.hpp"
 #include "lamella/core/unit_circle.hpp"
 
+#include "mesh/singular.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
 namespace lamella {
 
@@ -22,6 +26,33 @@ bool finite(const Transform& map) noexcept {
         return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
     };
     return all(map.linear[0]) && all(map.linear[1]) && all(map.linear[2]) && all(map.offset);
+}
+
+bool singular(const Transform& map) noexcept {
+    if (!(std::abs(map.determinant()) > 0)) // also if it is too small for a number
+        return true;
+    // Powers of two bring the largest entry of each row near 1. This is exact, so that tiny and huge scales
+    // are judged like others.
+    auto m = map.linear;
+    for (auto& row : m) {
+        const double largest = std::max({std::abs(row[0]), std::abs(row[1]), std::abs(row[2])});
+        if (!(largest > 0) || !finite(map))
+            return true;
+        const int exponent = std::ilogb(largest);
+        for (double& entry : row)
+            entry = std::scalbn(entry, -exponent);
+    }
+    double determinant = 0;
+    double sizes = 0; // sum of the absolute values of all products
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double forward = m[0][c] * m[1][(c + 1) % 3] * m[2][(c + 2) % 3];
+        const double backward = m[0][c] * m[1][(c + 2) % 3] * m[2][(c + 1) % 3];
+        determinant += forward - backward;
+        sizes += std::abs(forward) + std::abs(backward);
+    }
+    // A bound of the error of the determinant of a product of several maps, in which each entry is rounded.
+    constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+    return !(std::abs(determinant) > rounding * sizes);
 }
 
 Transform compose(const Transform& outer, const Transform& inner) noexcept {
@@ -40,7 +71,7 @@ Transform compose(const Transform& outer, const Transform& inner) noexcept {
 
 Transform inverse(const Transform& map) {
     const double det = map.determinant();
-    if (!finite(map) || !std::isfinite(det) || det == 0)
+    if (singular(map) || !std::isfinite(det) || det == 0)
         throw Error(ErrorKind::usage,
                     fmt::format("cannot invert a map with determinant {}: it must be finite and not flatten "
                                 "the part (is a scale factor 0?)",

@@ -4,6 +4,7 @@
 
 #include "core/executor.hpp"
 #include "mesh/folds.hpp"
+#include "mesh/singular.hpp"
 
 #include <fmt/format.h>
 
@@ -86,6 +87,9 @@ TriangleSoup::TriangleSoup(std::shared_ptr<const void> owner, const std::byte* f
 TriangleSoup TriangleSoup::transformed(const Transform& map) const {
     if (!finite(map))
         throw Error(ErrorKind::usage, "cannot place a part with a map that is not finite");
+    if (singular(map))
+        throw Error(ErrorKind::usage,
+                    "cannot place a part with a transform that flattens it: its determinant is 0");
     TriangleSoup out = *this;
     out.placement_ = compose(map, placement_);
     out.has_placement_ = out.placement_ != Transform{};

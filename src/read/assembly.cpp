@@ -5,6 +5,7 @@
 
 #include "core/counted.hpp"
 #include "core/executor.hpp"
+#include "mesh/singular.hpp"
 #include "read/mesh_text.hpp"
 #include "read/read_limits.hpp"
 
@@ -158,7 +159,7 @@ class Placer {
                 fail(position.text(),
                      fmt::format("puts a mesh further away than {} mm", farthest_coordinate));
         }
-        if (!(std::abs(map.determinant()) > 0))
+        if (singular(map))
             fail(position.text(), "flattens a mesh");
     }
 

@@ -4,6 +4,7 @@
 
 #include "container/text_position.hpp"
 #include "core/executor.hpp"
+#include "mesh/singular.hpp"
 #include "read/decimal_text.hpp"
 #include "read/mesh_text.hpp"
 #include "read/read_limits.hpp"
@@ -28,7 +29,7 @@ constexpr std::array extensions = {
     three_mf::slices,
     three_mf::beams, // beams are refused
     three_mf::materials,
-    std::string_view("http://schemas.microsoft.com/3dmanufacturing/production/alternatives/2021/04"),
+    three_mf::alternatives,
     std::string_view("http://schemas.microsoft.com/3dmanufacturing/trianglesets/2021/07"),
 };
 
@@ -128,7 +129,7 @@ Transform ThreeMfElement::transform() const {
             map.linear[to][from] = m[3 * from + to];
         map.offset[to] = m[9 + to];
     }
-    if (!(std::abs(map.determinant()) > 0))
+    if (singular(map))
         fail(found + ", which flattens what it is applied to", "one that can be undone");
     return map;
 }

@@ -12,6 +12,9 @@ inline constexpr std::string_view core = "http://schemas.microsoft.com/3dmanufac
 inline constexpr std::string_view beta_core = "http://schemas.microsoft.com/3dmanufacturing/2013/01";
 inline constexpr std::string_view production =
     "http://schemas.microsoft.com/3dmanufacturing/production/2015/06";
+/// Alternatives of objects in other resolutions, an addition to the production extension.
+inline constexpr std::string_view alternatives =
+    "http://schemas.microsoft.com/3dmanufacturing/production/alternatives/2021/04";
 inline constexpr std::string_view slices = "http://schemas.microsoft.com/3dmanufacturing/slice/2015/07";
 inline constexpr std::string_view beams = "http://schemas.microsoft.com/3dmanufacturing/beamlattice/2017/02";
 /// Settings of objects, in files of Cura.

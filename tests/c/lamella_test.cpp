@@ -110,6 +110,8 @@ TEST(C, RefusesWhatItCannotUse) {
     EXPECT_EQ(lamella_prepare(nullptr, nullptr, &slicer), LAMELLA_USAGE);
     EXPECT_EQ(lamella_section(nullptr, 1, &layers), LAMELLA_USAGE);
     EXPECT_EQ(lamella_transform_mesh(box.get(), nullptr, &mesh), LAMELLA_USAGE);
+    const double flat[12] = {0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}; // x becomes 0
+    EXPECT_EQ(lamella_transform_mesh(box.get(), flat, &mesh), LAMELLA_USAGE);
     EXPECT_EQ(lamella_mesh_box(box.get(), nullptr), LAMELLA_USAGE);
     EXPECT_EQ(lamella_get_layer(nullptr, 0, &layer), LAMELLA_USAGE);
     EXPECT_EQ(lamella_write_layers(nullptr, "x.cli", nullptr, nullptr), LAMELLA_USAGE);

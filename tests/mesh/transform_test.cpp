@@ -1,11 +1,17 @@
 #include "lamella/core/error.hpp"
+#include "lamella/mesh/indexed_mesh.hpp"
 #include "lamella/mesh/transform.hpp"
+#include "lamella/mesh/triangle_soup.hpp"
+
+#include "mesh/singular.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <random>
+#include <vector>
 
 namespace lamella {
 namespace {
@@ -48,6 +54,38 @@ TEST(Transform, CompositionAppliesTheInnerMapFirst) {
     }
     EXPECT_EQ(compose(translation(1, 0, 0), scaling(2, 2, 2))(Point3{1, 1, 1}), (Point3{3, 2, 2}));
     EXPECT_EQ(compose(scaling(2, 2, 2), translation(1, 0, 0))(Point3{1, 1, 1}), (Point3{4, 2, 2}));
+}
+
+TEST(Transform, IsSingularIfItFlattensAtAnyScaleAndInAnyDirection) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> degrees(-180, 180);
+    const auto turned = [&](Transform map) {
+        for (const char axis : {'x', 'y', 'z'})
+            map = compose(rotation(axis, degrees(random)), compose(map, rotation(axis, degrees(random))));
+        return map;
+    };
+    const Triangle3f triangle{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}};
+    const TriangleSoup soup(std::vector<Triangle3f>{triangle});
+    for (int i = 0; i < 200; ++i)
+        for (const double scale : {1.0, 1e-60, 1e60}) {
+            const Transform whole = turned(scaling(scale, -2 * scale, 1e-9 * scale));
+            EXPECT_FALSE(singular(whole));
+            for (const Transform& map :
+                 {turned(scaling(0, scale, scale)), turned(scaling(scale, scale, 0)),
+                  compose(turned(scaling(scale, 0, scale)), turned(scaling(1, 2, 3)))}) {
+                EXPECT_TRUE(singular(map));
+                for (const auto& place :
+                     {std::function<void()>([&] { (void)soup.transformed(map); }),
+                      std::function<void()>([&] { (void)transformed(IndexedMesh{}, map); }),
+                      std::function<void()>([&] { (void)inverse(map); })})
+                    EXPECT_THROW(place(), Error);
+            }
+        }
+    Transform bad;
+    bad.linear[1][2] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_TRUE(singular(bad));
+    EXPECT_FALSE(singular(Transform{}));
+    EXPECT_FALSE(singular(scaling(1e-150, 1e150, 1)));
 }
 
 TEST(Transform, InverseUndoesTheMap) {

@@ -309,3 +309,16 @@ def test_a_range_of_layers_may_have_no_end(program, rook):
     assert stack.hashes == [layer["hash"] for layer in statistics(program, rook, "--layer-height", "2", "--layers", "2:")]
     with pytest.raises(TypeError, match="^layers: expected a whole number, 0 or more, found None$"):
         lamella.slice(rook, 2, layers=(None, 2))
+
+
+def test_transforms_that_flatten_a_mesh_are_errors():
+    flat = np.diag([0.0, 1, 1, 1])
+    turned = np.eye(4)
+    turned[:3, :3] = np.diag([1, 0, 1]) @ np.array([[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, 1]])
+    for matrix in flat, turned, np.diag([1.0, 1, 0, 1]):
+        for call in (
+            lambda: lamella.slice(box_arrays(), 0.5, transform=matrix),
+            lambda: lamella.slice([lamella.Part(box_arrays(), matrix=matrix)], 0.5),
+        ):
+            with pytest.raises(lamella.UsageError, match="a transform that flattens it"):
+                call()

@@ -55,8 +55,8 @@ class Mesh {
     [[nodiscard]] Mesh with_joined_vertices(const Execution& execution = {}) const;
 
     /// Returns the transformed mesh. If the map mirrors, triangles are flipped so that they stay
-    /// counter-clockwise seen from outside. Throws Error{usage} if the map is not finite, or moves vertices
-    /// of an indexed mesh beyond 1e100 mm. O(1) for a soup and for the identity; an indexed mesh is copied.
+    /// counter-clockwise seen from outside. Throws Error{usage} if the map is singular or not finite, or
+    /// moves an indexed mesh beyond 1e100 mm. O(1) for a soup and the identity; an indexed mesh is copied.
     [[nodiscard]] Mesh transformed(const Transform& map) const;
 
   private:

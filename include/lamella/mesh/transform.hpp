@@ -35,7 +35,7 @@ struct Transform {
 /// Returns the map that applies `inner` first, then `outer`.
 [[nodiscard]] Transform compose(const Transform& outer, const Transform& inner) noexcept;
 
-/// Returns the inverse. Throws Error{usage} if the map is singular (determinant 0) or not finite.
+/// Returns the inverse. Throws Error{usage} if the map is singular.
 [[nodiscard]] Transform inverse(const Transform& map);
 
 [[nodiscard]] Transform translation(double x, double y, double z) noexcept;

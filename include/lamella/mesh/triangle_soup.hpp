@@ -86,7 +86,7 @@ class TriangleSoup {
     [[nodiscard]] bool mirrored() const noexcept { return mirrored_; }
 
     /// Returns the same triangles with `map` applied after the present placement. Shares the memory. Throws
-    /// Error{usage} if the map is not finite.
+    /// Error{usage} if the map is not finite or singular.
     [[nodiscard]] TriangleSoup transformed(const Transform& map) const;
 
     /// Returns the triangles [begin, end). Shares the memory.
