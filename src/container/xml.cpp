@@ -3,6 +3,7 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_position.hpp"
+#include "core/lower_case.hpp"
 
 #include <expat.h>
 #include <fmt/format.h>
@@ -30,6 +31,20 @@ XmlName split(std::string_view written) noexcept {
                                         : XmlName{written.substr(0, at), written.substr(at + 1)};
 }
 
+/// Returns whether the declaration of the document spells the encoding "utf8", as some writers do. Expat does
+/// not know this name.
+bool declares_utf8_without_hyphen(std::string_view bytes) {
+    constexpr std::size_t longest_declaration = 200;
+    const std::string_view begin = bytes.substr(0, longest_declaration);
+    const std::string declaration = lower_case(begin.substr(0, begin.find("?>")));
+    const std::size_t at = declaration.find("encoding");
+    if (declaration.find("<?xml") == std::string::npos || at == std::string::npos)
+        return false;
+    const std::size_t quote = declaration.find_first_of("'\"", at);
+    return quote != std::string::npos && declaration.compare(quote + 1, 4, "utf8") == 0 &&
+           declaration.compare(quote + 5, 1, declaration, quote, 1) == 0;
+}
+
 /// The state of one parse. Exceptions must not pass through the C library: they are stored and rethrown after
 /// it returns.
 class Parse {
@@ -40,6 +55,8 @@ class Parse {
                   &XML_ParserFree) {
         if (!parser_)
             throw std::bad_alloc();
+        if (declares_utf8_without_hyphen(bytes))
+            XML_SetEncoding(parser_.get(), "UTF-8");
         XML_SetUserData(parser_.get(), this);
         XML_SetElementHandler(parser_.get(), on_start, on_end);
         XML_SetStartDoctypeDeclHandler(parser_.get(), on_doctype);
@@ -162,10 +179,8 @@ class Parse {
         guarded(data, [&](Parse& parse) {
             if (encoding == nullptr)
                 return;
-            std::string upper = encoding;
-            std::transform(upper.begin(), upper.end(), upper.begin(),
-                           [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c & ~0x20) : c; });
-            if (upper != "UTF-8")
+            const std::string lower = lower_case(encoding);
+            if (lower != "utf-8" && lower != "utf8")
                 parse.fail(fmt::format("found encoding '{}', expected UTF-8", printable(encoding, 40)));
         });
     }

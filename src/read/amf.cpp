@@ -4,6 +4,7 @@
 #include "container/zip_reader.hpp"
 #include "core/executor.hpp"
 #include "core/lower_case.hpp"
+#include "mesh/singular.hpp"
 #include "read/amf_document.hpp"
 #include "read/assembly.hpp"
 #include "read/body_selection.hpp"
@@ -188,7 +189,7 @@ class AmfReader {
         };
         Transform map =
             scaling(factor("scalex", "mirrorx"), factor("scaley", "mirrory"), factor("scalez", "mirrorz"));
-        if (!(std::abs(map.determinant()) > 0) || !finite(map))
+        if (singular(map))
             fail(fmt::format("line {}: found a scale of 0 or beyond all bounds", instance.line));
         for (const char axis : {'x', 'y', 'z'}) {
             const double angle = instance.number(fmt::format("r{}", axis), 0);
@@ -234,11 +235,16 @@ class AmfReader {
                                   "instances are marked as not to be printed; they were left out"));
         file_.instances = place_meshes(name_, nodes_, roots_, file_.objects, limits_, executor_);
         if (file_.objects.empty())
-            fail("holds nothing to slice: no object with a triangle");
+            fail(selection_.left_out() != 0
+                     ? fmt::format("holds nothing to slice: its only {} no material: {}",
+                                   selection_.left_out() == 1 ? "body is" : "bodies are",
+                                   selection_.description())
+                     : "holds nothing to slice: no object with a triangle");
         if (file_.instances.empty())
             fail("holds nothing to slice: no instance leads to an object with a triangle");
         if (all_negative(file_.instances))
-            fail("holds nothing to slice: nothing but negative volumes");
+            fail("holds nothing to slice: nothing but negative volumes; `include` negative to read them as "
+                 "solids");
     }
 
     std::string name_;

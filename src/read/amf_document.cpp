@@ -32,11 +32,38 @@ struct Unit {
 };
 
 /// Units of the standard, and others that occur in files.
-constexpr std::array units = {Unit{"millimeter", 1}, Unit{"inch", 25.4},        Unit{"feet", 304.8},
-                              Unit{"meter", 1000},   Unit{"micron", 0.001},     Unit{"millimeters", 1},
-                              Unit{"mm", 1},         Unit{"inches", 25.4},      Unit{"foot", 304.8},
-                              Unit{"meters", 1000},  Unit{"micrometer", 0.001}, Unit{"micrometers", 0.001},
-                              Unit{"microns", 0.001}};
+constexpr std::array units = {
+    Unit{"millimeter", 1},
+    Unit{"inch", 25.4},
+    Unit{"feet", 304.8},
+    Unit{"meter", 1000},
+    Unit{"micron", 0.001},
+    Unit{"millimeters", 1},
+    Unit{"millimetre", 1},
+    Unit{"millimetres", 1},
+    Unit{"mm", 1},
+    Unit{"centimeter", 10},
+    Unit{"centimeters", 10},
+    Unit{"centimetre", 10},
+    Unit{"centimetres", 10},
+    Unit{"cm", 10},
+    Unit{"inches", 25.4},
+    Unit{"in", 25.4},
+    Unit{"foot", 304.8},
+    Unit{"ft", 304.8},
+    Unit{"meters", 1000},
+    Unit{"metre", 1000},
+    Unit{"metres", 1000},
+    Unit{"m", 1000},
+    Unit{"micrometer", 0.001},
+    Unit{"micrometers", 0.001},
+    Unit{"micrometre", 0.001},
+    Unit{"micrometres", 0.001},
+    Unit{"microns", 0.001},
+    Unit{"um", 0.001},
+    Unit{"\xc2\xb5m", 0.001},
+    Unit{"\xce\xbcm", 0.001},
+};
 
 /// Elements without attributes that contain a number or elements of this kind.
 class PlainNumbers : public PlainTags {

@@ -23,19 +23,20 @@ void BodySelection::leave_out(MeshRole role, const std::string& name) {
         count.names.push_back(name);
 }
 
-bool BodySelection::left_out_any() const noexcept {
-    return std::any_of(counts_.begin(), counts_.end(), [](const Count& count) { return count.bodies > 0; });
+std::uint64_t BodySelection::left_out() const noexcept {
+    std::uint64_t all = 0;
+    for (const Count& count : counts_)
+        all += count.bodies;
+    return all;
 }
 
-void BodySelection::report(Remarks& remarks) const {
-    std::uint64_t all = 0;
+std::string BodySelection::description() const {
     std::vector<std::string> kinds;
     std::vector<std::string_view> words;
     for (const MeshRoleRow& row : mesh_roles()) {
         const auto& [bodies, names] = counts_.at(static_cast<std::size_t>(row.role));
         if (bodies == 0)
             continue;
-        all += bodies;
         std::string kind = counted(bodies, row.name, row.many);
         if (!names.empty())
             kind +=
@@ -43,12 +44,14 @@ void BodySelection::report(Remarks& remarks) const {
         kinds.push_back(std::move(kind));
         words.push_back(row.word);
     }
-    if (all == 0)
-        return;
-    remarks.note(fmt::format("{} left out as no material: {}; `include` {} to read {} as {}",
-                             counted(all, "body was", "bodies were"), fmt::join(kinds, ", "),
-                             fmt::join(words, ","), all == 1 ? "it" : "them",
-                             all == 1 ? "a solid" : "solids"));
+    return fmt::format("{}; `include` {} to read {}", fmt::join(kinds, ", "), fmt::join(words, ","),
+                       left_out() == 1 ? "it as a solid" : "them as solids");
+}
+
+void BodySelection::report(Remarks& remarks) const {
+    if (left_out() != 0)
+        remarks.note(fmt::format("{} left out as no material: {}",
+                                 counted(left_out(), "body was", "bodies were"), description()));
 }
 
 namespace {

@@ -36,9 +36,12 @@ class BodySelection {
 
     /// Counts a body that is not read.
     void leave_out(MeshRole role, const std::string& name);
-    [[nodiscard]] bool left_out_any() const noexcept;
-    /// Adds one note on all bodies that were not read ("3 volumes are no material: ..."). It is not an error
-    /// for strict callers.
+    /// Returns the number of bodies that were not read.
+    [[nodiscard]] std::uint64_t left_out() const noexcept;
+    /// Describes all bodies that were not read, and how to read them: "1 surface, 2 modifiers; `include`
+    /// ...".
+    [[nodiscard]] std::string description() const;
+    /// Adds one note on all bodies that were not read. It is not an error for strict callers.
     void report(Remarks& remarks) const;
 
   private:

@@ -9,12 +9,14 @@
 #include "read/opc_package.hpp"
 #include "read/read_limits.hpp"
 #include "read/remarks.hpp"
+#include "read/role_gaps.hpp"
 #include "read/slicer_config.hpp"
 #include "read/three_mf_model.hpp"
 #include "read/three_mf_terms.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <set>
@@ -78,7 +80,8 @@ class PartLoader {
                 continue;
             if (relationship.external)
                 refuse_package(package_, "the model lies outside of the package, expected a part of it");
-            targets.push_back(relationship.target);
+            if (std::find(targets.begin(), targets.end(), relationship.target) == targets.end())
+                targets.push_back(relationship.target);
         }
         if (targets.size() > 1)
             refuse_package(package_, fmt::format("the package names {} models ('{}', '{}'), expected one",
@@ -287,11 +290,17 @@ class ThreeMfReader {
                 nodes_[node].uses.reserve(object.components.size());
                 for (const ThreeMfUse& component : object.components)
                     nodes_[node].uses.push_back(make_use(i, component));
-                if (const auto known = config_.find(object.id); i == 0 && known != config_.end())
+                if (const auto known = config_.find(object.id); i == 0 && known != config_.end()) {
                     configure(object, nodes_[node], known->second);
+                    config_.erase(known);
+                }
+                gaps_.compare(object.id, object.volumes, object.mesh.triangles.size());
                 nodes_[node].is_body = nodes_[node].is_body || !object.volumes.empty();
                 ++node;
             }
+        for (const auto& [id, object] : config_)
+            gaps_.add_absent(id, object);
+        gaps_.report(remarks_);
         roots_.reserve(parts_[0].model.items.size());
         for (const ThreeMfUse& item : parts_[0].model.items) {
             AssemblyUse use = make_use(0, item);
@@ -310,20 +319,28 @@ class ThreeMfReader {
     }
 
     /// Applies a slicer's settings of the volumes or components of an object. Ids of components may repeat.
-    static void configure(ThreeMfObject& object, AssemblyNode& node, SlicerObject& known) {
+    void configure(ThreeMfObject& object, AssemblyNode& node, SlicerObject& known) {
         for (VolumeRange& volume : known.volumes)
             object.volumes.push_back(std::move(volume));
         std::vector<bool> used(known.parts.size());
-        for (std::size_t i = 0; i < node.uses.size(); ++i)
-            for (std::size_t k = 0; k < known.parts.size(); ++k) {
-                if (used[k] || known.parts[k].object != object.components[i].object)
-                    continue;
-                used[k] = true;
-                node.uses[i].role = known.parts[k].role;
-                node.is_body = true;
-                node.uses[i].name = std::move(known.parts[k].name);
-                break;
+        for (std::size_t i = 0; i < node.uses.size(); ++i) {
+            std::size_t k = 0;
+            while (k < known.parts.size() &&
+                   (used[k] || known.parts[k].object != object.components[i].object))
+                ++k;
+            if (k == known.parts.size()) {
+                if (!known.parts.empty())
+                    gaps_.add_unlisted_component(object.id);
+                continue;
             }
+            used[k] = true;
+            node.uses[i].role = known.parts[k].role;
+            node.is_body = true;
+            node.uses[i].name = std::move(known.parts[k].name);
+        }
+        for (std::size_t k = 0; k < known.parts.size(); ++k)
+            if (!used[k])
+                gaps_.add_absent(object.id, known.parts[k].role);
     }
 
     static std::string location(const ThreeMfModel& model, std::size_t line, std::string_view what) {
@@ -402,6 +419,31 @@ class ThreeMfReader {
             }
     }
 
+    /// Throws if the contents of an object only stand in for slices, or for an alternative that is not named.
+    void refuse_substitute(const ThreeMfObject& object, const std::string& location) const {
+        if (object.is_mesh && object.is_coarse)
+            throw Error(
+                ErrorKind::input,
+                fmt::format("{}, {}: its mesh is of low resolution and only stands in for its slices; "
+                            "slices are layers already: view, convert or verify them as they are",
+                            package_.name(), location));
+        if (!object.substitute.empty() && !object.is_substituted)
+            throw Error(ErrorKind::input,
+                        fmt::format("{}, {}: its resolution is '{}', so it only stands in for an object in "
+                                    "full resolution, and the file does not say which; save the file with "
+                                    "the full object",
+                                    package_.name(), location, object.substitute));
+    }
+
+    /// Returns the error text for a build of which no mesh is read.
+    [[nodiscard]] std::string nothing_to_slice() const {
+        return selection_.left_out() != 0
+                   ? fmt::format("holds nothing to slice: its only {} no material: {}",
+                                 selection_.left_out() == 1 ? "body is" : "bodies are",
+                                 selection_.description())
+                   : "holds nothing to slice: no item of its build leads to a mesh that is a solid";
+    }
+
     /// Adds the meshes that the build reaches, and their placements.
     void make_file() {
         if (parts_[0].model.items.empty())
@@ -421,14 +463,9 @@ class ThreeMfReader {
                 continue;
             }
             ThreeMfObject& source = *sources_[node];
+            refuse_substitute(source, nodes_[node].location);
             if (!source.is_mesh)
                 continue;
-            if (source.is_coarse)
-                throw Error(
-                    ErrorKind::input,
-                    fmt::format("{}, {}: its mesh is of low resolution and only stands in for its slices; "
-                                "slices are layers already: view, convert or verify them as they are",
-                                package_.name(), nodes_[node].location));
             if (source.mesh.triangles.empty()) {
                 ++empty;
                 continue;
@@ -454,10 +491,10 @@ class ThreeMfReader {
         note_count(unused, "object", "not in the build");
         file_.instances = place_meshes(package_.name(), nodes_, roots_, file_.objects, limits_, executor_);
         if (file_.objects.empty())
-            refuse_package(package_,
-                           "holds nothing to slice: no item of its build leads to a mesh that is a solid");
+            refuse_package(package_, nothing_to_slice());
         if (all_negative(file_.instances))
-            refuse_package(package_, "holds nothing to slice: nothing but negative volumes");
+            refuse_package(package_, "holds nothing to slice: nothing but negative volumes; `include` "
+                                     "negative to read them as solids");
     }
 
     ZipReader package_;
@@ -470,7 +507,8 @@ class ThreeMfReader {
     std::vector<AssemblyNode> nodes_;
     std::vector<ThreeMfObject*> sources_; ///< of each node
     std::vector<AssemblyUse> roots_;
-    SlicerConfig config_;
+    SlicerConfig config_; ///< of objects that are not yet found in the model
+    RoleGaps gaps_;
     std::set<std::pair<std::size_t, MeshRole>> left_out_; ///< nodes
     std::vector<std::size_t> not_printed_;                ///< nodes of items that are not printed
     MeshFile file_;

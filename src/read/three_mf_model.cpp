@@ -34,6 +34,7 @@ constexpr std::size_t longest_object_name = 200;
 constexpr std::size_t longest_model_title = 1000;
 constexpr std::size_t most_remarks = 50;
 constexpr std::size_t longest_setting = 100; ///< of settings that are read
+constexpr std::string_view full_resolution = "fullres";
 
 /// Returns the object for an <object> element, without its contents.
 ThreeMfObject object_of(const ThreeMfElement& element) {
@@ -44,6 +45,9 @@ ThreeMfObject object_of(const ThreeMfElement& element) {
     object.type = element.object_type();
     object.role = role_of(object.type);
     object.is_coarse = element[XmlName{three_mf::slices, "meshresolution"}].text == "lowres";
+    const std::string_view resolution = element[XmlName{three_mf::alternatives, "modelresolution"}].text;
+    if (!resolution.empty() && resolution != full_resolution)
+        object.substitute = printable(resolution, longest_setting);
     return object;
 }
 
@@ -115,6 +119,7 @@ enum class ModelElement {
     settings, ///< of an object
     setting,
     slic3r_volumes, ///< of a mesh
+    alternatives,   ///< of an object
     mesh,
     vertices,
     triangles,
@@ -226,6 +231,13 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
         const std::string_view name = element.name.local;
         if (space == three_mf::cura && in() == Where::object && name == "settings")
             return Where::settings;
+        if (space == three_mf::alternatives && in() == Where::object && name == "alternatives")
+            return Where::alternatives;
+        if (space == three_mf::alternatives && in() == Where::alternatives && name == "alternative")
+            add_alternative(element);
+        if (in() == Where::object && object().foreign.empty())
+            object().foreign =
+                fmt::format("<{}> of '{}'", printable(name, 40), printable(space, longest_object_name));
         if (space == three_mf::cura && in() == Where::settings && name == "setting")
             return start_setting(element);
         if (space.starts_with(three_mf::slic3r) && in() == Where::mesh && name == "volumes")
@@ -238,6 +250,44 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
     template <ModelElement what>
     Where is(const ThreeMfElement&) {
         return what;
+    }
+
+    /// Keeps the alternative in full resolution. Its attributes may have the prefix of their extension.
+    void add_alternative(const ThreeMfElement& element) {
+        const auto attribute = [&](std::string_view name) {
+            const ThreeMfValue qualified = element[XmlName{three_mf::alternatives, name}];
+            return qualified.is_there ? qualified : element[name];
+        };
+        const ThreeMfValue resolution = attribute("modelresolution");
+        if (full_alternative_ || (resolution.is_there && resolution.text != full_resolution))
+            return;
+        full_alternative_ = ThreeMfUse{.object = attribute("objectid").index(),
+                                       .part = std::string(attribute("path").text),
+                                       .placement = {},
+                                       .printable = true,
+                                       .line = element.line};
+        require_root_of_paths(element, *full_alternative_);
+    }
+
+    /// Replaces the contents of an object that is only a substitute by its alternative, if the file names it.
+    void end_object() {
+        if (!object().is_mesh && object().components.empty())
+            fail(fmt::format("found object {} with neither a mesh nor components{}", object().id,
+                             object().foreign.empty()
+                                 ? ""
+                                 : fmt::format(" but with {}, an extension that is not read; save the file "
+                                               "with triangles alone",
+                                               object().foreign)));
+        std::optional<ThreeMfUse> full = std::exchange(full_alternative_, std::nullopt);
+        if (object().substitute.empty() || !full)
+            return;
+        object().is_substituted = true;
+        object().is_mesh = false;
+        object().mesh = {};
+        object().text = {};
+        object().volumes.clear();
+        object().components.clear();
+        append(object().components, *std::move(full));
     }
 
     Where start_setting(const ThreeMfElement& element) {
@@ -258,8 +308,8 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
             for (const auto& [name, role] : cura_roles)
                 if (name == setting_)
                     object().role = role;
-        if (ended == Where::object && !object().is_mesh && object().components.empty())
-            fail(fmt::format("found object {} with neither a mesh nor components", object().id));
+        if (ended == Where::object)
+            end_object();
     }
 
     void remark(const std::string& what) {
@@ -352,10 +402,14 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
 
     [[nodiscard]] ThreeMfUse use_of(const ThreeMfElement& element) {
         ThreeMfUse use = element.use(document().unit_mm);
+        require_root_of_paths(element, use);
+        return use;
+    }
+
+    void require_root_of_paths(const ThreeMfElement& element, const ThreeMfUse& use) const {
         if (!is_root_ && !use.part.empty())
             element.fail(fmt::format("path '{}' in a part that is not the root", printable(use.part, 100)),
                          "none: only the root may refer to other parts");
-        return use;
     }
 
     Where add_component(const ThreeMfElement& element) {
@@ -372,6 +426,7 @@ class ModelReader final : MeshDocumentReader<ThreeMfModel, ModelElement> {
     bool is_beta_ = false;
     std::string setting_; ///< name of the current setting
     std::string setting_value_;
+    std::optional<ThreeMfUse> full_alternative_; ///< of the current object
     std::set<Where> seen_; ///< elements that must not occur twice; vertices and triangles of this object
     ThreeMfSpaces spaces_;
     std::set<std::string> required_;

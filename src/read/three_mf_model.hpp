@@ -27,8 +27,13 @@ struct ThreeMfObject {
     std::size_t line = 0;
     /// given by the object's type or by settings of Cura
     MeshRole role = MeshRole::part;
-    bool is_mesh = false;             ///< otherwise it consists of components
-    bool is_coarse = false;           ///< its mesh is only a substitute for its slices
+    bool is_mesh = false;   ///< otherwise it consists of components
+    bool is_coarse = false; ///< its mesh is only a substitute for its slices
+    /// "lowres" or "obfuscated" if it is only a substitute for an alternative in full resolution. If the file
+    /// names that alternative, it is the only component.
+    std::string substitute = {};
+    bool is_substituted = false;      ///< by the alternative
+    std::string foreign = {};         ///< first element of an extension that is there instead of a mesh
     std::vector<VolumeRange> volumes; ///< of its mesh, if Slic3r defines them
     IndexedMesh mesh;                 ///< in the unit of the part; empty until a skimmed `text` is read
     MeshText text;

@@ -277,5 +277,22 @@ TEST(Xml, ProgressAddsUpToTheDocument) {
     }
 }
 
+TEST(Xml, TakesUtf8WithoutItsHyphen) {
+    for (const XmlRules& rules : {XmlRules{}, XmlRules{.namespaces = true, .utf8_only = true}})
+        for (const char* name : {"utf8", "UTF8", "utf-8"})
+            for (const char quote : {'\'', '"'}) {
+                Told told;
+                parse_xml(
+                    fmt::format("<?xml version='1.0' encoding={0}{1}{0}?><a x='\xC3\xA4'/>", quote, name),
+                    "x", told.handlers, rules);
+                EXPECT_NE(told.events.find("x='\xC3\xA4'"), std::string::npos) << name;
+            }
+    for (const char* declaration : {"<?xml version='1.0' encoding='utf8x'?>",
+                                    "<?xml version='1.0' encoding='utf8\"?>", "<?xml encoding='utf8'"}) {
+        Told told;
+        EXPECT_THROW(parse_xml(std::string(declaration) + "<a/>", "x", told.handlers), Error) << declaration;
+    }
+}
+
 } // namespace
 } // namespace lamella::xml_cases

@@ -102,8 +102,8 @@ TEST_F(Processes, SubtractNegativeVolumesAlike) {
                                 object(2, box_mesh(4, 4, 20), "type=\"other\"") +
                                 object(3, components({{1, ""}, {2, moved}})),
                             "<item objectid=\"3\"/>"),
-        {{"Metadata/model_settings.config",
-          "<config><object id=\"3\"><part id=\"2\" subtype=\"negative_part\"/></object></config>"}});
+        {{"Metadata/model_settings.config", "<config><object id=\"3\"><part id=\"1\"/><part id=\"2\" "
+                                            "subtype=\"negative_part\"/></object></config>"}});
     std::ofstream(path("part.3mf"), std::ios::binary) << bytes;
     FileJob job = job_of({{.path = path("part.3mf"), .copies = 3}}, 0.5);
     job.output = path("one.cli");

@@ -36,7 +36,14 @@ TEST(Amf, UnitsScaleMeshesAndPlacements) {
                                    {"micron", 0.001},
                                    {"Millimeters", 1.0},
                                    {"FOOT", 304.8},
-                                   {"micrometer", 0.001}}) {
+                                   {"micrometer", 0.001},
+                                   {"in", 25.4},
+                                   {"ft", 304.8},
+                                   {"m", 1000.0},
+                                   {"cm", 10.0},
+                                   {"um", 0.001},
+                                   {"\xc2\xb5m", 0.001},
+                                   {"metre", 1000.0}}) {
         const MeshFile file =
             read(amf(amf_object("0") + constellation("1", instance("0", "<deltax>2</deltax>")),
                      fmt::format("unit=\"{}\"", unit)));
@@ -175,6 +182,8 @@ TEST(Amf, ZippedFilesAreReadToo) {
 
 TEST(Amf, EmptyFilesHoldNothingToSlice) {
     EXPECT_TRUE(says(error_of("<amf/>"), "holds nothing to slice"));
+    EXPECT_TRUE(says(error_of(replaced(amf(amf_object("0")), "<volume>", "<volume type=\"support\">")),
+                     "holds nothing to slice: its only body is no material: 1 support; `include` support"));
     EXPECT_TRUE(says(error_of(amf("<object id=\"1\"><mesh><vertices/><volume/></mesh></object>")),
                      "holds nothing to slice"));
     EXPECT_TRUE(

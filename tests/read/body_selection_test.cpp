@@ -37,10 +37,10 @@ TEST(BodySelection, ReportsWhatItLeftOutInOneNote) {
         return remarks.take();
     };
     BodySelection selection({});
-    EXPECT_FALSE(selection.left_out_any());
+    EXPECT_EQ(selection.left_out(), 0U);
     EXPECT_TRUE(notes(selection).empty());
     selection.leave_out(MeshRole::modifier, "a");
-    EXPECT_TRUE(selection.left_out_any());
+    EXPECT_EQ(selection.left_out(), 1U);
     EXPECT_EQ(notes(selection),
               std::vector<std::string>{"1 body was left out as no material: 1 modifier (\"a\"); "
                                        "`include` modifier to read it as a solid"});

@@ -1,3 +1,4 @@
+#include "fixtures/expect_error.hpp"
 #include "read/in_memory.hpp"
 #include "read/mesh_readers.hpp"
 #include "read/package_checks.hpp"
@@ -342,6 +343,74 @@ TEST(ThreeMfSamples, WhatMustFailIsRefusedStrictly) {
     if (count == 0)
         GTEST_SKIP() << "no samples in " << LAMELLA_SHARED;
     EXPECT_EQ(count, 38U);
+}
+
+/// A box of 10 mm that is only a substitute, with this content of <alternatives>.
+std::string substitute(std::string_view resolution, std::string_view alternatives,
+                       std::string_view more = "") {
+    constexpr const char* space =
+        "xmlns:pa=\"http://schemas.microsoft.com/3dmanufacturing/production/alternatives/2021/04\"";
+    return model(object(1, box_mesh(10, 10, 10) + std::string(alternatives),
+                        fmt::format("pa:modelresolution=\"{}\"", resolution)) +
+                     std::string(more),
+                 one_item, fmt::format("{} requiredextensions=\"p pa\"", space));
+}
+
+TEST(ThreeMf, SubstitutesAreReplacedByTheirAlternativesInFullResolution) {
+    const std::string other = model(object(7, box_mesh(3, 3, 10)), "");
+    const auto in = [](std::string_view attributes) {
+        return fmt::format("<pa:alternatives><pa:alternative objectid=\"9\" modelresolution=\"lowres\"/>"
+                           "<pa:alternative {}/></pa:alternatives>",
+                           attributes);
+    };
+    const std::string in_part = in("objectid=\"7\" path=\"/3D/full.model\" modelresolution=\"fullres\"");
+    for (const char* resolution : {"obfuscated", "lowres"}) {
+        const std::vector<std::string> packages = {
+            package(substitute(resolution, in_part), {{"3D/full.model", other}}),
+            package(substitute(resolution, replaced(in_part, " path", " pa:path")),
+                    {{"3D/full.model", other}}),
+            package(substitute(resolution, in("objectid=\"7\""), object(7, box_mesh(3, 3, 10))))};
+        for (const std::string& bytes : packages) {
+            const MeshFile file = read(bytes, {.strict = true});
+            ASSERT_EQ(file.instances.size(), 1U);
+            EXPECT_DOUBLE_EQ(volume(file.mesh()), 90);
+        }
+        EXPECT_TRUE(says(error_of(package(substitute(resolution, ""))),
+                         fmt::format("object 1: its resolution is '{}', so it only stands in", resolution)));
+    }
+    EXPECT_DOUBLE_EQ(volume(read(package(substitute("fullres", in_part), {{"3D/full.model", other}})).mesh()),
+                     1000);
+    EXPECT_TRUE(says(error_of(package(substitute("lowres", in_part))), "refers to the part '3D/full.model'"));
+}
+
+TEST(ThreeMf, ExtensionsInsteadOfMeshesAreNamed) {
+    const std::string bytes = package(
+        model(object(1, box_mesh()) + object(2, "<bo:booleanshape objectid=\"1\" operation=\"union\"/>"),
+              one_item, "xmlns:bo=\"http://schemas.3mf.io/3dmanufacturing/booleanoperations/2023/07\""));
+    EXPECT_TRUE(says(error_of(bytes),
+                     "object 2 with neither a mesh nor components but with <booleanshape> of "
+                     "'http://schemas.3mf.io/3dmanufacturing/booleanoperations/2023/07'"));
+}
+
+TEST(ThreeMf, BodiesThatAreNoMaterialAreNamedIfThereAreNoOthers) {
+    const std::string bytes =
+        package(model(object(1, box_mesh(), "type=\"surface\" name=\"skin\""), one_item));
+    EXPECT_TRUE(says(error_of(bytes), "holds nothing to slice: its only body is no material: 1 surface "
+                                      "(\"skin\"); `include` surface to read it as a solid"));
+    EXPECT_EQ(read(bytes, {.include = {MeshRole::surface}}).instances.size(), 1U);
+}
+
+TEST(ThreeMf, OneMeshNeverHidesNegativeVolumes) {
+    const std::string bytes = package(
+        model(object(1, box_mesh()) + object(2, box_mesh()) + object(3, components({{1, ""}, {2, ""}})),
+              "<item objectid=\"3\"/>"),
+        {{"Metadata/model_settings.config",
+          "<config><object id=\"3\"><part id=\"1\" subtype=\"normal_part\"/>"
+          "<part id=\"2\" subtype=\"negative_part\"/></object></config>"}});
+    const MeshFile file = read(bytes);
+    test::expect_error(ErrorKind::usage, {"x: has negative volumes", "`include` negative"},
+                       [&] { (void)file.mesh(); });
+    EXPECT_EQ(read(bytes, {.include = {MeshRole::negative}}).mesh().size(), 24U);
 }
 
 } // namespace
