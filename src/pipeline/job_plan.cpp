@@ -28,12 +28,16 @@ void check_heights(const Plate& plate) {
         if (part.box.min.z != part.box.max.z)
             continue;
         const PlateFile& file = plate.files[plate.shapes[part.shape].input];
-        // A warning of the reader may name the cause.
-        const std::string cause = file.warnings.empty() ? "" : fmt::format(" ({})", file.warnings.front());
-        throw Error(ErrorKind::input,
-                    fmt::format("{}: the mesh is flat: all of it lies at z = {:.6g}, so there is nothing to "
-                                "slice; rotate it or choose another direction{}",
-                                name_of_part(plate, i), part.box.min.z, cause));
+        // A warning of the reader may name the cause, such as a file that is cut off.
+        throw Error(
+            ErrorKind::input,
+            file.warnings.empty()
+                ? fmt::format("{}: the mesh is flat: all of it lies at z = {:.6g}, so there is nothing "
+                              "to slice; rotate it or choose another direction",
+                              name_of_part(plate, i), part.box.min.z)
+                : fmt::format("{}: {}; the mesh that was read is flat: all of it lies at z = {:.6g}, so "
+                              "there is nothing to slice",
+                              name_of_part(plate, i), file.warnings.front(), part.box.min.z));
     }
 }
 

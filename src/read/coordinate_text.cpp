@@ -3,11 +3,27 @@
 #include "container/parse_number.hpp"
 #include "core/lower_case.hpp"
 
+#include <algorithm>
+#include <array>
 #include <limits>
+#include <string_view>
 
 namespace lamella {
 
 namespace {
+
+/// Reads a number whose exponent follows a D, as programs in Fortran write: "1.5D-3".
+template <class T>
+bool parse_fortran(std::string_view digits, T& value) {
+    std::array<char, 64> text{};
+    const std::size_t letter = digits.find_first_of("dD");
+    if (letter == std::string_view::npos || digits.size() > text.size())
+        return false;
+    std::copy(digits.begin(), digits.end(), text.begin());
+    text[letter] = 'e';
+    const char* const end = text.data() + digits.size();
+    return parse_number(text.data(), end, value) == end;
+}
 
 template <class T>
 const char* parse(const char* at, const char* end, T& value) {
@@ -22,7 +38,7 @@ const char* parse(const char* at, const char* end, T& value) {
     }
     if (digits.empty() || digits[0] == '-')
         return nullptr;
-    if (parse_number(digits.data(), stop, value) != stop)
+    if (parse_number(digits.data(), stop, value) != stop && !parse_fortran(digits, value))
         return nullptr;
     value *= sign;
     return stop;

@@ -90,7 +90,7 @@ std::uint64_t MeshInput::bytes_in_memory() const noexcept {
 
 bool MeshInput::can_stream() const {
     return !is_gzip(source_->bytes) && !is_zip(source_->text()) &&
-           mesh_format_of(*source_, {}).stream != nullptr;
+           mesh_format_of(*source_, {}).stream != nullptr && can_stream_stl(*source_);
 }
 
 std::optional<std::uint64_t> MeshInput::records() const {

@@ -29,8 +29,12 @@ using ReadMesh = MeshFile(const ByteSource& source, const MeshReadOptions& optio
 /// 1. a size of exactly 84 + 50 * count bytes: binary;
 /// 2. "solid", a name, and then a facet or "endsolid": ASCII;
 /// 3. other text: an error that shows it;
-/// 4. at least 84 bytes: binary with a wrong count.
+/// 4. at least 84 bytes: binary with a wrong count, or, if the bytes that each triangle counts as its
+///    attributes really follow it and then fill the file, binary with these bytes.
+/// Binary files in big-endian order and with implausible coordinates are refused.
 ReadMesh read_stl;
+/// Returns whether the triangles of a file have the usual distance in it, or are text.
+[[nodiscard]] bool can_stream_stl(const ByteSource& source);
 /// Returns the number of records of a binary file, according to its header and its length; nullopt for an
 /// ASCII file. The form is recognised by the same rules.
 [[nodiscard]] std::optional<std::uint64_t> stl_records(const ByteSource& source);

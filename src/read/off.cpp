@@ -11,7 +11,7 @@ namespace lamella {
 
 namespace {
 
-/// Contents of the first word: [ST][C][N][4][n]OFF.
+/// Contents of the first word: [ST][C][N][4][n]OFF. Some programs write "off".
 struct OffKind {
     bool homogeneous = false;   ///< each vertex has a fourth coordinate
     bool any_dimension = false; ///< the number of coordinates precedes the counts
@@ -31,7 +31,7 @@ std::optional<OffKind> kind_of(std::string_view word) {
     take("N");
     kind.homogeneous = take("4");
     kind.any_dimension = take("n");
-    if (!take("OFF"))
+    if (!take("OFF") && !take("off"))
         return std::nullopt;
     // The first count may follow without a blank: "OFF8 12 0".
     kind.word_size -= word.size();
@@ -98,8 +98,10 @@ OffCounts read_header(std::string_view text) {
         throw TextFault{header.offset(), "a text (binary OFF is not read; save it as ASCII OFF or PLY)"};
     if (counts.kind.any_dimension) {
         const std::size_t location = (static_cast<void>(header.peek()), header.offset());
-        if (header.count("the number of coordinates, 3") != 3)
-            throw TextFault{location, "the number of coordinates, 3"};
+        constexpr const char* expected =
+            "3, the number of coordinates; meshes of other dimensions are not read";
+        if (header.count(expected) != 3)
+            throw TextFault{location, expected};
     }
     counts.vertices = header.count("the numbers of vertices, faces and edges");
     counts.faces = header.count("the number of faces");

@@ -1,8 +1,11 @@
 #include "lamella/core/error.hpp"
 
 #include "container/text_position.hpp"
+#include "core/counted.hpp"
 #include "read/mesh_readers.hpp"
+#include "read/read_limits.hpp"
 #include "read/stl_ascii.hpp"
+#include "read/stl_attributes.hpp"
 #include "read/stl_binary.hpp"
 #include "read/text_chunks.hpp"
 #include "system/memory_size.hpp"
@@ -42,14 +45,13 @@ bool has_stl_size(std::span<const std::byte> beginning, std::uint64_t size) {
 /// Returns whether most corners are plausible for a part. In data of another kind, such as compressed data,
 /// most are not, because floats range from 1e-38 to 3e38.
 bool has_likely_corners(std::span<const std::byte> bytes) {
-    constexpr std::size_t enough = 1000;      // triangles
-    constexpr std::size_t corners_begin = 12; // after the normal
+    constexpr std::size_t enough = 1000; // triangles
     static_assert(stl_header_bytes + enough * stl_record_bytes <= window_beginning);
     const std::size_t count = std::min((bytes.size() - stl_header_bytes) / stl_record_bytes, enough);
     std::size_t likely = 0;
     for (std::size_t i = 0; i < count; ++i) {
         std::array<float, 9> corners{};
-        std::memcpy(corners.data(), bytes.data() + stl_header_bytes + i * stl_record_bytes + corners_begin,
+        std::memcpy(corners.data(), bytes.data() + stl_header_bytes + i * stl_record_bytes + stl_normal_bytes,
                     sizeof corners);
         likely += static_cast<std::size_t>(std::count_if(corners.begin(), corners.end(), [](float value) {
             const float size = std::abs(value);
@@ -59,11 +61,53 @@ bool has_likely_corners(std::span<const std::byte> bytes) {
     return 2 * likely >= 9 * count;
 }
 
+/// Throws if the numbers of a file whose size fits its count cannot be those of a part: nearly all that are
+/// not 0 are beyond any part, and some are extremely close to 0. Files of other programs and with other byte
+/// orders have such numbers.
+void refuse_implausible(const ByteSource& source) {
+    constexpr std::size_t enough = 1000; // triangles
+    const std::size_t count = std::min((source.bytes.size() - stl_header_bytes) / stl_record_bytes, enough);
+    std::size_t likely = 0;
+    std::size_t tiny = 0;
+    std::size_t huge = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        std::array<float, 9> corners{};
+        std::memcpy(corners.data(),
+                    source.bytes.data() + stl_header_bytes + i * stl_record_bytes + stl_normal_bytes,
+                    sizeof corners);
+        for (const float value : corners) {
+            const float size = std::abs(value);
+            if (size == 0 || !std::isfinite(size))
+                continue;
+            tiny += size < 1e-20F ? 1 : 0;
+            huge += size > 1e20F ? 1 : 0;
+            likely += size >= 1e-20F && size <= 1e20F ? 1 : 0;
+        }
+    }
+    if (tiny != 0 && tiny + huge > likely)
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: is no mesh file that is known: were it a binary STL file, most of its "
+                                "coordinates that are not 0 would be below 1e-20 or above 1e20",
+                                source.name));
+}
+
+/// Throws if the count and the size of a file agree only if its numbers are read as big-endian.
+void refuse_big_endian(const ByteSource& source) {
+    std::uint32_t count = stl_declared_count(source.bytes);
+    count = count >> 24 | (count >> 8 & 0xFF00U) | (count << 8 & 0xFF0000U) | count << 24;
+    if (count != 0 && source.size() == stl_header_bytes + std::uint64_t{stl_record_bytes} * count)
+        throw Error(ErrorKind::input,
+                    fmt::format("{}: is a binary STL file in big-endian byte order: its count reads {} so, "
+                                "which fits its size; STL files are little-endian: write it anew with the "
+                                "bytes of each number reversed",
+                                source.name, count));
+}
+
 /// Returns whether the corners of a record are plausible: all numbers are finite, and none is huge or
 /// extremely close to 0 but not 0.
 bool is_likely(std::span<const std::byte> record) {
     std::array<float, 9> corners{};
-    std::memcpy(corners.data(), record.data() + 12, sizeof corners);
+    std::memcpy(corners.data(), record.data() + stl_normal_bytes, sizeof corners);
     return std::all_of(corners.begin(), corners.end(), [](float value) {
         const float size = std::abs(value);
         return size == 0 || (size > 1e-20F && size < 1e9F);
@@ -140,10 +184,14 @@ std::string_view text_mode_damage(const ByteSource& source) {
 bool is_binary(const ByteSource& source) {
     const std::uint64_t size = source.size();
     const std::string_view text = source.text();
-    if (has_stl_size(source.bytes, size))
+    if (has_stl_size(source.bytes, size)) {
+        refuse_implausible(source);
         return true;
+    }
     if (is_stl_ascii(text))
         return false;
+    if (has_attribute_bytes(source))
+        return true;
 
     const auto fail = [&](std::string_view what) {
         throw Error(ErrorKind::input, fmt::format("{}: {}", source.name, what));
@@ -162,6 +210,7 @@ bool is_binary(const ByteSource& source) {
             "is not an STL file, or cut off: found {} bytes, expected at least {} (binary) or the "
             "word 'solid' (ASCII)",
             size, stl_header_bytes));
+    refuse_big_endian(source);
     if (const std::string_view damage = text_mode_damage(source); !damage.empty())
         fail(fmt::format(
             "is a binary STL file that was damaged, as by a transfer or a checkout in text mode: {}; "
@@ -188,7 +237,20 @@ bool is_stl(const ByteSource& source) {
     return has_stl_size(source.bytes, source.size()) || is_stl_ascii(source.text());
 }
 
+bool can_stream_stl(const ByteSource& source) {
+    return !has_attribute_bytes(source);
+}
+
 MeshFile read_stl(const ByteSource& source, const MeshReadOptions& options, const Execution& execution) {
+    if (is_binary(source) && has_attribute_bytes(source)) {
+        ReadLimits limits(source, options);
+        MeshFile file = read_stl_binary(without_attribute_bytes(source, limits), options, execution);
+        file.warnings.push_back(
+            fmt::format("left out {} that follow triangles, as the triangles count them",
+                        counted(source.size() - stl_header_bytes - file.stored_triangles * stl_record_bytes,
+                                "attribute byte")));
+        return file;
+    }
     if (is_binary(source))
         return read_stl_binary(source, options, execution);
     return read_stl_ascii(whole(source, execution, memory_of_file(options.max_memory)), options, execution);

@@ -30,11 +30,8 @@ static_assert(std::endian::native == std::endian::little, "binary STL is viewed 
 
 namespace {
 
-/// Bytes of the normal before the corners; normals are often wrong and not used.
-constexpr std::size_t normal_bytes = 12;
-
 /// Offset of the corners of the first triangle in a file.
-constexpr std::size_t corners_at = stl_header_bytes + normal_bytes;
+constexpr std::size_t corners_at = stl_header_bytes + stl_normal_bytes;
 
 /// About a megabyte: small enough to distribute to threads, large enough that overhead is negligible.
 constexpr std::uint64_t chunk_triangles = 20'000;
@@ -115,7 +112,7 @@ struct Records {
 /// unless they would take too much memory. Otherwise surveys them in place.
 Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOptions& options,
                      const Execution& execution, Executor& executor, ProgressMeter& progress) {
-    const std::size_t size = n * stl_record_bytes - normal_bytes;
+    const std::size_t size = n * stl_record_bytes - stl_normal_bytes;
     const std::uint64_t most = memory_of_file(options.max_memory);
     std::shared_ptr<PageArray<std::byte>> memory;
     ByteSource viewed = source;
@@ -220,6 +217,47 @@ StlExtent stl_extent(std::uint64_t file_bytes, std::uint32_t declared) {
 
 namespace {
 
+/// Most records at the end of a file that are searched for zeros, which takes some 20 ms.
+constexpr std::uint64_t most_zeros = 1'000'000;
+
+/// Returns how many of the records before `end` are nothing but zeros, up to `most_zeros`.
+std::uint64_t zeros_before(const ByteSource& source, std::uint64_t end) {
+    constexpr std::uint64_t at_once = 1000;
+    std::vector<std::byte> bytes;
+    std::uint64_t zeros = 0;
+    while (zeros < std::min(end, most_zeros)) {
+        const std::uint64_t count = std::min({end - zeros, most_zeros - zeros, at_once});
+        bytes.resize(count * stl_record_bytes);
+        copy_out(source, stl_header_bytes + (end - zeros - count) * stl_record_bytes, bytes);
+        const auto last =
+            std::find_if(bytes.rbegin(), bytes.rend(), [](std::byte b) { return b != std::byte{0}; });
+        zeros += static_cast<std::uint64_t>(last - bytes.rbegin()) / stl_record_bytes;
+        if (last != bytes.rend())
+            break;
+    }
+    return zeros;
+}
+
+/// Warns of zeros at the end, which a file has whose transfer or writing was not completed. Throws if the
+/// first triangles are zeros, too.
+void judge_zeros(const ByteSource& source, std::uint64_t stored, Remarks& remarks) {
+    const std::uint64_t zeros = zeros_before(source, stored);
+    if (zeros == 0)
+        return;
+    constexpr std::string_view cause = "the file was not written or transferred completely; get it again";
+    constexpr std::uint64_t first = 1000;
+    if (zeros == stored || (zeros == most_zeros && zeros_before(source, first) == first))
+        throw Error(ErrorKind::input, fmt::format("{}: holds nothing but zeros from byte {} on: {}",
+                                                  source.name, stl_header_bytes, cause));
+    remarks.add(fmt::format(
+        "the last {}{} of {} triangles are nothing but zeros{}: {}", zeros,
+        zeros == most_zeros ? " or more" : "", stored,
+        zeros == most_zeros
+            ? ""
+            : fmt::format(" from byte {} on", stl_header_bytes + (stored - zeros) * stl_record_bytes),
+        cause));
+}
+
 /// Returns the number of triangles, from the header and the size of the file.
 std::uint64_t check_header(const ByteSource& source, const MeshReadOptions& options, Remarks& remarks) {
     const std::uint32_t declared = stl_declared_count(source.bytes);
@@ -233,6 +271,7 @@ std::uint64_t check_header(const ByteSource& source, const MeshReadOptions& opti
     ReadLimits(source, options).add_triangles(stored);
     if (!remark.empty())
         remarks.add(remark);
+    judge_zeros(source, stored, remarks);
     return stored;
 }
 
@@ -268,7 +307,7 @@ void for_batches(const ByteSource& source, RecordRange records, Executor& execut
         for (std::uint64_t begin = first; begin < last && !executor.stopping(); begin += batch_triangles) {
             const std::uint64_t end = std::min(last, begin + batch_triangles);
             copy_out(source, corners_at + (records.begin + begin) * stl_record_bytes,
-                     batch->span().first((end - begin) * stl_record_bytes - normal_bytes));
+                     batch->span().first((end - begin) * stl_record_bytes - stl_normal_bytes));
             body(batch, begin, end);
         }
     });

@@ -20,6 +20,8 @@ namespace lamella {
 
 inline constexpr std::size_t stl_header_bytes = 84;
 inline constexpr std::size_t stl_record_bytes = 50;
+/// Bytes of the normal before the corners; normals are often wrong and not used.
+inline constexpr std::size_t stl_normal_bytes = 12;
 
 /// Returns the count field (bytes 80 to 83). The file must have at least stl_header_bytes.
 [[nodiscard]] std::uint32_t stl_declared_count(std::span<const std::byte> bytes);

@@ -109,5 +109,14 @@ TEST(CoordinateText, RefusesWordsThatAreNoNumbers) {
     EXPECT_EQ(expected_instead("x"), "a number");
 }
 
+TEST(CoordinateText, ReadsExponentsAfterADAsFortranWritesThem) {
+    EXPECT_EQ(parsed<double>("1D-3"), 1e-3);
+    EXPECT_EQ(parsed<float>("-2.5d+2"), -250.0F);
+    EXPECT_EQ(parsed<double>("+1.D1"), 10.0);
+    for (const char* word : {"D3", "1D", "1D-", "1D3x", "1D3D3", "1e3D3", "d", "-D1"})
+        EXPECT_EQ(parsed<double>(word), std::nullopt) << word;
+    EXPECT_EQ(parsed<double>("1D" + std::string(100, '0')), std::nullopt);
+}
+
 } // namespace
 } // namespace lamella::coordinate_text_cases

@@ -22,8 +22,9 @@ TEST(Off, TakesTheHeaderInAnyLayout) {
          {"OFF 3 1 0\n", "OFF # a comment\n# another\n3 1\n", "3 1 0\n", "\r\nOFF\r\n3\r\n1 0\r\n",
           "\xEF\xBB\xBFOFF\n3 1 3 # edges\n", "COFF\n3 1 0\n", "nOFF\n3\n3 1 0\n",
           // Counts that follow the word without a blank, as in ModelNet40; counts on lines of their own.
-          "OFF3 1 0\n", "COFF3 1 0 # edges\n", "OFF3\n1 0\n", "OFF# a comment\n3 1 0# edges\n",
-          "nOFF3\n3 1 0\n", "# first\n\nOFF3 1\n", "OFF\n3\n1\n0\n", "OFF\n3 1\n# edges\n0\n"})
+          "off\n3 1 0\n", "noff\n3\n3 1 0\n", "OFF3 1 0\n", "COFF3 1 0 # edges\n", "OFF3\n1 0\n",
+          "OFF# a comment\n3 1 0# edges\n", "nOFF3\n3 1 0\n", "# first\n\nOFF3 1\n", "OFF\n3\n1\n0\n",
+          "OFF\n3 1\n# edges\n0\n"})
         expect_mesh(header + rows, name, corners, {{0, 1, 2}});
 }
 
@@ -98,7 +99,9 @@ TEST(Off, NamesLineAndWordOfAnError) {
            "line 1: found 'BINARY', expected a text (binary OFF is not read; save it as ASCII OFF or PLY)");
     expect("OFF\nx 1 0\n", "line 2: found 'x', expected the numbers of vertices, faces and edges");
     expect("OFF\n3\n", "line 3: found the end of the file, expected the number of faces");
-    expect("4nOFF\n5\n3 1 0\n", "line 2: found '5', expected the number of coordinates, 3");
+    expect(
+        "4nOFF\n5\n3 1 0\n",
+        "line 2: found '5', expected 3, the number of coordinates; meshes of other dimensions are not read");
     expect("OFF\n3 1 0\n0 0\n", "line 3: found the end of the line, expected a number");
     expect("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n",
            "line 6: found the end of the line, expected a whole number");

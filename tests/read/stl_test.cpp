@@ -268,5 +268,46 @@ TEST(Stl, StopsWhenAsked) {
     }
 }
 
+TEST(Stl, InBigEndianOrderIsNamedAsSuch) {
+    std::string bytes = binary(some_triangles(12));
+    const auto reverse = [&](std::size_t at, std::size_t size) {
+        std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                     bytes.begin() + static_cast<std::ptrdiff_t>(at + size));
+    };
+    reverse(80, 4);
+    for (std::size_t record = 84; record < bytes.size(); record += 50)
+        for (std::size_t k = 0; k < 12; ++k)
+            reverse(record + 4 * k, 4);
+    EXPECT_NE(
+        error_of(bytes).find("part.stl: is a binary STL file in big-endian byte order: its count reads 12"),
+        std::string::npos)
+        << error_of(bytes);
+    // With a count that fits by chance, its numbers show it.
+    reverse(80, 4);
+    EXPECT_NE(error_of(bytes).find("below 1e-20 or above 1e20"), std::string::npos) << error_of(bytes);
+}
+
+TEST(Stl, WithNothingButZerosAtItsEndIsIncomplete) {
+    const std::string whole = binary(some_triangles(12));
+    for (const std::size_t kept : {0U, 1U, 7U, 11U}) {
+        std::string bytes = whole;
+        std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(84 + 50 * kept), bytes.end(), '\0');
+        if (kept == 0) {
+            EXPECT_NE(error_of(bytes).find("holds nothing but zeros from byte 84 on"), std::string::npos);
+            continue;
+        }
+        const MeshFile file = read(bytes);
+        EXPECT_EQ(file.stored_triangles, 12U);
+        ASSERT_EQ(file.warnings.size(), 1U);
+        EXPECT_EQ(
+            file.warnings[0],
+            fmt::format("the last {} of 12 triangles are nothing but zeros from byte {} on: the file was not "
+                        "written or transferred completely; get it again",
+                        12 - kept, 84 + 50 * kept));
+        error_of(bytes, {.strict = true}, ErrorKind::defect);
+    }
+    EXPECT_NE(error_of(std::string(1000, '\0')).find("holds nothing but zeros"), std::string::npos);
+}
+
 } // namespace
 } // namespace lamella::stl_test::stl_cases
