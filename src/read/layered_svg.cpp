@@ -1,3 +1,4 @@
+#include "lamella/contour/measure.hpp"
 #include "lamella/core/error.hpp"
 
 #include "container/text_position.hpp"
@@ -6,6 +7,7 @@
 #include "core/farthest.hpp"
 #include "core/lower_case.hpp"
 #include "read/decimal_text.hpp"
+#include "read/even_odd_rings.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_pieces.hpp"
 #include "read/layer_readers.hpp"
@@ -15,17 +17,40 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace lamella {
 
 namespace {
+
+struct SvgUnit {
+    std::string_view name;
+    double mm;
+};
+
+/// Units of lengths. Programs that write layers mean millimetres if there is none.
+constexpr std::array svg_units = {SvgUnit{"", 1},          SvgUnit{"mm", 1},         SvgUnit{"cm", 10},
+                                  SvgUnit{"in", 25.4},     SvgUnit{"pt", 25.4 / 72}, SvgUnit{"pc", 25.4 / 6},
+                                  SvgUnit{"px", 25.4 / 96}};
+
+/// Returns whether an element fills its outlines by the even-odd rule; `inherited` is that of its parent.
+bool is_even_odd(const XmlAttributes& attributes, bool inherited) {
+    std::string_view rule = attributes.find("fill-rule");
+    const std::string_view style = attributes.find("style");
+    constexpr std::string_view property = "fill-rule:";
+    if (const std::size_t at = style.find(property); at != std::string_view::npos)
+        rule = style.substr(at + property.size());
+    rule = trimmed(rule.substr(0, rule.find(';')));
+    return rule.empty() || rule == "inherit" ? inherited : rule == "evenodd";
+}
 
 /// A cursor over the numbers of an attribute.
 class Numbers {
@@ -141,6 +166,9 @@ class SvgReader {
         SvgReader reader(name_, limits);
         reader.depth_ = 1;
         reader.height_ = height_;
+        reader.scale_ = scale_;
+        reader.corner_ = corner_;
+        reader.even_odd_root_ = reader.even_odd_ = even_odd_root_;
         reader.origin_ = origin_;
         reader.line_ = line;
         return reader;
@@ -164,6 +192,8 @@ class SvgReader {
         transformed_.add(layers.transformed_);
         returning_.add(layers.returning_);
         dropped_.add(layers.dropped_);
+        reversed_.add(layers.reversed_);
+        even_odd_left_.add(layers.even_odd_left_);
         return true;
     }
 
@@ -186,10 +216,8 @@ class SvgReader {
             root_ = element;
             if (local(element) != "svg")
                 fail(line, fmt::format("found <{}>; the document must be <svg>", printable(element, 40)));
-            if (const std::string_view height = attributes.find("height"); height.data() != nullptr)
-                // A unit may follow, even one that begins like an exponent (em, ex).
-                height_ =
-                    Numbers(height.substr(0, height.find_last_of("0123456789.") + 1), name_, line).next();
+            read_scale(attributes, line);
+            even_odd_root_ = even_odd_ = is_even_odd(attributes, false);
             if (const std::string_view origin = attributes.find("data-lamella-origin");
                 origin.data() != nullptr) {
                 Numbers numbers(origin, name_, line);
@@ -251,6 +279,10 @@ class SvgReader {
         outside_.append_to(file.warnings);
         other_.append_to(file.warnings);
         transformed_.append_to(file.warnings);
+        if (!unknown_scale_.empty())
+            file.warnings.push_back(unknown_scale_);
+        reversed_.append_to(file.warnings);
+        even_odd_left_.append_to(file.warnings);
         dropped_.append_to(file.warnings);
         place_groups(groups_, file.warnings);
         check_part_planes(file, groups_.size(), bytes);
@@ -269,6 +301,66 @@ class SvgReader {
 
     [[noreturn]] void fail(std::size_t line, const std::string& text) const {
         throw Error(ErrorKind::input, fmt::format("{}, line {}: {}", name_, line, text));
+    }
+
+    struct Length {
+        double number = 0;
+        std::string_view unit;
+    };
+
+    /// Returns the width or height of the document.
+    std::optional<Length> length(const XmlAttributes& attributes, std::string_view name,
+                                 std::size_t line) const {
+        const std::string_view text = trimmed(attributes.find(name));
+        if (text.empty())
+            return std::nullopt;
+        // A unit may begin like an exponent (em, ex).
+        const std::size_t end = text.find_last_of("0123456789.") + 1;
+        return Length{Numbers(text.substr(0, end), name_, line).next(), trimmed(text.substr(end))};
+    }
+
+    /// Reads the size of the document, and the scale that its view box defines.
+    void read_scale(const XmlAttributes& attributes, std::size_t line) {
+        const std::array<std::optional<Length>, 2> size = {length(attributes, "width", line),
+                                                           length(attributes, "height", line)};
+        height_ = size[1] ? size[1]->number : 0;
+        const auto refuse_scale = [&](std::string_view what) {
+            unknown_scale_ = fmt::format("line {}: {}; coordinates were taken as millimetres", line, what);
+        };
+        const std::string_view box = attributes.find("viewBox");
+        if (box.data() == nullptr) {
+            // Units of the screen, such as em, say nothing of the part.
+            for (const std::optional<Length>& one : size)
+                for (const SvgUnit& known : svg_units)
+                    if (one && known.name == one->unit && known.mm != 1)
+                        refuse_scale(
+                            fmt::format("the size of the document is in '{}', and no viewBox says what "
+                                        "that is in coordinates",
+                                        known.name));
+            return;
+        }
+        Numbers numbers(box, name_, line);
+        const Point2 corner = {numbers.next(), numbers.next()};
+        const std::array<double, 2> in_box = {numbers.next(), numbers.next()};
+        std::optional<double> scale;
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const auto* const unit =
+                !size[axis] ? svg_units.end()
+                            : std::find_if(svg_units.begin(), svg_units.end(), [&](const SvgUnit& known) {
+                                  return known.name == size[axis]->unit;
+                              });
+            if (unit == svg_units.end()) // a part of the screen, or no size at all
+                continue;
+            const double of_axis = size[axis]->number / in_box[axis] * unit->mm;
+            constexpr double same = 1e-6; // relative; sizes are rounded
+            if (!(of_axis > 0 && std::isfinite(of_axis)) ||
+                (scale && std::abs(of_axis - *scale) > same * *scale))
+                return refuse_scale("width, height and viewBox define no common scale of x and y");
+            scale = scale.value_or(of_axis);
+        }
+        scale_ = scale.value_or(1);
+        corner_ = corner;
+        height_ = in_box[1];
     }
 
     std::optional<double> number(const XmlAttributes& attributes, std::string_view name,
@@ -299,6 +391,15 @@ class SvgReader {
             fail(line, fmt::format("found a layer height of {}; it must not be below 0", *group.height));
         make_room(groups_, line);
         groups_.push_back(std::move(group));
+        even_odd_ = is_even_odd(attributes, even_odd_root_);
+    }
+
+    /// Returns a point of the file in millimetres of the part.
+    [[nodiscard]] Point2 placed(double x, double y, std::size_t line) const {
+        const Point2 p = {(x - corner_.x) * scale_ + origin_.x, (y - corner_.y) * scale_ + origin_.y};
+        if (is_too_far(p.x) || is_too_far(p.y))
+            fail(line, fmt::format("found a point that lies beyond {} mm once it is scaled", farthest_mm));
+        return p;
     }
 
     /// Lamella's own files put each of several parts into a group, numbered from 1.
@@ -349,12 +450,53 @@ class SvgReader {
     void add_points(const XmlAttributes& attributes, bool closed, std::size_t line) {
         RawLayer& layer = groups_.back();
         Numbers numbers(attributes.find("points"), name_, line);
+        const std::size_t first = layer.ends.size();
         while (!numbers.done()) {
             const double x = numbers.next();
             make_room(layer.points, line);
-            layer.points.push_back({x + origin_.x, numbers.next() + origin_.y});
+            layer.points.push_back(placed(x, numbers.next(), line));
         }
         end_contour(closed, line);
+        direct_by_type(attributes.find("slic3r:type"), first, line);
+    }
+
+    /// Returns the points of a contour of the layer.
+    [[nodiscard]] std::span<Point2> contour(std::size_t i) {
+        RawLayer& layer = groups_.back();
+        const std::size_t begin = i == 0 ? 0 : layer.ends[i - 1].end;
+        return std::span(layer.points).subspan(begin, layer.ends[i].end - begin);
+    }
+
+    /// Reverses rings from the contour `first` on that contradict the type of their element.
+    void direct_by_type(std::string_view type, std::size_t first, std::size_t line) {
+        const bool hole = type == "hole";
+        if (!hole && type != "contour")
+            return;
+        for (std::size_t i = first; i < groups_.back().ends.size(); ++i) {
+            const std::span<Point2> ring = contour(i);
+            const double area = groups_.back().ends[i].closed ? ring_area(ring) : 0;
+            if (area == 0 || (area < 0) == hole)
+                continue;
+            std::reverse(ring.begin(), ring.end());
+            reversed_.note(at_line(line));
+        }
+    }
+
+    /// Reverses rings of a path from the contour `first` on that contradict the even-odd rule.
+    void direct_by_rule(std::size_t first, std::size_t line) {
+        std::vector<std::span<Point2>> rings;
+        for (std::size_t i = first; i < groups_.back().ends.size(); ++i)
+            if (groups_.back().ends[i].closed)
+                rings.push_back(contour(i));
+        if (rings.size() < 2)
+            return;
+        limits_.add_bytes_at(rings.size() * (sizeof(Box3) + sizeof rings[0]), at_line(line));
+        const std::optional<std::size_t> reversed = direct_by_even_odd(rings);
+        limits_.give_back(0, rings.size() * (sizeof(Box3) + sizeof rings[0]));
+        if (!reversed)
+            even_odd_left_.note(at_line(line));
+        for (std::size_t i = 0; i < reversed.value_or(0); ++i)
+            reversed_.note(at_line(line));
     }
 
     /// Reads straight outlines: M, L, H, V and Z in both cases. Slic3r inverts the y axis in paths.
@@ -368,8 +510,9 @@ class SvgReader {
         std::optional<Point2> first; // of the contour; Z returns to it
         const auto add = [&](const Point2& p) {
             make_room(layer.points, line);
-            layer.points.push_back({p.x + origin_.x, height_ - p.y + origin_.y});
+            layer.points.push_back(placed(p.x, height_ - (p.y - corner_.y) + corner_.y, line));
         };
+        const std::size_t begin = layer.ends.size();
         char command = 'M';
         while (!numbers.done()) {
             if (const auto letter = numbers.letter())
@@ -416,6 +559,10 @@ class SvgReader {
             add(at);
         }
         end_contour(false, line);
+        if (is_even_odd(attributes, even_odd_))
+            direct_by_rule(begin, line);
+        else if (attributes.find("slic3r:type") == "hole")
+            direct_by_type("hole", begin, line);
     }
 
     /// Ends the contour under construction, if there is one.
@@ -451,7 +598,12 @@ class SvgReader {
     std::uint32_t part_ = 0;
     int depth_ = 0;
     bool in_layer_ = false;
-    double height_ = 0;
+    double height_ = 0; ///< of the document, in units of its coordinates
+    double scale_ = 1;  ///< millimetres per unit
+    Point2 corner_;     ///< of the view box, in units
+    bool even_odd_root_ = false;
+    bool even_odd_ = false;     ///< of the current layer
+    std::string unknown_scale_; ///< a warning
     Point2 origin_; ///< origin of the part in Lamella's own files; in other files coordinates are relative to
                     ///< a corner of the part
     std::vector<Group> groups_;
@@ -462,6 +614,13 @@ class SvgReader {
                           "elements are no outlines; they were passed over"};
     CountedWarning transformed_{"element has transforms, which were not followed",
                                 "elements have transforms, which were not followed"};
+    CountedWarning reversed_{"contour ran against its type or fill rule; it was reversed",
+                             "contours ran against their type or fill rule; they were reversed"};
+    CountedWarning even_odd_left_{
+        "path has too many rings to find those that its fill rule makes holes; unite it "
+        "with `fill` evenodd",
+        "paths have too many rings to find those that their fill rule makes holes; unite "
+        "them with `fill` evenodd"};
     ReturningChains returning_;
     ReadLabels labels_;
     DroppedContours dropped_;

@@ -7,10 +7,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <random>
+#include <tuple>
 
 namespace lamella::layered_svg_cases {
 
@@ -156,6 +158,69 @@ TEST(ReadLayeredSvg, PolylinesAndPathsThatStayOpenAreChains) {
         const LayerFile file = read(svg("<g slic3r:z=\"0.5\">" + square + open + "</g>"));
         EXPECT_EQ(file.parts.at(0).layers[0].open_chains(), 1U);
         EXPECT_EQ(file.warnings, std::vector<std::string>{"1 contour is open (first at line 3)"});
+    }
+}
+
+TEST(ReadLayeredSvg, HolesAreHolesInWhateverDirectionTheyAreDrawn) {
+    const std::string turned = R"(<polygon slic3r:type="hole" points="2,2 4,2 4,4 2,4" />)";
+    const std::string path = R"(<path %d="M 1 1 L 1 9 L 9 9 L 9 1 z M 3 3 L 3 5 L 5 5 L 5 3 z"/>)";
+    const auto with = [](std::string text, const std::string& attribute) {
+        return text.replace(text.find('%'), 1, attribute);
+    };
+    const std::string even_odd = "fill-rule=\"evenodd\" ";
+    for (const auto& [group, content, area, reversed] :
+         {std::tuple("", square + turned, 96.0, true),
+          {"", square + hole, 96.0, false},
+          {"", with(path, even_odd), 60.0, true},
+          {"", with(path, "style=\"fill-rule: evenodd; x: y\" "), 60.0, true},
+          {even_odd.c_str(), with(path, ""), 60.0, true},
+          {"", with(path, ""), 68.0, false},
+          {even_odd.c_str(), with(path, "fill-rule=\"nonzero\" "), 68.0, false}}) {
+        const LayerFile file =
+            read(svg("<g slic3r:z=\"0.5\" " + std::string(group) + ">" + content + "</g>"));
+        EXPECT_DOUBLE_EQ(measure(file.parts.at(0).layers[0]).area_mm2, area) << content;
+        EXPECT_EQ(
+            file.warnings,
+            reversed
+                ? std::vector<std::string>{"1 contour ran against its type or fill rule; it was reversed "
+                                           "(first at line 3)"}
+                : std::vector<std::string>{})
+            << content;
+    }
+}
+
+TEST(ReadLayeredSvg, TheViewBoxGivesTheScale) {
+    const auto sized = [](const std::string& size) {
+        std::string bytes = svg("<g slic3r:z=\"0.5\">" + square + "<path d=\"M 1 1 H 2 V 2 H 1 Z\"/></g>");
+        const std::string plain = "width=\"10\" height=\"10\"";
+        return read(bytes.replace(bytes.find(plain), plain.size(), size));
+    };
+    for (const auto& [size, scale, corner] :
+         {std::tuple("width=\"10mm\" height=\"10mm\" viewBox=\"0 0 10 10\"", 1.0, 0.0),
+          {"width=\"100mm\" height=\"100mm\" viewBox=\"0 0 10 10\"", 10.0, 0.0},
+          {"width=\"1in\" height=\"1in\" viewBox=\"0 0 10 10\"", 2.54, 0.0},
+          {"width=\"1\" height=\"1\" viewBox=\"-5 -5 10 10\"", 0.1, -5.0},
+          {"height=\"2cm\" viewBox=\"0,0,10,10\"", 2.0, 0.0},
+          {"width=\"100%\" height=\"100%\" viewBox=\"0 0 10 10\"", 1.0, 0.0}}) {
+        const LayerFile file = sized(size);
+        EXPECT_TRUE(file.warnings.empty()) << size;
+        const Layer& layer = file.parts.at(0).layers[0];
+        EXPECT_NEAR(measure(layer).area_mm2, 99 * scale * scale, 1e-9) << size;
+        EXPECT_NEAR(layer.contour(0)[0].x, -corner * scale, 1e-12) << size;
+        EXPECT_NEAR(layer.contour(0)[0].y, -corner * scale, 1e-12) << size;
+        double top = 0; // y of paths is inverted: 1 is a unit below the top of a box that begins at 0
+        for (const Point2& p : layer.contour(1))
+            top = std::max(top, p.y);
+        EXPECT_NEAR(top, (9 + corner) * scale, 1e-9) << size;
+    }
+    for (const auto& [size, warning] :
+         {std::pair("width=\"8in\" height=\"8in\"", "the size of the document is in 'in', and no viewBox"),
+          {"width=\"20mm\" height=\"10mm\" viewBox=\"0 0 10 10\"", "no common scale of x and y"},
+          {"width=\"20mm\" height=\"20mm\" viewBox=\"0 0 0 10\"", "no common scale"}}) {
+        const LayerFile file = sized(size);
+        ASSERT_EQ(file.warnings.size(), 1U) << size;
+        EXPECT_NE(file.warnings[0].find(warning), std::string::npos) << file.warnings[0];
+        EXPECT_DOUBLE_EQ(measure(file.parts.at(0).layers[0]).area_mm2, 99);
     }
 }
 
