@@ -1,6 +1,7 @@
 #include "pipeline/plate_slicing.hpp"
 
 #include "lamella/polygon/boolean.hpp"
+#include "lamella/polygon/fill.hpp"
 
 #include "core/executor.hpp"
 #include "core/ordered_stage.hpp"
@@ -266,7 +267,9 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
     return report;
 }
 
-/// Returns the layers of the parts without the negative volumes. Layers that no negative volume touches are
+/// Returns the layers of the parts without the negative volumes. A part with negative volumes is united where
+/// its own bodies overlap, on all layers, because its area would otherwise count overlaps once on layers that
+/// a negative volume touches, and twice on the others. Other layers that no negative volume touches are
 /// unchanged, bit for bit. O(points), and what combining takes for each pair whose boxes meet.
 std::vector<Layer> without_negatives(std::span<const Layer> layers, std::span<const PlateNegative> negatives,
                                      const LayerLimits& limits) {
@@ -276,6 +279,14 @@ std::vector<Layer> without_negatives(std::span<const Layer> layers, std::span<co
     for (std::size_t i = 0; i < layers.size(); ++i)
         if (layers[i].rings > 0)
             boxes[i] = box_of(layers[i].points);
+    std::vector<bool> united(parts.size());
+    for (const PlateNegative& negative : negatives)
+        for (const std::size_t part : negative.parts)
+            if (!united[part]) {
+                united[part] = true;
+                if (Filled filled = fill(parts[part], FillRule::positive, limits); filled.groups_united != 0)
+                    parts[part] = std::move(filled.layer);
+            }
     for (std::size_t i = 0; i < negatives.size(); ++i) {
         const Layer& negative = layers[parts.size() + i];
         if (negative.rings == 0)
