@@ -7,6 +7,8 @@
 #include "write/float_contour.hpp"
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"
+#include "write/left_out.hpp"
+#include "write/quoted.hpp"
 #include "write/sequential_writer.hpp"
 #include "write/written_heights.hpp"
 
@@ -28,18 +30,8 @@ using Direction = CommonLayerDirection;
 
 constexpr int first_part = 1;
 
-// Returns the label in characters that all readers of this format accept. They differ on quotes, commas and
-// letters beyond ASCII.
-std::string label_text(std::string_view label) {
-    std::string text;
-    for (const char c : label) {
-        const bool harmless = c >= ' ' && c <= '~' && c != '"' && c != '$' && c != ',' && c != '/';
-        text += harmless ? c : '_';
-    }
-    return text;
-}
-
-constexpr Holds holds{.hatches = true, .gaps = false, .written_label = label_text};
+constexpr Holds common_layer_holds{
+    .hatches = true, .gaps = false, .written_label = common_layer_label, .labels_mark_vectors = true};
 
 // Returns the header in the order that the strictest readers require. It has no date, so that equal layers
 // give equal bytes.
@@ -49,7 +41,8 @@ std::string header(std::string_view coding, const LayerFileInfo& info, double un
     text += fmt::format("$$UNITS/{}\n", exact_decimal_text(units));
     text += "$$VERSION/200\n";
     for (std::size_t i = 0; i < info.parts.size(); ++i)
-        text += fmt::format("$$LABEL/{},\"{}\"\n", first_part + i, label_text(info.parts[i].label));
+        text += fmt::format("$$LABEL/{},\"{}\"\n", first_part + i,
+                            label_in_file(info.parts[i], common_layer_holds));
     text += "$$DIMENSION/";
     const Box3& box = info.box;
     for (const double v : {box.min.x, box.min.y, box.min.z, box.max.x, box.max.y, box.max.z})
@@ -133,7 +126,7 @@ class CommonLayerWriter : public SequentialWriter {
     // `precision` describes the precision of heights; `height_mm` is their unit in mm.
     CommonLayerWriter(const std::string& path, const LayerFileInfo& info, std::string_view header,
                       std::string precision, double height_mm)
-        : SequentialWriter(path, info, header, holds),
+        : SequentialWriter(path, info, header, common_layer_holds),
           heights_(std::move(precision), height_mm, rounding_loss()) {
         for (const PartInfo& part : info.parts)
             sequences_.push_back(part.exposure ? Sequence::kept : Sequence::nesting);

@@ -8,7 +8,9 @@
 #include "container/zip_writer.hpp"
 #include "write/decimal.hpp"
 #include "write/layer_writers.hpp"
+#include "write/left_out.hpp"
 #include "write/ordered_writer.hpp"
+#include "write/quoted.hpp"
 
 #include <fmt/format.h>
 
@@ -113,16 +115,20 @@ std::string parameters_text(const std::vector<Section>& sections) {
     return text;
 }
 
+constexpr Holds ilt_holds{.hatches = true,
+                          .gaps = false,
+                          .parameters = true,
+                          .written_label = common_layer_label,
+                          .labels_mark_vectors = true,
+                          .kept = kept_in_list,
+                          .not_kept = "jump speeds, delays and spot sizes"};
+
 class IltWriter final : public OrderedWriter {
   public:
     IltWriter(const std::string& path, const LayerFileInfo& info, const LayerWriteOptions& options)
-        : OrderedWriter(info, {.hatches = true,
-                               .gaps = false,
-                               .parameters = true,
-                               .kept = kept_in_list,
-                               .not_kept = "jump speeds, delays and spot sizes"}),
-          zip_(path, Overwriting::yes, info.memory), sections_(sections_of(info.parts)),
-          entries_(sections_.size()), units_(options.units_mm), short_form_(options.short_form) {
+        : OrderedWriter(info, ilt_holds), zip_(path, Overwriting::yes, info.memory),
+          sections_(sections_of(info.parts)), entries_(sections_.size()), units_(options.units_mm),
+          short_form_(options.short_form) {
         zip_.add(ilt_parameters, parameters_text(sections_));
         zip_.begin(sections_.front().name, ZipMethod::stored);
         for (std::size_t i = 0; i < sections_.size(); ++i)
@@ -226,6 +232,8 @@ class IltWriter final : public OrderedWriter {
                 known.label = known.exposure->label();
                 known.exposure->parameters = unknown_parameters(); // they are in the list
             }
+            known.label =
+                label_in_file(known, ilt_holds); // warnings of labels are those of the whole archive
             part_info.parts.push_back(std::move(known));
         }
         entry.writer = open_common_layer_binary({}, part_info, options);

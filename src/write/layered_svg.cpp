@@ -5,6 +5,7 @@
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"
+#include "write/left_out.hpp"
 #include "write/quoted.hpp"
 #include "write/sequential_writer.hpp"
 
@@ -66,18 +67,20 @@ constexpr std::string_view screen_style =
     "    polyline { stroke: red; vector-effect: non-scaling-stroke }\n"
     "  }</style>\n";
 
+constexpr Holds layered_svg_holds{.written_label = quotable, .labels_mark_vectors = true};
+
 class LayeredSvgWriter final : public SequentialWriter {
   public:
     LayeredSvgWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, header(info), {.written_label = quotable}),
-          origin_(steps_below(info.box.min)) {
+        : SequentialWriter(path, info, header(info), layered_svg_holds), origin_(steps_below(info.box.min)) {
         for (const PartInfo& part : info.parts)
             exposed_.push_back(part.exposure.has_value());
         if (info.parts.size() == 1 && info.parts.front().label == PartInfo{}.label)
             return;
         for (const PartInfo& part : info.parts)
             part_heads_.push_back(fmt::format("    <g data-lamella-part=\"{}\" data-lamella-label=\"{}\">\n",
-                                              part_heads_.size() + 1, xml_escaped(part.label)));
+                                              part_heads_.size() + 1,
+                                              xml_escaped(label_in_file(part, layered_svg_holds))));
     }
 
   private:

@@ -1,5 +1,6 @@
 #include "write/decimal.hpp"
 #include "write/layer_writers.hpp"
+#include "write/left_out.hpp"
 #include "write/quoted.hpp"
 #include "write/sequential_writer.hpp"
 
@@ -25,17 +26,18 @@ void put_numbers(std::span<const Point2> points, ByteBuffer& out) {
     out.end_at(at);
 }
 
+constexpr Holds layers_json_holds{.hatches = true, .written_label = quotable, .labels_mark_vectors = true};
+
 class LayersJsonWriter final : public SequentialWriter {
   public:
     LayersJsonWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, header(info), {.hatches = true, .written_label = quotable}) {}
+        : SequentialWriter(path, info, header(info), layers_json_holds) {}
 
   private:
     static std::string header(const LayerFileInfo& info) {
         std::string text = "{\"format\":\"lamella layers\",\"version\":1,\"units\":\"mm\",\"parts\":[";
-        for (const PartInfo& part : info.parts) {
-            text += fmt::format("{{\"label\":{}}},", json_quoted(part.label));
-        }
+        for (const PartInfo& part : info.parts)
+            text += fmt::format("{{\"label\":{}}},", json_quoted(label_in_file(part, layers_json_holds)));
         text.back() = ']';
         if (info.rule != PlaneRule::section_above)
             text += fmt::format(",\"rule\":\"{}\"", plane_rule_name(info.rule));

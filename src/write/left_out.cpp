@@ -1,5 +1,7 @@
 #include "write/left_out.hpp"
 
+#include "lamella/contour/exposure.hpp"
+
 #include "container/text_position.hpp"
 #include "contour/same_height.hpp"
 #include "core/counted.hpp"
@@ -31,6 +33,22 @@ bool loses_a_choice(const ParameterSet& set, const ParameterSet& kept) noexcept 
 
 } // namespace
 
+std::string label_in_file(const PartInfo& part, const Holds& holds) {
+    const auto written = [&](std::string_view label) {
+        return holds.written_label != nullptr ? holds.written_label(label) : std::string(label);
+    };
+    std::string label = written(part.label);
+    constexpr std::size_t longest = 4096; // readers cut off more
+    const bool marked = labelled_exposure(label).has_value() && label.size() <= longest;
+    if (!holds.labels_mark_vectors || marked == part.exposure.has_value())
+        return label;
+    if (!part.exposure)
+        return label + " part";
+    constexpr std::size_t kept = 1000; // less than readers cut off, even if each byte becomes \xNN
+    return fmt::format("{} {}", written(std::string_view(part.exposure->part).substr(0, kept)),
+                       part.exposure->name());
+}
+
 LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts) : holds_(holds) {
     for (const PartInfo& part : parts) {
         const bool known = part.exposure && !(part.exposure->parameters == unknown_parameters());
@@ -42,9 +60,7 @@ LeftOut::LeftOut(Holds holds, std::span<const PartInfo> parts) : holds_(holds) {
             ++supports_;
         if (part.label != PartInfo{}.label && labelled_++ == 0)
             first_labelled_ = part.label;
-        if (holds.written_label == nullptr)
-            continue;
-        if (std::string written = holds.written_label(part.label);
+        if (std::string written = label_in_file(part, holds);
             written != part.label && changed_labels_++ == 0) {
             first_label_ = part.label;
             first_written_ = std::move(written);
@@ -126,12 +142,16 @@ std::vector<std::string> LeftOut::warnings() const {
     say(holds_.open_chains, losses_.open_chains, "open contour was", "open contours were");
     say(holds_.hatches, losses_.hatches, "hatch line was", "hatch lines were");
     say(holds_.gaps, losses_.gaps, "gap or overlap of layers was", "gaps or overlaps of layers were");
-    if (changed_labels_ != 0)
+    if (changed_labels_ != 0) {
+        const std::string from = printable(first_label_, longest_label);
+        const std::string to = printable(first_written_, longest_label);
         lines.push_back(
-            fmt::format("{} changed, the first from \"{}\" to \"{}\": the format has no place for "
-                        "some of its characters, or for its length",
+            fmt::format("{} changed, {}: the format has no place for some of its characters or for "
+                        "its length, or would take it for the label of scan vectors",
                         counted(changed_labels_, "label was", "labels were"),
-                        printable(first_label_, longest_label), printable(first_written_, longest_label)));
+                        from != to ? fmt::format("the first from \"{}\" to \"{}\"", from, to)
+                                   : fmt::format("the first reads \"{}\" now", to)));
+    }
     if (!holds_.labels && labelled_ != 0)
         lines.push_back(fmt::format("{} not written, the first \"{}\": the format cannot hold labels",
                                     counted(labelled_, "label was", "labels were"),

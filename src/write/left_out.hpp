@@ -25,6 +25,8 @@ struct Holds {
     bool labels = true;      ///< of parts
     /// Returns the text of a label in the file; if null, the label is unchanged.
     std::string (*written_label)(std::string_view) = nullptr;
+    /// True if readers take a part for scan vectors if its label is that of an exposure.
+    bool labels_mark_vectors = false;
     /// True if the format marks supports, and for images, which do not distinguish parts. Supports among scan
     /// vectors are identified by their region.
     bool supports = false;
@@ -33,6 +35,11 @@ struct Holds {
     ParameterSet (*kept)(ParameterSet) = nullptr;
     std::string_view not_kept = {};
 };
+
+/// Returns the label of a part as the file has it. A label never changes what the part is: the label of
+/// contours gets a further word if it would be that of an exposure, and a long label of an exposure keeps its
+/// end.
+[[nodiscard]] std::string label_in_file(const PartInfo& part, const Holds& holds);
 
 /// Returns counts of the content of a plane that some formats cannot hold, except gaps and rounding.
 [[nodiscard]] WriteLosses losses_of_plane(const PlaneView& plane);

@@ -6,6 +6,7 @@
 #include "container/inflate.hpp"
 #include "container/zip_writer.hpp"
 #include "write/layer_writers.hpp"
+#include "write/left_out.hpp"
 #include "write/ordered_writer.hpp"
 #include "write/quoted.hpp"
 
@@ -64,11 +65,13 @@ constexpr std::uint64_t bytes_of_line = 4 * sizeof(double);
 /// Size of a hatch line with its layer and part.
 constexpr std::uint64_t bytes_of_hatch = bytes_of_line + 2 * sizeof(std::int64_t);
 
+constexpr Holds npz_holds{.hatches = true, .written_label = printable_label, .labels_mark_vectors = true};
+
 class NpzWriter final : public OrderedWriter {
   public:
     NpzWriter(const std::string& path, const LayerFileInfo& info)
-        : OrderedWriter(info, {.hatches = true, .written_label = printable_label}), labels_(info.parts),
-          rule_(info.rule), zip_(path, Overwriting::yes, info.memory) {
+        : OrderedWriter(info, npz_holds), labels_(info.parts), rule_(info.rule),
+          zip_(path, Overwriting::yes, info.memory) {
         zip_.begin("points.npy", ZipMethod::stored, header_size);
     }
 
@@ -191,7 +194,7 @@ class NpzWriter final : public OrderedWriter {
     void add_labels() {
         std::vector<std::u32string> labels;
         for (const PartInfo& part : labels_)
-            labels.push_back(characters(printable_label(part.label)));
+            labels.push_back(characters(label_in_file(part, npz_holds)));
         add_texts("labels", std::move(labels));
     }
 

@@ -41,6 +41,15 @@ std::string printable_label(std::string_view text) {
     return printable(text, longest);
 }
 
+std::string common_layer_label(std::string_view text) {
+    std::string label;
+    for (const char c : text) {
+        const bool harmless = c >= ' ' && c <= '~' && c != '"' && c != '$' && c != ',' && c != '/';
+        label += harmless ? c : '_';
+    }
+    return label;
+}
+
 std::string json_quoted(std::string_view text) {
     return '"' + escaped(text, {{'"', "\\\""}, {'\\', "\\\\"}}) + '"';
 }

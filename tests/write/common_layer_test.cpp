@@ -135,7 +135,8 @@ TEST(CommonLayer, CountsTheLabelsThatItChanged) {
         EXPECT_EQ(
             warnings({{"a,b", info.box}}),
             std::vector<std::string>{"1 label was changed, the first from \"a,b\" to \"a_b\": the format has "
-                                     "no place for some of its characters, or for its length"});
+                                     "no place for some of its characters or for its length, or would take "
+                                     "it for the label of scan vectors"});
         const auto two = warnings({{"x", info.box}, {"\xC3\xA4", info.box}, {"$", info.box}});
         ASSERT_EQ(two.size(), 1U);
         EXPECT_TRUE(two.front().starts_with("2 labels were changed, the first from \"\xC3\xA4\" to \"__\""))

@@ -1,3 +1,4 @@
+#include "lamella/read/layer_file.hpp"
 #include "lamella/write/layer_writer.hpp"
 
 #include "fixtures/expect_error.hpp"
@@ -107,6 +108,71 @@ TEST(LayerWriter, SaysWhichLabelsAreNotWrittenAsTheyAre) {
 bool says(const std::vector<std::string>& warnings, std::string_view text) {
     return std::any_of(warnings.begin(), warnings.end(),
                        [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+TEST(LayerWriter, LabelsNeverChangeWhatAPartIs) {
+    const TemporaryFolder folder;
+    const LayerStack layers = square_with_hole();
+    LayerFileInfo info = info_of(layers);
+    for (const char* format : {"cli", "cli-ascii", "svg", "json", "npz", "ilt"}) {
+        info.parts = {{.label = "x core hatch"}, {.label = "y"}, {.label = "core contour 2"}};
+        const std::vector<LayerStack> parts(3, layers);
+        const std::vector<std::string> warnings =
+            write_layers(folder.file("contours"), layer_format(format, ""), parts, info);
+        EXPECT_TRUE(
+            says(warnings, "1 label was changed, the first from \"x core hatch\" to \"x core hatch part\""))
+            << format;
+        const LayerFile contours = read_layers(folder.file("contours"));
+        ASSERT_EQ(contours.parts.size(), 3U) << format;
+        for (const LayerPart& part : contours.parts) {
+            EXPECT_EQ(part.exposure.has_value(), std::string_view(format) == "ilt")
+                << format << ": " << part.label;
+            EXPECT_TRUE(!part.exposure || part.exposure->kind == VectorKind::contour) << part.label;
+        }
+
+        // Vectors stay vectors, however long the name of their part is.
+        const Exposure exposure{
+            .part = std::string(5000, 'x'), .contour = 2, .parameters = unknown_parameters()};
+        info.parts = {{.label = exposure.label(), .exposure = exposure}};
+        std::vector<ScanVectors> planes(layers.size());
+        for (std::size_t i = 0; i < layers.size(); ++i)
+            planes[i].add(layers[i], {});
+        static_cast<void>(write_layers(folder.file("vectors"), layer_format(format, ""), planes, info));
+        const LayerFile vectors = read_layers(folder.file("vectors"));
+        ASSERT_TRUE(vectors.parts.at(0).exposure) << format;
+        EXPECT_EQ(vectors.parts[0].exposure->contour, 2U) << format;
+    }
+}
+
+TEST(LayerWriter, WarnsOfChangedLabelsOnceForAllFilesOfAnArchive) {
+    const TemporaryFolder folder;
+    const LayerStack layers = square_with_hole();
+    LayerFileInfo info = info_of(layers);
+    info.parts.clear();
+    std::vector<ScanVectors> planes(layers.size());
+    for (const char* part : {"a,1", "b,2", "c,3"}) {
+        const Exposure exposure{.part = part, .contour = 1, .parameters = unknown_parameters()};
+        info.parts.push_back({.label = exposure.label(), .exposure = exposure});
+        for (std::size_t i = 0; i < layers.size(); ++i)
+            planes[i].add(layers[i], {});
+    }
+    const std::vector<std::string> warnings =
+        write_layers(folder.file("a.ilt"), layer_format("ilt", ""), planes, info);
+    EXPECT_EQ(
+        std::count_if(warnings.begin(), warnings.end(),
+                      [](const std::string& warning) { return warning.find("label") != std::string::npos; }),
+        1);
+    EXPECT_TRUE(says(
+        warnings, "3 labels were changed, the first from \"a,1 core contour 1\" to \"a_1 core contour 1\""));
+}
+
+TEST(LayerWriter, ShowsALabelThatReadsAsItsEscapedForm) {
+    const TemporaryFolder folder;
+    const LayerStack layers = square_with_hole();
+    LayerFileInfo info = info_of(layers);
+    info.parts = {{.label = "new\nline"}};
+    EXPECT_TRUE(says(write_layers(folder.file("a.json"), layer_format("json", ""), layers, info),
+                     R"(1 label was changed, the first reads "new\x0aline" now)"));
 }
 
 TEST(LayerWriter, SaysWhichLabelsHaveNoPlace) {
