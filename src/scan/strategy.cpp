@@ -143,7 +143,7 @@ void check_strategy(const ScanStrategy& strategy) {
     check("support.hatch", strategy.support.hatch);
     if (!(strategy.accepted_mm2 >= 0 && std::isfinite(strategy.accepted_mm2)))
         throw Error(ErrorKind::usage,
-                    fmt::format("accepted_mm2 is {:g}, but has to be 0 or more", strategy.accepted_mm2));
+                    fmt::format("`accepted_mm2` is {:g}, but has to be 0 or more", strategy.accepted_mm2));
 }
 
 std::vector<Exposure> exposures(const ScanStrategy& strategy, const std::string& part) {

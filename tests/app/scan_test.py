@@ -344,6 +344,14 @@ class Scan(ProgramTest):
         self.succeed("slice", "open.stl", "part.stl", "--translate", "20,0,0", "-o", "two.npz", "--layer-height", "1")
         self.assertRegex(self.succeed("scan", "two.npz", "-o", "two.cli").err, r'left out in 5 of 5 layers of the part "open", first')
 
+    def test_an_accepted_area_that_is_no_area_is_refused_with_its_line(self):
+        self.box()
+        for value in "-1", "nan", "inf":
+            self.write("bad.toml", f"# areas\naccepted_mm2 = {value}\n")
+            for command in (["strategy", "check", "bad.toml"], ["slice", "box.stl", "--strategy", "bad.toml", "-o", "x.cli"]):
+                with self.subTest(value=value, command=command):
+                    self.fail_with(2, f"bad.toml:2: accepted_mm2 is {value}, but has to be 0 or more", *command)
+
     def test_material_that_no_vector_reaches_is_measured(self):
         self.write("wall.stl", binary_stl(box_triangles(0.08, 6, 4)))
         self.write("none.toml", '[contours]\nthin_walls = "leave out"\n')
