@@ -148,7 +148,7 @@ OptionGroup input_options(SliceArguments& target) {
     spacing.preset = exact(PlateInput{}.spacing_mm);
     group.options.push_back(std::move(spacing));
     group.options.push_back(text("label", "TEXT",
-                                 "its name in the slice file, instead of that of the file or its objects",
+                                 "its name in the slice file, instead of that of its object, or of the file",
                                  target.of_input.label));
     group.options.push_back(
         flag("support",
@@ -360,6 +360,16 @@ std::string summary(const FileJob& job, const FileResult& result) {
     return text;
 }
 
+/// Returns the names of the files that are read before the meshes, which may be pipes to which nobody writes.
+/// Without such files, returns `meshes`.
+std::string files_before(const std::string& meshes, const SliceArguments& arguments) {
+    std::vector<std::string> names;
+    for (const std::string& path : {arguments.layering.z_list, arguments.scanning.file})
+        if (!path.empty())
+            names.push_back(one_line(input_name(path)));
+    return names.empty() ? meshes : fmt::format("{}", fmt::join(names, " and "));
+}
+
 /// Returns the extension of a batch's outputs if `pattern` does not contain it; "" for formats of folders.
 std::string_view batch_extension(const SliceArguments& arguments) {
     if (arguments.output.empty() || has_placeholder(arguments.output))
@@ -389,7 +399,8 @@ int slice_batch(SliceArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     // Lists and strategies are read once, because they may come from pipes.
     FileJob model =
-        Deadline(arguments.timeout, one_line(input_name(arguments.batch.source)), context.messages, execution)
+        Deadline(arguments.timeout, files_before(one_line(input_name(arguments.batch.source)), arguments),
+                 context.messages, execution)
             .run([&](const Execution&) { return make_job(arguments); });
     check_conflict(model.shard.has_value(), true, "--batch and --shard", "share out the list instead");
     model.layer_statistics = true; // needed for the hashes
@@ -470,8 +481,11 @@ int run_slice(SliceArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     FileJob job;
     Json origin; // origin of a shard with a stamp
+    const std::string meshes = one_line(inputs_name(arguments.inputs));
+    Deadline deadline(arguments.timeout, files_before(meshes, arguments), context.messages, execution);
     const auto slice = [&](const Execution& run) -> std::optional<FileResult> {
         job = make_job(arguments);
+        deadline.note_input(meshes);
         if (job.shard && arguments.team != nullptr)
             throw Error(ErrorKind::usage, "--shard is for lamella: here the layers are shared out already");
         if (job.shard && !job.output.empty()) {
@@ -486,8 +500,6 @@ int run_slice(SliceArguments& arguments, const Context& context) {
             remove_stamp_without_output(job.output);
         return slice_file(job, run, processes);
     };
-    Deadline deadline(arguments.timeout, one_line(inputs_name(arguments.inputs)), context.messages,
-                      execution);
     const std::optional<FileResult> outcome = deadline.run(slice);
     deadline.note_output(job.output);
     if (!outcome) {

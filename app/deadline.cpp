@@ -40,6 +40,11 @@ Deadline::~Deadline() {
         watcher_.join();
 }
 
+void Deadline::note_input(std::string what) {
+    const std::lock_guard lock(mutex_);
+    what_ = std::move(what);
+}
+
 void Deadline::note_output(std::string output) {
     const std::lock_guard lock(mutex_);
     output_ = std::move(output);

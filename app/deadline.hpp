@@ -40,6 +40,8 @@ class Deadline {
         }
     }
 
+    /// Replaces the file that is being processed.
+    void note_input(std::string what);
     /// Must be called when the output is complete and only reporting remains. If the time is up before that
     /// ends, the program is ended as if it were stuck.
     void note_output(std::string output);

@@ -58,7 +58,7 @@ class Timeout(ProgramTest):
         def is_stopped(option):
             result = self.run_program("slice", "box.stl", "-o", "box.cli", "--timeout", "0.2", option, "pipe")
             self.assertEqual(result.code, 5, result.err)
-            self.assertIn("stopped after 0.2 s (--timeout)", result.err)
+            self.assertIn("pipe: stopped after 0.2 s (--timeout)", result.err)  # not of the mesh
             self.assertEqual(self.listing(), ["box.stl", "pipe"])
         for option in ["--z-list", "--config", "--strategy"]:
             with self.subTest(option):
