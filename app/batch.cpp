@@ -91,6 +91,14 @@ Json sliced(const BatchItem& item, const SliceItem& slice, const Execution& exec
         return record_of(item, result);
     } catch (...) {
         Failure failure = failure_of(std::current_exception());
+        // A link in a folder of others can lead to any file, whose text is no business of those who put it
+        // there.
+        std::error_code ignored;
+        if (failure.kind == "input" && fs::is_symlink(item.input, ignored))
+            failure.text =
+                fmt::format("{}: is a link, and what it leads to cannot be sliced; the reason is shown "
+                            "if the file is sliced alone",
+                            item.input);
         // Errors of a job with a single file may omit its name.
         if (failure.text.find(item.input) == std::string::npos)
             failure.text = fmt::format("{}: {}", item.input, failure.text);

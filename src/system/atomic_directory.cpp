@@ -17,6 +17,7 @@ namespace fs = std::filesystem;
 
 AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::path&)> may_remove)
     : path_(std::move(path)), may_remove_(std::move(may_remove)) {
+    check_links(path_);
     std::error_code error;
     if (!path_.empty())                               // standard libraries differ for an empty path
         target_ = fs::weakly_canonical(path_, error); // follows symbolic links, which are kept

@@ -109,6 +109,16 @@ Error output_error(const std::string& path, int system_error) {
     }
 }
 
+void check_links(const std::string& path) {
+    if (leads_through_foreign_link(path))
+        throw Error(
+            ErrorKind::output,
+            fmt::format("cannot write '{}': its path leads through a link that another user made in a "
+                        "folder that others can write; remove the link or choose another folder",
+                        path),
+            EPERM);
+}
+
 AtomicFile::AtomicFile(std::string path, Overwriting overwriting, std::string* memory)
     : path_(std::move(path)), memory_(memory) {
     if (memory_ != nullptr) {
@@ -124,6 +134,7 @@ AtomicFile::AtomicFile(std::string path, Overwriting overwriting, std::string* m
     }
     if (path_.empty())
         throw Error(ErrorKind::output, "cannot write a file without a name");
+    check_links(path_);
     OutputTarget target = find_target(path_);
     if (target.error != 0)
         fail(target.error);

@@ -26,6 +26,10 @@ namespace lamella {
 /// advice, in one line.
 [[nodiscard]] Error output_error(const std::string& path, int system_error);
 
+/// Throws Error{output} if the path leads through a link that another user planted (see
+/// leads_through_foreign_link).
+void check_links(const std::string& path);
+
 /// Specifies whether appended bytes may be overwritten later.
 enum class Overwriting : std::uint8_t { no, yes };
 

@@ -16,6 +16,11 @@ struct OutputTarget {
 };
 [[nodiscard]] OutputTarget find_target(const std::string& path);
 
+/// Returns whether the path leads through a symbolic link that another user made in a folder that others can
+/// write. Such a link could lead the output of this user to any of their files. Links that the owner of the
+/// folder made are trusted.
+[[nodiscard]] bool leads_through_foreign_link(const std::string& path);
+
 enum class Replaces : std::uint8_t {
     nothing,        ///< there is no file
     file,           ///< there is one

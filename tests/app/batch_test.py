@@ -79,6 +79,17 @@ class Batch(ProgramTest):
         self.write("list.txt", listed)
         self.assertEqual(len(self.batch(0, "list.txt", "--stats", "out")), listed.count("\n"))
 
+    @needs_posix("symbolic links")
+    def test_errors_do_not_quote_what_a_link_leads_to(self):
+        self.boxes("parts", 1)
+        self.write("secret", b"root:x:0:0\n")
+        self.path("parts/link.stl").symlink_to("../secret")
+        records = self.records(self.run_program("slice", "--batch", "parts", "-o", "out", "--format", "cli"))
+        self.assertEqual([record["ok"] for record in records], [True, False])
+        self.assertEqual(records[1]["error"]["exit_code"], 3)
+        self.assertIn("parts/link.stl: is a link, and what it leads to cannot be sliced", records[1]["error"]["text"])
+        self.assertNotIn("root", records[1]["error"]["text"])
+
     def test_files_that_fail_hold_up_nobody(self):
         self.boxes("parts", 4)
         self.write("parts/box00a.stl", b"no mesh at all")

@@ -21,6 +21,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <vector>
 
 namespace lamella::atomic_file_posix_cases {
@@ -173,6 +174,43 @@ TEST(AtomicFile, WritesThroughASymbolicLinkAndKeepsTheLink) {
     EXPECT_EQ(file_bytes(folder.path() / "real" / "other"), "made");
     fs::create_symlink("circle", folder.path() / "circle");
     EXPECT_TRUE(contains(output_error_of([&] { AtomicFile(folder.file("circle")); }), "circle"));
+}
+
+TEST(AtomicFile, FollowsNoLinkThatAnotherUserPlanted) {
+    if (geteuid() != 0)
+        GTEST_SKIP() << "only root makes links of other users";
+    constexpr uid_t other = 12345;
+    const TemporaryFolder folder;
+    const fs::path shared = folder.path() / "shared";
+    fs::create_directory(shared);
+    write_file(folder.path() / "target", "old");
+    fs::create_directory(folder.path() / "elsewhere");
+    fs::create_symlink("../target", shared / "link");
+    fs::create_symlink("../elsewhere", shared / "sub");
+    const auto own = [&](uid_t of_folder, uid_t of_links, mode_t mode) {
+        ASSERT_EQ(chown(shared.c_str(), of_folder, 0), 0);
+        ASSERT_EQ(chmod(shared.c_str(), mode), 0);
+        for (const char* name : {"link", "sub"})
+            ASSERT_EQ(lchown((shared / name).c_str(), of_links, 0), 0);
+    };
+    for (const mode_t mode : {01777U, 0777U, 0775U}) {
+        own(0, other, mode);
+        for (const char* name : {"link", "sub/new", "sub/../link"})
+            EXPECT_TRUE(contains(output_error_of([&] { write_whole_file((shared / name).string(), "new"); }),
+                                 "a link that another user made"))
+                << name;
+        EXPECT_EQ(file_bytes(folder.path() / "target"), "old");
+        EXPECT_TRUE(fs::is_empty(folder.path() / "elsewhere"));
+    }
+    // Own links, those of the owner of the folder, and those in folders of one user alone are followed.
+    for (const auto& [of_folder, of_links, mode] : {std::tuple(other, uid_t{0}, mode_t{0777}),
+                                                    {other, other, mode_t{0777}},
+                                                    {uid_t{0}, other, mode_t{0755}}}) {
+        own(of_folder, of_links, mode);
+        write_whole_file((shared / "link").string(), "new");
+        EXPECT_EQ(file_bytes(folder.path() / "target"), "new");
+        write_whole_file((folder.path() / "target").string(), "old");
+    }
 }
 
 TEST(AtomicFile, WritesSpecialFilesInPlace) {

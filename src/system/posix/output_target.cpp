@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <deque>
 #include <filesystem>
 #include <system_error>
 
@@ -12,6 +13,8 @@ namespace lamella {
 namespace fs = std::filesystem;
 
 namespace {
+
+constexpr int most_links = 40; // the limit of Linux
 
 // Returns whether a path, such as /dev/stdout, names a file that is already open. Such a file must not be
 // replaced, because its owner would no longer have it.
@@ -25,7 +28,6 @@ bool names_open_file(const fs::path& path) {
 // Follows a chain of symbolic links to its end, even if no file exists there.
 OutputTarget follow_links(const std::string& path) {
     fs::path current = path;
-    constexpr int most_links = 40; // the limit of Linux
     for (int i = 0; i < most_links; ++i) {
         if (names_open_file(current))
             return {.path = {}, .in_place = true};
@@ -41,7 +43,43 @@ OutputTarget follow_links(const std::string& path) {
     return {.path = {}, .error = ELOOP};
 }
 
+// Returns whether somebody else made a link with this status in the folder, and others can write there.
+bool is_foreign(const struct stat& link, const fs::path& folder) {
+    struct stat status {};
+    if (::stat(folder.empty() ? "." : folder.c_str(), &status) != 0)
+        return false; // writing fails, too
+    const bool others_write = (status.st_mode & (S_IWGRP | S_IWOTH)) != 0;
+    return others_write && link.st_uid != ::geteuid() && link.st_uid != status.st_uid;
+}
+
 } // namespace
+
+bool leads_through_foreign_link(const std::string& path) {
+    const fs::path whole = path;
+    std::deque<fs::path> rest(whole.begin(), whole.end());
+    fs::path at;
+    for (int links = 0; !rest.empty() && links <= most_links;) {
+        const fs::path next = at / rest.front();
+        rest.pop_front();
+        struct stat status {};
+        if (::lstat(next.c_str(), &status) != 0)
+            return false; // nothing is there yet
+        if (!S_ISLNK(status.st_mode)) {
+            at = next;
+            continue;
+        }
+        if (is_foreign(status, at))
+            return true;
+        std::error_code error;
+        const fs::path target = fs::read_symlink(next, error);
+        if (error)
+            return false;
+        ++links;
+        at = target.is_absolute() ? fs::path() : at;
+        rest.insert(rest.begin(), target.begin(), target.end());
+    }
+    return false;
+}
 
 OutputTarget find_target(const std::string& path) {
     struct stat status {};
