@@ -65,24 +65,41 @@ std::string result_line(std::string_view name, std::string_view value) {
 }
 
 std::string one_line(std::string_view text) {
-    return printable(text);
+    // Names in a message may be of any length, and what is found and expected stands after them.
+    constexpr std::size_t most = 2000;
+    std::string line = printable(text);
+    if (line.size() <= most)
+        return line;
+    const auto boundary = [&](std::size_t at) { // not within a character
+        while (at < line.size() && (static_cast<unsigned char>(line[at]) & 0xC0U) == 0x80U)
+            ++at;
+        return at;
+    };
+    return line.substr(0, boundary(most / 2)) + "..." + line.substr(boundary(line.size() - most / 2));
 }
 
 std::string compact_json(const Json& value) {
     // Names of files need not be UTF-8.
     const std::string text = value.dump(-1, ' ', false, Json::error_handler_t::replace);
-    // JSON requires escapes only for control characters below the space. Other ones occur in strings only,
-    // and are escaped here.
+    // JSON requires escapes only for control characters below the space. Other ones, and those of lines and
+    // of bidirectional text, occur in strings only, and are escaped here.
+    const auto byte = [&](std::size_t i) -> unsigned {
+        return i < text.size() ? static_cast<unsigned char>(text[i]) : 0;
+    };
     std::string result;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-        const auto code = static_cast<unsigned char>(text[i]);
-        const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : ' ');
-        if (code == 0x7f)
-            result += "\\u007f";
-        else if (code == 0xc2 && next < 0xa0)
-            result += fmt::format("\\u{:04x}", static_cast<unsigned char>(text[++i]));
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = byte(i) < 0x80 ? 1 : byte(i) < 0xe0 ? 2 : byte(i) < 0xf0 ? 3 : 4;
+        const std::string_view character = std::string_view(text).substr(i, length);
+        unsigned code = byte(i);
+        if (length == 2)
+            code = (code & 0x1fU) << 6 | (byte(i + 1) & 0x3fU);
+        else if (length == 3)
+            code = (code & 0xfU) << 12 | (byte(i + 1) & 0x3fU) << 6 | (byte(i + 2) & 0x3fU);
+        if (code != '\n' && length < 4 && code >= 0x7f && printable(character) != character)
+            result += fmt::format("\\u{:04x}", code);
         else
-            result += text[i];
+            result += character;
+        i += length;
     }
     return result;
 }

@@ -22,7 +22,7 @@ from typing import Any, Callable, Iterable, Literal, NoReturn, Optional, Protoco
 import numpy as np
 import numpy.typing as npt
 
-from ._errors import OutputError, UsageError, error_of
+from ._errors import OutputError, UsageError, error_of, printable
 
 
 class BinaryReader(Protocol):
@@ -60,8 +60,8 @@ MOST_QUOTED = 200  # characters of a value; the library quotes as many bytes
 
 
 def excerpt(value: object) -> str:
-    """Returns the value as text, truncated for errors."""
-    text = str(value)
+    """Returns the value as text in printable form, truncated for errors."""
+    text = printable(str(value)[: MOST_QUOTED + 1])
     return text if len(text) <= MOST_QUOTED else f"{text[:MOST_QUOTED]}..."
 
 
@@ -189,8 +189,11 @@ def label(name: str, value: Any) -> bytes:
 
 
 def is_file(value: Any) -> bool:
-    """Returns whether a value is what `source` takes: a path, bytes or a file object."""
-    return isinstance(value, (str, os.PathLike, bytes, bytearray, memoryview)) or callable(getattr(value, "read", None))
+    """Returns whether a value is what `source` takes: a path, bytes or a file object. Meshes of other packages may have
+    a method `read`, too, which takes a path."""
+    if isinstance(value, (str, os.PathLike, bytes, bytearray, memoryview)):
+        return True
+    return callable(getattr(value, "read", None)) and not any(hasattr(value, name) for name in ("points", "vertices", "vectors"))
 
 
 def source(name: str, value: Any) -> Source:

@@ -3,7 +3,30 @@
 import errno
 import functools
 import os
-from typing import Tuple, Type
+import re
+from typing import Match, Tuple, Type
+
+#: What terminals and editors do not show as a character: controls, line ends of Unicode, and marks that reverse text.
+_UNFIT = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+_BEGINNING, _END = 600, 600  # characters that a long text keeps
+
+
+def printable(text: str) -> str:
+    """Returns the text as one line without such characters: each of their bytes becomes \\xNN, as in the program."""
+
+    def escaped(found: Match[str]) -> str:
+        return "".join(f"\\x{byte:02x}" for byte in os.fsencode(found.group()))
+
+    try:
+        return _UNFIT.sub(escaped, text)
+    except UnicodeError:  # surrogates that no bytes of a file name lead to
+        return _UNFIT.sub("?", text)
+
+
+def one_line(text: str) -> str:
+    """Returns a message in printable form. Names in it may be of any length, so its middle is cut out if it is long."""
+    line = printable(text)
+    return line if len(line) <= _BEGINNING + _END else f"{line[:_BEGINNING]}...{line[-_END:]}"
 
 
 class Error(Exception):
@@ -11,6 +34,9 @@ class Error(Exception):
     found, and the content expected."""
 
     __module__ = "lamella"
+
+    def __init__(self, *arguments: object) -> None:
+        super().__init__(*(one_line(one) if isinstance(one, str) else one for one in arguments))
 
 
 class InternalError(Error):

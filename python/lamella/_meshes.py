@@ -54,8 +54,28 @@ class HasPoints(Protocol):
         """Whole numbers, for each triangle 3 and the indices of three rows of `points`: (4 m,)."""
 
 
+class HasCells(Protocol):
+    """Anything with points and cells by their type, such as a meshio.Mesh."""
+
+    @property
+    def points(self) -> Any:
+        """Positions: (n, 3) numbers."""
+
+    @property
+    def cells_dict(self) -> Any:
+        """Indices of rows of `points` for each cell; those of the type "triangle" are used: (m, 3) whole numbers."""
+
+
+class HasVectors(Protocol):
+    """Anything with the corners of triangles, such as a stl.mesh.Mesh of numpy-stl."""
+
+    @property
+    def vectors(self) -> Any:
+        """Corners of triangles: (m, 3, 3) numbers."""
+
+
 MeshLike = Union[
-    Readable, Mesh, HasFaces, HasTriangles, HasPoints, Tuple[npt.ArrayLike, npt.ArrayLike], npt.NDArray[Any]
+    Readable, Mesh, HasFaces, HasTriangles, HasPoints, HasCells, HasVectors, Tuple[npt.ArrayLike, npt.ArrayLike], npt.NDArray[Any]
 ]
 
 
@@ -196,8 +216,42 @@ def _arrays_of(name: str, thing: Any) -> Optional[Tuple[Any, Any]]:
         found = _attribute(thing, positions), _attribute(thing, triangles)
         if found[0] is not None and found[1] is not None:
             return found
-    points, faces = _attribute(thing, "points"), _attribute(thing, "faces")
-    return None if points is None or faces is None else (points, _without_counts(name, faces))
+    points, faces, cells = (_attribute(thing, one) for one in ("points", "faces", "cells_dict"))
+    if points is not None and faces is not None:
+        return points, _without_counts(name, faces)
+    if points is not None and cells is not None:
+        return points, _triangles_of_cells(name, cells)
+    vectors = _attribute(thing, "vectors")
+    if vectors is not None and np.ndim(vectors) == 3:
+        corners = np.asarray(vectors)
+        return corners.reshape(-1, 3), np.arange(len(corners) * 3).reshape(-1, 3)
+    return _arrays_of_vtk(name, thing)
+
+
+def _triangles_of_cells(name: str, cells: Any) -> Any:
+    """Returns the triangles of a dict of cells by their type. Lines and vertices bound no solid and are ignored."""
+    others = sorted(check.excerpt(kind) for kind in cells if kind not in ("triangle", "line", "vertex"))
+    if others or "triangle" not in cells:
+        raise UsageError(
+            f"{name}: cells: expected triangles, found {', '.join(others) or 'none'}; take the triangles of the surface alone"
+        )
+    return cells["triangle"]
+
+
+def _arrays_of_vtk(name: str, thing: Any) -> Optional[Tuple[Any, Any]]:
+    """Returns points and triangles of a vtkPolyData; None for anything else."""
+    if not all(callable(_attribute(thing, method)) for method in ("GetPoints", "GetPolys", "GetNumberOfStrips")):
+        return None
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    polygons = thing.GetPolys()
+    corners = vtk_to_numpy(polygons.GetConnectivityArray())
+    if thing.GetNumberOfStrips() or len(corners) != 3 * polygons.GetNumberOfCells() or polygons.GetMaxCellSize() > 3:
+        raise UsageError(f"{name}: faces of more than three corners and strips must be cut into triangles first (vtkTriangleFilter)")
+    points = thing.GetPoints()
+    if points is None:
+        raise InputError(f"{name}: holds no triangle")
+    return vtk_to_numpy(points.GetData()), corners.reshape(-1, 3)
 
 
 def _without_counts(name: str, faces: Any) -> Any:
@@ -283,7 +337,8 @@ def inspect(
 
     part: a path, bytes, or a file object that is open for reading bytes; a Mesh, a pair of arrays (vertices (n, 3) in
         millimetres, faces (m, 3)), an array of triangles (m, 3, 3), or anything with .vertices and .faces, .vertices and
-        .triangles, or .points and .faces, such as a trimesh.Trimesh, a mesh of Open3D, or a PolyData of PyVista.
+        .triangles, .points and .faces, .points and .cells_dict, or .vectors, such as a trimesh.Trimesh, a mesh of Open3D,
+        PyVista, meshio or numpy-stl, or a vtkPolyData.
     self_intersections: looks for triangles that cross, overlap or touch one another, too, which takes longer.
     keep: largest number of locations of each kind; the counts are complete.
     unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.

@@ -316,6 +316,8 @@ def as_strategy(name: str, strategy: StrategyLike) -> ScanStrategy:
         found = copy.copy(strategy)
     elif isinstance(strategy, Mapping):
         found = _from_tables(name, strategy)
+    elif isinstance(strategy, str) and "\n" in strategy:
+        raise UsageError(f"{name}: expected the path of a file, found a text of several lines; give a text in TOML as bytes: text.encode()")
     elif check.is_file(strategy):
         path, text = check.content(name, strategy)
         found = _from_tables(path, _toml(path, text))

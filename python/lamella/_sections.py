@@ -39,7 +39,8 @@ class Slicer:
 
     part: a path, bytes, or a file object that is open for reading bytes; a Mesh, a pair of arrays (vertices (n, 3) in
         millimetres, faces (m, 3)), an array of triangles (m, 3, 3), or anything with .vertices and .faces, .vertices and
-        .triangles, or .points and .faces, such as a trimesh.Trimesh, a mesh of Open3D, or a PolyData of PyVista.
+        .triangles, .points and .faces, .points and .cells_dict, or .vectors, such as a trimesh.Trimesh, a mesh of Open3D,
+        PyVista, meshio or numpy-stl, or a vtkPolyData.
     rule: what a plane through vertices cuts: "section_above" is the section just above the plane, "section_below" the
         one just below it.
     unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.

@@ -72,7 +72,8 @@ def slice(
 
     part: a path, bytes, or a file object that is open for reading bytes; a Mesh, a pair of arrays (vertices (n, 3) in
         millimetres, faces (m, 3)), an array of triangles (m, 3, 3), or anything with .vertices and .faces, .vertices and
-        .triangles, or .points and .faces, such as a trimesh.Trimesh, a mesh of Open3D, or a PolyData of PyVista.
+        .triangles, .points and .faces, .points and .cells_dict, or .vectors, such as a trimesh.Trimesh, a mesh of Open3D,
+        PyVista, meshio or numpy-stl, or a vtkPolyData.
         A Part, or a list of them, is a plate: all parts are cut at the same heights, and stay apart in Stack.parts and
         Layer.parts.
     layer_height: thickness of a layer in millimetres, stacked from the bottom of the part; 0.1 by default.

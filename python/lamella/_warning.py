@@ -6,7 +6,7 @@ import sys
 import warnings
 from typing import Iterable, Type
 
-from ._errors import DefectWarning
+from ._errors import DefectWarning, one_line
 
 
 #: Names in Python for fields that texts of the library mention.
@@ -35,4 +35,4 @@ def warn(texts: Iterable[str], category: Type[Warning] = DefectWarning) -> None:
         frame = frame.f_back
         level += 1
     for text in texts:
-        warnings.warn(with_arguments(text), category, stacklevel=level)
+        warnings.warn(one_line(with_arguments(text)), category, stacklevel=level)

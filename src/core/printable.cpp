@@ -30,6 +30,27 @@ std::size_t utf8_length(std::string_view text, std::size_t i) {
     return 0;
 }
 
+/// Returns whether the well-formed sequence at i is a control character or another one that changes how its
+/// neighbours are shown: U+0080 to U+009F, which are control characters, too; the line ends U+2028 and
+/// U+2029; and the controls of bidirectional text, with which a name can pretend to be another one.
+bool is_unfit(std::string_view text, std::size_t i, std::size_t length) {
+    const unsigned lead = byte_at(text, i);
+    const unsigned second = byte_at(text, i + 1);
+    const unsigned third = byte_at(text, i + 2);
+    if (length == 1)
+        return lead < 0x20 || lead == 0x7F;
+    if (length == 2)
+        return (lead == 0xC2 && second < 0xA0) || (lead == 0xD8 && second == 0x9C); // U+061C
+    if (length != 3)
+        return false;
+    if (lead == 0xE2 && second == 0x80)
+        return third == 0x8E || third == 0x8F ||
+               (third >= 0xA8 && third <= 0xAE); // U+200E, F, U+2028 to U+202E
+    if (lead == 0xE2 && second == 0x81)
+        return third >= 0xA6 && third <= 0xA9;              // U+2066 to U+2069
+    return lead == 0xEF && second == 0xBF && third >= 0xBE; // U+FFFE and U+FFFF, which XML forbids
+}
+
 } // namespace
 
 bool is_utf8(std::string_view text) noexcept {
@@ -48,12 +69,9 @@ std::string printable(std::string_view text, std::size_t max_bytes) {
     for (std::size_t i = 0; i < text.size();) {
         const std::size_t length = utf8_length(text, i);
         const unsigned lead = byte_at(text, i);
-        // U+0080 to U+009F are control characters, too. U+FFFE and U+FFFF are not, but XML forbids them.
-        const bool control = lead < 0x20 || lead == 0x7F || (lead == 0xC2 && byte_at(text, i + 1) < 0xA0);
-        const bool none = length == 3 && text.substr(i, 3) >= "\xEF\xBF\xBE" && lead == 0xEF;
         if (i + std::max<std::size_t>(length, 1) > max_bytes)
             return line + "...";
-        if (length != 0 && !control && !none) {
+        if (length != 0 && !is_unfit(text, i, length)) {
             line += text.substr(i, length);
             i += length;
         } else {

@@ -23,6 +23,16 @@ TEST(Printable, ShowsWhatIsNotTextAsBytes) {
     EXPECT_EQ(printable("\xC0\xAF\xED\xA0\x80", 100), "\\xc0\\xaf\\xed\\xa0\\x80") << "overlong, surrogate";
 }
 
+TEST(Printable, ShowsControlsOfLinesAndOfTheDirectionOfTextAsBytes) {
+    EXPECT_EQ(printable("part\xE2\x80\xAEgpj.stl"), "part\\xe2\\x80\\xaegpj.stl");
+    for (const char* control : {"\xD8\x9C", "\xE2\x80\x8E", "\xE2\x80\x8F", "\xE2\x80\xA8", "\xE2\x80\xA9",
+                                "\xE2\x80\xAA", "\xE2\x81\xA6", "\xE2\x81\xA9"})
+        EXPECT_NE(printable(control), control);
+    for (const char* other : {"\xD8\x9B", "\xD9\x9C", "\xE2\x80\x8D", "\xE2\x80\x90", "\xE2\x80\xA7",
+                              "\xE2\x80\xAF", "\xE2\x81\xA5", "\xE2\x81\xAA", "\xE2\x82\xA8"})
+        EXPECT_EQ(printable(other), other);
+}
+
 TEST(Utf8, IsWhatIsWellFormed) {
     for (const char* text :
          {"", "a", "\xC3\xA4", "\xE2\x82\xAC", "\xF0\x9F\x99\x82", "\x01\x7f\xC2\x85", "\xEF\xBF\xBF"})

@@ -6,6 +6,7 @@ import os
 import pickle
 import subprocess
 import sys
+import warnings
 from decimal import Decimal
 from fractions import Fraction
 
@@ -34,9 +35,9 @@ def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     lamella.write("box.stl", lamella.Mesh(*box_arrays()))
     lamella.write("box.json", stack())
-    scanned = list(lamella.scan(stack()))
-    names = [f"box {exposure.name}" for exposure in scanned[0].exposures]
-    lamella.write("job.cli", [lamella.Stack([s.layers[k] for s in scanned], name) for k, name in enumerate(names)])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", lamella.DefectWarning)  # the format has no place for powers and speeds
+        lamella.write("job.cli", list(lamella.scan(stack(), part="box")))
     (tmp_path / "folder").mkdir()
     return tmp_path
 
@@ -411,3 +412,39 @@ except lamella.LimitError as error:
     result = subprocess.run([sys.executable, "-B", "-c", code], env={"PYTHONPATH": PACKAGE}, capture_output=True,
                             text=True, check=True)
     assert result.stdout.startswith("memory ran out")
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda text: lamella.slice(box_arrays(), 5, at=text),
+        lambda text: lamella.Part(box_arrays(), role=text),
+        lambda text: lamella.read(text),
+        lambda text: lamella.read_layers(f"{text}.cli"),
+        lambda text: lamella.scan(stack(), text),
+        lambda text: lamella.scan(stack(), {text: 1}),
+        lambda text: lamella.write(f"no folder/{text}.cli", stack()),
+    ],
+)
+def test_errors_are_one_short_line_that_a_terminal_shows_as_it_is(folder, call):
+    for text in "a\x1b[31mb", "a\u202egpj", "a\u2028b", "a\x9bb", "a\r" + "x" * 100_000, ("x" * 250 + "/") * 400:
+        with pytest.raises((lamella.Error, TypeError, OSError)) as error:
+            call(text)
+        shown = str(error.value)
+        assert shown.isprintable(), repr(shown)
+        assert len(shown) < 2000
+
+
+def test_a_text_of_a_strategy_is_no_path(folder):
+    with pytest.raises(lamella.UsageError, match="found a text of several lines; give a text in TOML as bytes"):
+        lamella.scan(stack(), lamella.ScanStrategy().to_toml())
+
+
+def test_warnings_are_lines_that_a_terminal_shows_as_it_is(tmp_path):
+    path = tmp_path / "a\x1b\u202e.stl"
+    lamella.write(path, lamella.Mesh(*box_arrays()))
+    with open(path, "ab") as file:
+        file.write(b"more")
+    with pytest.warns(lamella.DefectWarning) as found:
+        lamella.read_mesh(path)
+    assert all(str(one.message).isprintable() for one in found)
