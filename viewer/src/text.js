@@ -40,11 +40,21 @@ const rounded = (value, digits) => new Intl.NumberFormat('en', { maximumFraction
 const noise = 1e-9; // mm: what sums leave where there should be 0
 const finest = 12; // digits after the point
 
+/** What a file that keeps single precision meant: 53.1 for 53.099998474. */
+function meant(value) {
+  const short = Number(value.toPrecision(7)); // a float has no more digits
+  return Math.fround(short) === value ? short : value;
+}
+
 /** Heights and lengths: to a millionth, so that the last digits that sums leave are gone, or four digits that matter. */
-export function mm(value) {
+export function mm(exact) {
+  const value = meant(exact);
   if (Math.abs(value) < noise) return '0';
   return rounded(value, Math.min(finest, Math.max(6, 3 - Math.floor(Math.log10(Math.abs(value))))));
 }
+
+/** A coordinate of a place, with as many digits as `lamella info` writes: 1,353.22. */
+export const position = (value) => new Intl.NumberFormat('en', { maximumSignificantDigits: 6 }).format(Math.abs(value) < noise ? 0 : value);
 
 /** A coordinate under the pointer: to a thousandth, or further where a pixel is as small as `pixel` mm. */
 export const coordinate = (value, pixel) => rounded(value, Math.min(finest, Math.max(3, Math.ceil(-Math.log10(pixel)))));

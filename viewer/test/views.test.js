@@ -6,10 +6,11 @@ import { layerInAddress } from '../src/address.js';
 import { Camera } from '../src/layer/camera.js';
 import { roundStep } from '../src/layer/round_step.js';
 import { levelsOf } from '../src/stack/levels.js';
+import { middleOf } from '../src/panels/panels.js';
 import { Walls, lineKinds, linesOfRow, spacingFor } from '../src/stack/walls.js';
 import { Store } from '../src/store.js';
 import { LayerAxis, columnsOf, drawTicks } from '../src/timeline/plot.js';
-import { brief, coordinate, counted, duration, layerNumber, layerNumbers, mm, withBriefMeasures } from '../src/text.js';
+import { brief, coordinate, counted, duration, layerNumber, layerNumbers, mm, position, withBriefMeasures } from '../src/text.js';
 
 test('stacks of more layers than a call takes arguments are summed up and plotted', () => {
   const n = 300_000;
@@ -21,6 +22,17 @@ test('stacks of more layers than a call takes arguments are summed up and plotte
   const drawn = [];
   drawTicks({ clearRect() {}, fillRect: (...box) => drawn.push(box) }, page.table.open_chains, new LayerAxis(n, 300), 22, 'red');
   assert.deepEqual(drawn, [[7, 0, 2, 19]]);
+});
+
+test('heights that a file keeps in single precision are shown as they were meant', () => {
+  for (const [meant, text] of [[53.1, '53.1'], [0.05, '0.05'], [1234.567, '1,234.567'], [0.5, '0.5']]) assert.equal(mm(Math.fround(meant)), text);
+  assert.equal(mm(53.0999999), '53.1');
+  assert.equal(mm(53.099998), '53.099998');
+});
+
+test('a place is the middle of the box of its points, with the digits of the program', () => {
+  const rim = { points: [[-500, 1300, 150], [-500, 1406.44, 213.398], [-500, 1405, 212], [-500, 1404, 211]] };
+  assert.deepEqual(middleOf(rim).map(position), ['-500', '1,353.22', '181.699']);
 });
 
 test('a camera fits, zooms about a pixel and moves', () => {

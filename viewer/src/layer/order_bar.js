@@ -66,7 +66,8 @@ export class OrderBar {
 
   #timeText(seconds) {
     const all = this.#page.table.build_seconds[this.#number];
-    return all > 0 ? `${duration(seconds)} of ${duration(all)}` : '';
+    // Sums of rounded times may be a little more than all.
+    return all > 0 ? `${duration(Math.min(seconds, all))} of ${duration(all)}` : '';
   }
 
   /** Where vectors are missing, nobody knows when the others are executed. */

@@ -1,7 +1,8 @@
 import { bodiesOf, hasMaterial, hasVectors, isVectors, switchGroup } from '../data/exposures.js';
 import { element } from '../element.js';
+import { largest, least } from '../extremes.js';
 import { icon } from '../icon.js';
-import { brief, count, counted, duration, layerNumber, mm, withBriefMeasures } from '../text.js';
+import { brief, count, counted, duration, layerNumber, mm, position, withBriefMeasures } from '../text.js';
 import { faultText, findings, gapText, hasHatches, isTold, remarkableLayers, totals, widestGaps, worstLayers } from '../findings.js';
 
 /** The column beside the drawings: what is known, in words and figures. */
@@ -143,12 +144,15 @@ function byKind(places) {
   return kinds;
 }
 
-/** The middle of a place's points. */
+/** The middle of the box around a place's points, as `lamella info` reports it. */
 export function middleOf({ points }) {
-  return [0, 1, 2].map((k) => points.reduce((total, p) => total + p[k], 0) / points.length);
+  return [0, 1, 2].map((k) => {
+    const values = points.map((p) => p[k]);
+    return (least(values) + largest(values)) / 2;
+  });
 }
 
-const at = (place) => `(${middleOf(place).map(brief).join(', ')})`;
+const at = (place) => `(${middleOf(place).map(position).join(', ')})`;
 
 /** The shells, each a button. @param {(shell: number|null, box?: number[][]) => void} show */
 function shellsCard({ head }, store, show) {
