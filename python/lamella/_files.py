@@ -31,7 +31,7 @@ ASKED_OF_FORMATS = {
     "fade_layers": "exposure",
 }
 # Formats that store the heights of layers unchanged, or no heights. They accept layers without thickness.
-WITHOUT_THICKNESS = ("json", "npz", "dxf", "geojson", "svg-layers", "png", "png-zip")
+WITHOUT_THICKNESS = ("json", "npz", "raw", "dxf", "geojson", "svg-layers", "png", "png-zip")
 MOST_PIXELS = 65535
 MOST_ANTIALIAS = 64
 

@@ -30,6 +30,8 @@ OpenLayerWriter open_layered_svg;
 OpenLayerWriter open_svg_layers;
 /// All data of layers, as JSON.
 OpenLayerWriter open_layers_json;
+/// Raw arrays of one layer after the other, for programs that read them from a pipe.
+OpenLayerWriter open_raw;
 /// NumPy arrays in a zip archive, as numpy.load reads them.
 OpenLayerWriter open_npz;
 /// Open Vector Format, of Digital Production Aachen: messages of Protocol Buffers, with tables of their
