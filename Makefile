@@ -79,7 +79,7 @@ ci-windows: packages-windows
 	$(call suites,build-windows,system,processes)
 
 ci-web: packages-ci web
-	tests/web/run.sh build package_test.mjs browser_test.mjs
+	tests/web/run.sh build api_test.mjs preview_test.mjs package_test.mjs browser_test.mjs
 
 test-all: test-large test-asan test-tsan test-arm64 test-windows test-macos test-shared test-web fresh  ## run the long suites: large programs, sanitizers, ARM64, Windows, macOS, web, fresh
 
@@ -192,7 +192,7 @@ web: packages packages-viewer  ## build the npm package and the playground: buil
 	cmake --build build-web --target lamella_playground
 
 test-web: web build packages-all
-	tests/web/run.sh build package_test.mjs layer_hashes_test.mjs browser_test.mjs sample_test.mjs
+	tests/web/run.sh build api_test.mjs preview_test.mjs package_test.mjs layer_hashes_test.mjs browser_test.mjs sample_test.mjs
 
 fuzz: packages-all  ## fuzz readers and strategies, each for MINUTES (default 10); writes findings to out/fuzz/
 	cmake --preset fuzz

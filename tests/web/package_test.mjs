@@ -12,7 +12,7 @@ process.env.SOURCE_DATE_EPOCH = '0';
 const program = process.env.LAMELLA_PROGRAM;
 const packageFolder = process.env.LAMELLA_PACKAGE;
 const lamella = await import(pathToFileURL(join(packageFolder, 'node.js')).href);
-const { LamellaError, Mesh, Stack, diagnose, makeBody, readFile, readLayers, readMesh, run, slice, sliceLayers, sliceToFile, view, writeLayers } = lamella;
+const { LamellaError, Mesh, Stack, diagnose, makeBody, meshOf, readFile, readLayers, readMesh, run, slice, sliceLayers, sliceToFile, view, writeLayers } = lamella;
 
 const folder = mkdtempSync(join(tmpdir(), 'lamella-web-'));
 after(() => rmSync(folder, { recursive: true, force: true }));
@@ -55,19 +55,112 @@ for (const [body, options, layerHeight] of bodies)
     assert.deepEqual(mesh.box, expected.input.bbox);
   });
 
+/** A bipyramid of so many vertices: its vertices and triangles. */
+function bipyramid(vertices) {
+  const around = vertices - 2;
+  const ring = Array.from({ length: around }, (_, i) => [10 * Math.cos((2 * Math.PI * i) / around), 10 * Math.sin((2 * Math.PI * i) / around), 0]);
+  const faces = ring.flatMap((_, i) => [[i, (i + 1) % around, around], [(i + 1) % around, i, around + 1]]);
+  return { points: [...ring, [0, 0, 10], [0, 0, -10]], faces };
+}
+
+/** A file of it, in a format whose vertices are doubles. */
+const offOf = ({ points, faces }) =>
+  `OFF\n${points.length} ${faces.length} 0\n${points.map((p) => p.join(' ')).join('\n')}\n${faces.map((f) => `3 ${f.join(' ')}`).join('\n')}\n`;
+
 test('rotated meshes of any number of vertices have the layers of the program', async () => {
   for (const vertices of [7, 8, 9, 10, 11]) {
-    // A bipyramid, in a format whose vertices are doubles.
-    const around = vertices - 2;
-    const ring = Array.from({ length: around }, (_, i) => [10 * Math.cos((2 * Math.PI * i) / around), 10 * Math.sin((2 * Math.PI * i) / around), 0]);
-    const faces = ring.flatMap((_, i) => [[i, (i + 1) % around, around], [(i + 1) % around, i, around + 1]]);
-    const text = `OFF\n${vertices} ${faces.length} 0\n${[...ring, [0, 0, 10], [0, 0, -10]].map((p) => p.join(' ')).join('\n')}\n${faces.map((f) => `3 ${f.join(' ')}`).join('\n')}\n`;
+    const text = offOf(bipyramid(vertices));
     writeFileSync(join(folder, 'bipyramid.off'), text);
     native('slice', 'bipyramid.off', '--stats', 'bipyramid.json', '--layer-height', '0.5', '--rotate', '25,40,10');
     const stack = await slice(await readMesh(text, 'bipyramid.off'), { layerHeight: 0.5, rotate: [25, 40, 10] });
     const expected = JSON.parse(readFileSync(join(folder, 'bipyramid.json'), 'utf8')).layers.map(({ hash }) => hash);
     assert.deepEqual(stack.layers.map(({ hash }) => hash), expected, `${vertices} vertices`);
   }
+});
+
+test('a mesh of arrays has the layers of a file of the same numbers', async () => {
+  const { points, faces } = bipyramid(9);
+  const text = offOf({ points, faces });
+  const hashes = async (mesh) => (await slice(mesh, { layerHeight: 0.5, rotate: [25, 40, 10] })).layers.map(({ hash }) => hash);
+  const expected = await hashes(await readMesh(text, 'bipyramid.off'));
+  const [positions, indices] = [points.flat(), faces.flat()];
+  assert.deepEqual(await hashes(await meshOf(positions, indices)), expected);
+  assert.deepEqual(await hashes(await meshOf(Float64Array.from(positions), Uint16Array.from(indices))), expected);
+  assert.deepEqual(await hashes(await meshOf(indices.flatMap((i) => points[i]))), expected);
+  const single = Float32Array.from(positions);
+  assert.deepEqual(await hashes(await meshOf(single, Uint32Array.from(indices))), await hashes(await meshOf(Array.from(single), indices)));
+  const mesh = await meshOf(single, indices, { name: 'pyramid', unit: 'cm' });
+  assert.deepEqual([mesh.name, mesh.triangles, mesh.box[1][2]], ['pyramid.ply', faces.length, 100]);
+  const plate = await slice([mesh, { mesh, translate: [300, 0, 0] }], { layerHeight: 50 });
+  for (const label of plate.labels) assert.match(label, /^pyramid/);
+});
+
+test('arrays that are no mesh are refused with the number that is wrong', async () => {
+  for (const [positions, indices, message] of [
+    [[0, 0, 0, 1], [], /4 positions/],
+    [[0, 0, 0], [0, 0], /2 indices/],
+    [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 3], /index 2 is 3, but the vertices are 0 to 2/],
+    [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, -1], /index 2 is -1/],
+    [[0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 1.5], /index 2 is 1.5/],
+    [[0, 0, 0, 1, 0, 0], undefined, /2 vertices/],
+  ])
+    await assert.rejects(meshOf(positions, indices), { name: 'LamellaError', kind: 'usage', message });
+  await assert.rejects(meshOf([NaN, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2]), { name: 'LamellaError', kind: 'input' });
+  await assert.rejects(meshOf({ length: 9 }, [0, 1, 2]), TypeError);
+  await assert.rejects(meshOf(new ArrayBuffer(36)), TypeError);
+});
+
+test('a mesh keeps the options with which it was read', async () => {
+  const { bytes } = await makeBody('box', { size: 1 });
+  const inches = await readMesh(bytes, 'box.stl', { unit: 'inch' });
+  assert.equal(inches.box[1][2], 25.4);
+  const top = async (meshes, options) => (await slice(meshes, { layerHeight: 1, ...options })).layers.at(-1).top;
+  assert.ok(Math.abs((await top(inches)) - 25.4) <= 1);
+  assert.ok(Math.abs((await top([inches, { mesh: inches, translate: [50, 0, 0] }])) - 25.4) <= 1);
+  assert.ok(Math.abs((await top(inches, { unit: 'cm' })) - 10) <= 1);
+  assert.ok(Math.abs((await diagnose(inches)).volume_mm3 - 25.4 ** 3) < 1e-6);
+});
+
+test('what is no mesh or was disposed of is refused by name', async () => {
+  const box = await makeBody('box');
+  const stack = await slice(box, { layerHeight: 5 });
+  for (const [wrong, found] of [[{}, 'object'], [stack, 'a Stack'], [null, 'null'], [undefined, 'undefined'], [box.bytes, 'object'], [[{ mesh: stack }], 'a Stack']])
+    for (const call of [slice, (one) => sliceToFile(one, 'cli'), (one) => sliceLayers(one).next()])
+      await assert.rejects(call(wrong), { name: 'TypeError', message: new RegExp(`takes a Mesh, not ${found}`) });
+  await assert.rejects(writeLayers(box, 'cli'), { name: 'TypeError', message: 'writeLayers takes a Stack, not a Mesh' });
+  await assert.rejects(diagnose(stack), { name: 'TypeError', message: 'diagnose takes a Mesh, not a Stack' });
+  await assert.rejects(view({}), { name: 'TypeError', message: /a Mesh or a Stack/ });
+  box.dispose();
+  stack.dispose();
+  await assert.rejects(slice(box), { kind: 'usage', message: 'slice: the Mesh was disposed of and has no data any more' });
+  await assert.rejects(writeLayers(stack, 'cli'), { kind: 'usage', message: /^writeLayers: the Stack was disposed of/ });
+  await assert.rejects(view(stack), { kind: 'usage', message: /^view: the Stack was disposed of/ });
+});
+
+test('an exception of a callback rejects the promise, and the next call works', async () => {
+  const mesh = await makeBody('rook');
+  const failing = () => {
+    throw new RangeError('of the callback');
+  };
+  const refused = { name: 'RangeError', message: 'of the callback' };
+  await assert.rejects(slice(mesh, { onProgress: failing }), refused);
+  await assert.rejects(sliceLayers(mesh, { onProgress: failing }).next(), refused);
+  await assert.rejects(run(['slice', 'rook.stl', '-o', '-', '--format', 'cli'], { 'rook.stl': mesh.bytes }, { onOutput: failing }), refused);
+  await assert.rejects(readMesh(mesh.bytes, 'rook.stl', { onProgress: failing }), refused);
+  assert.ok((await slice(mesh, { layerHeight: 10 })).layers.length > 0);
+});
+
+test('a file that becomes too large for an array is a limit and is named', async () => {
+  const { growFile, mostInFile } = await import(pathToFileURL(join(packageFolder, 'program.js')).href);
+  const node = { name: 'layers.npz', contents: Uint8Array.of(1, 2, 3), usedBytes: 3 };
+  const refused = [];
+  const grow = (bytes) => growFile(node, bytes, (number) => new Error(String(number)), (name) => refused.push(name));
+  grow(4);
+  assert.deepEqual([...node.contents.subarray(0, 3)], [1, 2, 3]);
+  assert.ok(node.contents.length >= 4);
+  assert.throws(() => grow(mostInFile + 1), /^Error: 22$/);
+  assert.deepEqual(refused, ['layers.npz']);
+  assert.deepEqual([...node.contents.subarray(0, 3)], [1, 2, 3]);
 });
 
 /** The formats that the program lists. */
@@ -249,6 +342,20 @@ test('layers come one by one, those of the whole stack', async () => {
   }
 });
 
+test('slicing waits for the loop over coming layers', async () => {
+  const mesh = await makeBody('lattice', { cells: 4 });
+  let last = { done: 0, total: Infinity };
+  const stream = sliceLayers(mesh, { layerHeight: 0.0005, onProgress: (progress) => (last = progress.stage === 'slice' ? progress : last) });
+  await stream.next();
+  // Until nothing is done any more: more layers than fit the memory that they may take would come otherwise.
+  for (let before = -1; before !== last.done; ) {
+    before = last.done;
+    await new Promise((resolve) => setTimeout(resolve, 500));
+  }
+  assert.ok(last.done < last.total, `${last.done} of ${last.total}`);
+  await stream.return();
+});
+
 test('coming layers end with the loop, a signal or an error, and come before all are done', async () => {
   const mesh = await makeBody('lattice', { cells: 6 });
   const endless = { layerHeight: 0.0005 };
@@ -376,7 +483,7 @@ test('the samples of the documentation run', async () => {
 
 test('only what is documented is exported', () => {
   assert.deepEqual(Object.keys(lamella).sort(), [
-    'LamellaError', 'Layer', 'Mesh', 'Stack', 'diagnose', 'makeBody', 'readFile', 'readLayers', 'readMesh', 'releaseWorkers', 'run', 'slice',
+    'LamellaError', 'Layer', 'Mesh', 'Stack', 'diagnose', 'makeBody', 'meshOf', 'readFile', 'readLayers', 'readMesh', 'releaseWorkers', 'run', 'slice',
     'sliceLayers', 'sliceToFile', 'usePlatform', 'view', 'writeLayers',
   ]);
   assert.ok(Mesh);

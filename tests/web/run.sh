@@ -1,5 +1,5 @@
 #!/bin/sh
-# Tests the npm package and the playground that `make web` has built. usage: tests/web/run.sh BUILD TEST...
+# Tests the npm package and the playground that `make web` has built. usage: tests/web/run.sh BUILD
 # BUILD has the program, web/package and web/playground.html.
 set -eu
 
@@ -19,7 +19,8 @@ mkdir user
 
 export LAMELLA_PROGRAM="$build/lamella" LAMELLA_PACKAGE="$work/user/node_modules/lamella" \
     LAMELLA_PLAYGROUND="$build/web/playground.html" LAMELLA_PAGE="$here/../../docs/javascript.md" \
-    LAMELLA_LAYER_HASHES="$here/../fixtures/layer_hashes.tsv" LAMELLA_SHARED="${LAMELLA_SHARED:-$here/../../../shared}"
+    LAMELLA_LAYER_HASHES="$here/../fixtures/layer_hashes.tsv" LAMELLA_SHARED="${LAMELLA_SHARED:-$here/../../../shared}" \
+    LAMELLA_TREE="$here/../.."
 cp types_test.ts user/
 (cd user && "$work/node_modules/.bin/tsc" --noEmit --strict --module nodenext --target es2022 --lib es2022,dom \
     --typeRoots "$work/node_modules/@types" --types node types_test.ts)

@@ -2,12 +2,13 @@
 // in Firefox. LAMELLA_PROGRAM, LAMELLA_PACKAGE, LAMELLA_PAGE.
 
 import assert from 'node:assert/strict';
-import { execFileSync, spawn } from 'node:child_process';
-import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { execFileSync, spawn, spawnSync } from 'node:child_process';
+import { cpSync, existsSync, mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
 import { createServer } from 'node:http';
 import { tmpdir } from 'node:os';
 import { join, normalize } from 'node:path';
 import { after, before, test } from 'node:test';
+import { build as bundle } from 'esbuild';
 import { chromium } from 'playwright-core';
 import { build, createServer as createDevelopmentServer } from 'vite';
 
@@ -92,6 +93,42 @@ test('the sample of three.js, bundled by Vite, shows layers over the mesh', asyn
   const isolated = await serve(join(root, 'dist'), isolation);
   await checkScene(isolated.address);
   isolated.close();
+});
+
+test('the sample of three.js, bundled by esbuild, works beside the files of the package and names what is missing', async () => {
+  const outdir = join(root, 'bundle');
+  await bundle({ entryPoints: [join(root, 'main.js')], bundle: true, format: 'esm', outdir, logLevel: 'error' });
+  cpSync(join(root, 'index.html'), join(outdir, 'index.html'));
+  const failure = async () => {
+    const server = await serve(outdir);
+    const opened = await browser.newPage();
+    const failed = opened.waitForEvent('pageerror');
+    await opened.goto(server.address);
+    const { message } = await failed;
+    await opened.close();
+    server.close();
+    return message;
+  };
+  assert.match(await failure(), /lamella\.wasm cannot be loaded \(404 Not Found\): .*beside the script/);
+  const names = readdirSync(packageFolder).filter((name) => /\.(js|wasm)$/.test(name));
+  for (const name of names) if (name !== 'browser_worker.js') cpSync(join(packageFolder, name), join(outdir, name));
+  assert.match(await failure(), /browser_worker\.js cannot be loaded: .*beside the script/);
+  cpSync(join(packageFolder, 'browser_worker.js'), join(outdir, 'browser_worker.js'));
+  const server = await serve(outdir);
+  await checkScene(server.address);
+  server.close();
+});
+
+test('a bundle for Node.js without the files of the package names what is missing, and one that leaves it out works', async () => {
+  const entry = join(root, 'node_main.js');
+  writeFileSync(entry, "import { makeBody } from 'lamella';\nconsole.log((await makeBody('box')).triangles);\n");
+  const run = async (external) => {
+    const outfile = join(root, 'bundled.mjs');
+    await bundle({ entryPoints: [entry], bundle: true, platform: 'node', format: 'esm', outfile, external, logLevel: 'error' });
+    return spawnSync(process.execPath, [outfile], { encoding: 'utf8' });
+  };
+  assert.match((await run([])).stderr, /LamellaError: lamella\.wasm is missing beside .*bundled\.mjs: /);
+  assert.equal((await run(['lamella'])).stdout, '12\n');
 });
 
 test('the sample of three.js works in the development server of Vite', async () => {

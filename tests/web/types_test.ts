@@ -1,6 +1,6 @@
 // Compiled by tsc: the types of the package fit the way in which it is used.
 
-import { LamellaError, Mesh, Stack, diagnose, makeBody, readFile, readMesh, run, slice, sliceLayers, sliceToFile, view, writeLayers } from 'lamella';
+import { LamellaError, Mesh, Stack, diagnose, makeBody, meshOf, readFile, readMesh, run, slice, sliceLayers, sliceToFile, view, writeLayers } from 'lamella';
 
 const mesh: Mesh = await readMesh(new Uint8Array(), 'part.stl', { unit: 'inch' });
 const stack: Stack = await slice([mesh, { mesh, translate: [1, 2, 3] }], {
@@ -18,6 +18,11 @@ const { bytes, warnings } = await sliceToFile(mesh, 'ilt', { scan: true, strateg
 const found: boolean = (await diagnose(mesh, { selfIntersections: true })).closed;
 const either: Mesh | Stack = await readFile(cli);
 const { files } = await run(['info', 'part.stl'], { 'part.stl': mesh.bytes });
+const triangle: Mesh = await meshOf(new Float32Array(9), [0, 1, 2], { name: 'triangle', unit: 'cm' });
+{
+  using disposed = await slice(triangle);
+  console.log(disposed.layers.length);
+}
 const page: Uint8Array = await view(await makeBody('rook'));
 try {
   // @ts-expect-error: there is no such option

@@ -1,4 +1,5 @@
 // Types of the package. The options are those of the program, in camel case: `lamella slice --help` describes them.
+/// <reference lib="esnext.disposable" />
 
 export type Bytes = Uint8Array | ArrayBuffer | ArrayBufferView | string;
 export type Triple = readonly [number, number, number];
@@ -33,8 +34,9 @@ export type Box = [min: [number, number, number], max: [number, number, number]]
 /** A mesh file that was read without an error. */
 export class Mesh {
   private constructor();
-  /** Gives up the memory of this object, which must not be used afterwards. Not necessary: the garbage collector does it, too. */
+  /** Frees the memory of this object earlier than the garbage collector does. The object must not be used afterwards. */
   dispose(): void;
+  [Symbol.dispose](): void;
   readonly name: string;
   /** The file. */
   readonly bytes: Uint8Array;
@@ -59,6 +61,18 @@ export interface ReadOptions extends CallOptions {
 
 /** Reads a mesh file (STL, OBJ, PLY, OFF, 3MF, AMF); its format is recognised by its content. */
 export function readMesh(data: Bytes, name?: string, options?: ReadOptions): Promise<Mesh>;
+/**
+ * Makes a mesh of arrays, as three.js, manifold-3d and others have them.
+ * `positions` has x, y and z of each vertex, in turn. Its numbers are kept: single precision in a `Float32Array`, double precision
+ * otherwise. `indices` has three vertices for each triangle, counter-clockwise seen from outside; without it, vertices follow one
+ * another. `name` (`mesh` unless given) names the mesh in messages and its part on a plate.
+ * Rejects with kind `usage` if an index is no vertex.
+ */
+export function meshOf(
+  positions: ArrayLike<number>,
+  indices?: ArrayLike<number> | null,
+  options?: ReadOptions & { name?: string },
+): Promise<Mesh>;
 /** Reads a slice file (CLI, SVG, SLC, 3MF, JSON, NPZ, ILT, OVF); its format is recognised by its content. */
 export function readLayers(data: Bytes, name?: string, options?: CallOptions): Promise<Stack>;
 /** Reads a mesh or layers, whatever the file holds. */
@@ -224,8 +238,9 @@ export class Layer {
 /** Layers in ascending z. */
 export class Stack {
   private constructor();
-  /** Gives up the memory of this object, which must not be used afterwards. Not necessary: the garbage collector does it, too. */
+  /** Frees the memory of this object earlier than the garbage collector does. The object must not be used afterwards. */
   dispose(): void;
+  [Symbol.dispose](): void;
   readonly layers: Layer[];
   /** Of the parts. */
   readonly labels: string[];
@@ -241,18 +256,21 @@ export type PlacedMesh = Mesh | ({ mesh: Mesh } & Placement);
 /** Slices one mesh, or several on one plate. */
 export function slice(meshes: Mesh | readonly PlacedMesh[], options?: SliceOptions): Promise<Stack>;
 
-/** Layers in ascending z, each as soon as it is there. Breaking off the loop ends the computation. */
+/** Layers in ascending z, each as soon as it and all below it are sliced. Leaving the loop stops the computation. */
 export interface LayerStream extends AsyncGenerator<Layer, void, void> {
   /** Of the parts; complete before the first layer. */
   readonly labels: string[];
   /** Complete behind the last layer. */
   readonly warnings: string[];
 }
-/** Slices like `slice`, and gives the layers one by one while they come. They have no hash and no other statistics. */
+/**
+ * Slices like `slice`, and yields the layers one by one. They have neither `hash` nor figures. Where threads can share memory (in
+ * Node.js and isolated pages), slicing waits while 16 MB of layers wait for the loop.
+ */
 export function sliceLayers(meshes: Mesh | readonly PlacedMesh[], options?: SliceOptions): LayerStream;
 
 export type FileFormat =
-  | 'cli' | 'cli-ascii' | 'svg' | 'slc' | '3mf' | 'dxf' | 'geojson' | 'json' | 'npz' | 'ilt' | 'ovf' | '3mf-toolpath' | 'html'
+  | 'cli' | 'cli-ascii' | 'svg' | 'slc' | '3mf' | 'dxf' | 'geojson' | 'json' | 'npz' | 'raw' | 'ilt' | 'ovf' | '3mf-toolpath' | 'html'
   | 'svg-layers' | 'png-zip' | 'sl1' | 'sl1s';
 
 /** Slices into a slice file, without layers in between. */
@@ -288,5 +306,5 @@ export interface RunResult {
 /** Runs the program with the words of a command line, on files given by name. Throws LamellaError if it fails. */
 export function run(words: string[], files?: Record<string, Bytes>, options?: RunOptions): Promise<RunResult>;
 
-/** Ends all workers that compute nothing. The next call starts new ones. */
+/** Terminates idle workers. The next call starts new ones. */
 export function releaseWorkers(): void;

@@ -1,7 +1,8 @@
 // The interface for JavaScript: meshes and stacks of layers are bytes in the caller's memory, and each call runs the
 // program on them in a worker. So nothing has to be freed, and a call can be ended at any time.
 
-import { lines } from './lines.js';
+import { newFlow } from './flow.js';
+import { rawReader } from './raw_layers.js';
 
 const kinds = { 1: 'internal', 2: 'usage', 3: 'input', 4: 'defect', 5: 'limit', 6: 'output', 130: 'cancelled' };
 
@@ -31,26 +32,35 @@ export function usePlatform(given) {
 
 function startWorker(compiled) {
   const worker = { job: null };
-  const fail = (error) => {
-    worker.handle.end();
-    drop(worker);
-    worker.job?.reject(new LamellaError(trapText(error?.message ?? error), 5));
-  };
-  worker.handle = platform.startWorker(
-    compiled,
-    (message) => {
+  const onMessage = (message) => {
+    try {
       if (message.line !== undefined) worker.job?.onLine(message.line);
       else if (message.output) worker.job?.onOutput(message.output);
       else worker.job?.finish(message);
-    },
-    fail,
-  );
+    } catch (error) {
+      worker.job?.end(error); // of a function of the caller
+    }
+  };
+  const onFailure = (error) => {
+    if (worker.job) worker.job.end(error instanceof LamellaError ? error : new LamellaError(trapText(error?.message ?? error), 5));
+    else endWorker(worker);
+  };
+  worker.handle = platform.startWorker(compiled, onMessage, onFailure);
   return worker;
+}
+
+/** Ends a worker and what it computes, and makes room for another one. */
+function endWorker(worker) {
+  worker.handle.end();
+  drop(worker);
 }
 
 async function takeWorker() {
   module ??= platform.loadModule();
-  const compiled = await module;
+  const compiled = await module.catch((error) => {
+    module = undefined; // the next call tries again
+    throw error;
+  });
   if (idle.length > 0) return idle.pop();
   if (started < platform.processors) {
     started += 1;
@@ -65,7 +75,6 @@ function giveBack(worker) {
   else idle.push(worker);
 }
 
-/** A worker that was ended makes room for another one. */
 function drop(worker) {
   const at = idle.indexOf(worker);
   if (at >= 0) idle.splice(at, 1);
@@ -73,7 +82,7 @@ function drop(worker) {
   if (waiting.length > 0) takeWorker().then(waiting.shift());
 }
 
-/** Ends all workers that compute nothing. The next call starts new ones. */
+/** Terminates idle workers. The next call starts new ones. */
 export function releaseWorkers() {
   for (const worker of idle.splice(0)) {
     worker.handle.end();
@@ -91,7 +100,7 @@ function processorsFor(words, inputs) {
 }
 
 /** Runs in a worker. @returns {Promise<{code: number, files: object[]}>} */
-async function runInWorker(words, inputs, signal, onLine, onOutput) {
+async function runInWorker(words, inputs, signal, onLine, onOutput, flow) {
   signal?.throwIfAborted();
   const worker = await takeWorker();
   if (signal?.aborted) {
@@ -102,15 +111,16 @@ async function runInWorker(words, inputs, signal, onLine, onOutput) {
   let abort;
   try {
     return await new Promise((resolve, reject) => {
-      abort = () => {
-        worker.handle.end();
-        drop(worker);
-        reject(signal.reason);
+      const end = (reason) => {
+        worker.job = null;
+        endWorker(worker);
+        reject(reason);
       };
+      abort = () => end(signal.reason);
       worker.job = {
         onLine,
         onOutput,
-        reject,
+        end,
         finish({ result, trap }) {
           worker.handle.hold(false);
           giveBack(worker);
@@ -119,7 +129,7 @@ async function runInWorker(words, inputs, signal, onLine, onOutput) {
         },
       };
       signal?.addEventListener('abort', abort, { once: true });
-      worker.handle.post({ words, inputs, processors: processorsFor(words, inputs) });
+      worker.handle.post({ words, inputs, processors: processorsFor(words, inputs), flow: flow?.counter });
     });
   } finally {
     worker.job = null;
@@ -128,10 +138,13 @@ async function runInWorker(words, inputs, signal, onLine, onOutput) {
 }
 
 const trapText = (trap) =>
-  `stopped by WebAssembly (${trap}): most likely the 4 GB that it can use, or its stack, were not enough; the program for the computer itself has no such limit`;
+  `stopped by WebAssembly (${trap}): most likely the 4 GB that it can use, or its stack, were not enough; the native program has no such limit`;
 
-/** Where memory is the limit, the reason is named that the computer may not show. */
-const limitText = (text, code) => (code === 5 && /\bmemory\b/.test(text) ? `${text} (WebAssembly can use 4 GB at most)` : text);
+/** The error of a run, whose reason may be a limit of WebAssembly that the computer itself does not show. */
+function failureOf(text, code, refused) {
+  if (refused !== null) return new LamellaError(`${text}: a file here has at most 2 GB in a browser and 4 GB in Node.js; the native program has no such limit`, 5);
+  return new LamellaError(code === 5 && /\bmemory\b/.test(text) ? `${text} (WebAssembly can use 4 GB at most)` : text, code);
+}
 
 /**
  * Runs the program with a command line, on files given by name.
@@ -140,7 +153,12 @@ const limitText = (text, code) => (code === 5 && /\bmemory\b/.test(text) ? `${te
  * @param {{signal?: AbortSignal, onProgress?: Function, onOutput?: Function}} options `onOutput` gets the bytes of standard
  *     output as they come
  */
-export async function run(words, files = {}, { signal, onProgress, onOutput } = {}) {
+export function run(words, files = {}, options = {}) {
+  return runCounted(words, files, options);
+}
+
+/** Like `run`; the program waits while too much of its output does (flow.js). */
+async function runCounted(words, files, { signal, onProgress, onOutput }, flow) {
   const warnings = [];
   const texts = [];
   let failure;
@@ -157,7 +175,7 @@ export async function run(words, files = {}, { signal, onProgress, onOutput } = 
   const decoder = new TextDecoder();
   let text = '';
   onOutput ??= (bytes) => (text += decoder.decode(bytes, { stream: true }));
-  const { code, files: written } = await runInWorker(words, inputs, signal, onLine, onOutput);
+  const { code, files: written, refused } = await runInWorker(words, inputs, signal, onLine, onOutput, flow);
   const result = {
     code,
     text,
@@ -165,8 +183,40 @@ export async function run(words, files = {}, { signal, onProgress, onOutput } = 
     notes: texts,
     files: Object.fromEntries(written.map(({ name, bytes }) => [name, bytes])),
   };
-  if (failure !== undefined) throw Object.assign(new LamellaError(limitText(failure, code), code), { warnings });
+  if (failure !== undefined) throw Object.assign(failureOf(failure, code, refused), { warnings });
   return result;
+}
+
+/** The bytes of a PLY file of a mesh in arrays: its numbers are stored as they are. */
+function plyOf(positions, indices) {
+  const isList = (one) => Array.isArray(one) || (ArrayBuffer.isView(one) && !(one instanceof DataView));
+  if (!isList(positions) || (indices !== undefined && indices !== null && !isList(indices)))
+    throw new TypeError('meshOf takes arrays: x, y and z of each vertex in turn, and three vertices for each triangle');
+  const vertices = positions.length / 3;
+  const given = indices?.length ?? vertices;
+  if (!Number.isInteger(vertices)) throw new LamellaError(`meshOf: there are ${positions.length} positions, which is no multiple of 3: x, y and z of each vertex`, 2);
+  if (given % 3 !== 0) throw new LamellaError(`meshOf: there are ${given} ${indices ? 'indices' : 'vertices'}, which is no multiple of 3: the vertices of each triangle`, 2);
+  const type = positions instanceof Float32Array ? 'float' : 'double';
+  const Numbers = type === 'float' ? Float32Array : Float64Array;
+  const properties = ['x', 'y', 'z'].map((axis) => `property ${type} ${axis}\n`).join('');
+  const header = new TextEncoder().encode(
+    `ply\nformat binary_little_endian 1.0\nelement vertex ${vertices}\n${properties}element face ${given / 3}\nproperty list uchar uint vertex_indices\nend_header\n`,
+  );
+  const points = new Uint8Array(Numbers.from(positions).buffer);
+  const faces = new DataView(new ArrayBuffer((given / 3) * 13));
+  for (let i = 0, at = 0; i < given; ++i) {
+    if (i % 3 === 0) faces.setUint8(at++, 3);
+    const vertex = indices?.[i] ?? i;
+    if (!(vertex >= 0 && vertex < vertices && Number.isInteger(vertex)))
+      throw new LamellaError(`meshOf: index ${i} is ${vertex}, but the vertices are 0 to ${vertices - 1}`, 2);
+    faces.setUint32(at, vertex, true);
+    at += 4;
+  }
+  const bytes = new Uint8Array(header.length + points.length + faces.byteLength);
+  bytes.set(header);
+  bytes.set(points, header.length);
+  bytes.set(new Uint8Array(faces.buffer), header.length + points.length);
+  return bytes;
 }
 
 function bytesOf(data) {
@@ -183,6 +233,9 @@ const ranges = new Set(['layers', 'zRange', 'adaptive']);
 /** Options that are files for the program, and the name of the file. */
 const texts = { zList: 'heights.json', strategy: 'strategy.toml' };
 const ofCall = new Set(['signal', 'onProgress', 'onOutput']);
+
+/** Of the options of a call, those that are not for the program. */
+const callOf = ({ signal, onProgress }) => ({ signal, onProgress });
 
 const kebab = (name) => name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
 
@@ -219,20 +272,36 @@ function fileName(name, files) {
 
 // ---- Meshes -----------------------------------------------------------------------------------------------------------
 
-/** Memory is given back when nothing refers to bytes any more; `dispose` ends the reference of a mesh or a stack to its own. */
+/** Memory is freed when nothing refers to bytes any more; `dispose` ends the reference of a mesh or a stack to its own. */
 class Disposable {
   dispose() {
     this.bytes = new Uint8Array();
     this.layers &&= [];
+    this.disposed = true;
   }
 }
+Object.defineProperty(Disposable.prototype, 'disposed', { value: false, writable: true });
 if (Symbol.dispose) Disposable.prototype[Symbol.dispose] = Disposable.prototype.dispose;
+
+/** Returns `one` if it is of a type and has its data; `where` names the function. */
+function checked(one, types, where) {
+  if (!types.some((type) => one instanceof type)) {
+    const found = one instanceof Disposable ? `a ${one.constructor.name}` : one === null ? 'null' : Array.isArray(one) ? 'an array' : typeof one;
+    throw new TypeError(`${where} takes a ${types.map(({ name }) => name).join(' or a ')}, not ${found}`);
+  }
+  if (one.disposed) throw new LamellaError(`${where}: the ${one.constructor.name} was disposed of and has no data any more`, 2);
+  return one;
+}
+
+/** The options with which each mesh was read: its file is read again by each call. */
+const readings = new WeakMap();
 
 /** A mesh file that was read without an error. */
 export class Mesh extends Disposable {
-  constructor(bytes, facts, warnings) {
+  constructor(bytes, facts, warnings, { unit, include, maxTriangles } = {}) {
     super();
     Object.assign(this, facts, { bytes, warnings });
+    readings.set(this, { unit, include, maxTriangles });
   }
 }
 
@@ -248,13 +317,24 @@ async function readAny(data, name, options) {
 export async function readMesh(data, name = 'part', options = {}) {
   const { bytes, facts, warnings } = await readAny(data, name, options);
   if (facts.kind !== 'mesh') throw new LamellaError(`${facts.name}: holds layers (${facts.format}); readLayers reads them`, 3);
-  return new Mesh(bytes, facts, warnings);
+  return new Mesh(bytes, facts, warnings, options);
+}
+
+/**
+ * Makes a mesh of arrays, as three.js, manifold-3d and others have them.
+ * @param {ArrayLike<number>} positions x, y and z of each vertex, in turn
+ * @param {ArrayLike<number>} [indices] three vertices for each triangle; without them, vertices follow one another
+ * @param {{name?: string}} options and those of readMesh
+ * @returns {Promise<Mesh>}
+ */
+export async function meshOf(positions, indices, { name = 'mesh', ...options } = {}) {
+  return readMesh(plyOf(positions, indices), `${name}.ply`, options);
 }
 
 /** Reads a mesh or layers, whatever the file holds. @returns {Promise<Mesh|Stack>} */
 export async function readFile(data, name = 'part', options = {}) {
   const { bytes, facts, warnings } = await readAny(data, name, options);
-  return facts.kind === 'mesh' ? new Mesh(bytes, facts, warnings) : readLayers(bytes, facts.name, options);
+  return facts.kind === 'mesh' ? new Mesh(bytes, facts, warnings, options) : readLayers(bytes, facts.name, callOf(options));
 }
 
 /** Makes one of the test bodies, such as `rook`. */
@@ -266,7 +346,9 @@ export async function makeBody(body, { ascii, format = 'stl', ...options } = {})
 
 /** Size, volume, shells and every kind of defect with its positions, as `lamella info --json` describes them. */
 export async function diagnose(mesh, options = {}) {
-  const { text, warnings } = await run(['info', mesh.name, '--json', '--progress=json', ...wordsOf(options, {})], { [mesh.name]: mesh.bytes }, options);
+  const { name, bytes } = checked(mesh, [Mesh], 'diagnose');
+  const words = wordsOf({ ...readings.get(mesh), ...options }, {});
+  const { text, warnings } = await run(['info', name, '--json', '--progress=json', ...words], { [name]: bytes }, options);
   return { ...JSON.parse(text), warnings };
 }
 
@@ -296,7 +378,7 @@ function arraysOf(file) {
   // Views of doubles begin at multiples of 8 bytes. The file is moved so that its points do.
   const [, first] = entries(file).next().value;
   const shift = (8 - ((first + headerBytes) % 8)) % 8;
-  const bytes = new Uint8Array(new ArrayBuffer(file.length + shift), shift);
+  const bytes = roomFor(file.length + shift).subarray(shift);
   bytes.set(file);
   const arrays = {};
   for (const [name, begin, size] of entries(bytes)) {
@@ -306,6 +388,14 @@ function arraysOf(file) {
     arrays[name.replace('.npy', '')] = type.startsWith('<U') ? strings(data, Number(type.slice(2))) : numbers(data, types[type]);
   }
   return { bytes, arrays };
+}
+
+function roomFor(bytes) {
+  try {
+    return new Uint8Array(bytes);
+  } catch {
+    throw new LamellaError(`there is no memory for an array of ${(bytes / 1e9).toFixed(2)} GB of layers: sliceLayers yields them one by one, sliceToFile makes a file`, 5);
+  }
 }
 
 function numbers(data, Type) {
@@ -321,7 +411,7 @@ function strings(data, length) {
   );
 }
 
-/** The position of the first number of an ascending array that is not below `value`. */
+/** The position of the first number of an ascending array, also of 64-bit integers, that is not below `value`. */
 function lowerBound(array, value) {
   let [low, high] = [0, array.length];
   while (low < high) {
@@ -346,9 +436,9 @@ export class Layer {
     this.z = arrays.z[i];
     this.bottom = arrays.bottom[i];
     this.top = arrays.top[i];
-    this.#first = lowerBound(arrays.layer, BigInt(i));
-    this.#last = lowerBound(arrays.layer, BigInt(i + 1));
-    this.#hatches = arrays.hatch_layer ? [lowerBound(arrays.hatch_layer, BigInt(i)), lowerBound(arrays.hatch_layer, BigInt(i + 1))] : [0, 0];
+    this.#first = lowerBound(arrays.layer, i);
+    this.#last = lowerBound(arrays.layer, i + 1);
+    this.#hatches = arrays.hatch_layer ? [lowerBound(arrays.hatch_layer, i), lowerBound(arrays.hatch_layer, i + 1)] : [0, 0];
     Object.assign(this, statistics);
   }
 
@@ -423,19 +513,22 @@ export class Stack extends Disposable {
   }
 }
 
-/** Words and files for meshes, each with its placement. */
-function inputWords(meshes, files) {
-  return [meshes].flat().flatMap((one) => {
-    const { mesh, ...placement } = one instanceof Mesh ? { mesh: one } : one;
+/** The words of a command that slices meshes, each with its placement; files that it needs are added to `files`. */
+function sliceWords(meshes, options, files, where) {
+  const placed = [meshes].flat().map((one) => {
+    const { mesh, ...placement } = one instanceof Mesh || one === null || typeof one !== 'object' || !('mesh' in one) ? { mesh: one } : one;
+    return { mesh: checked(mesh, [Mesh], where), placement };
+  });
+  const inputs = placed.flatMap(({ mesh, placement }) => {
     const name = fileName(mesh.name, files);
     files[name] = mesh.bytes;
-    return [name, ...wordsOf(placement, files)];
+    const { unit } = readings.get(mesh);
+    return [name, ...wordsOf(options.unit === undefined ? { unit, ...placement } : placement, files)];
   });
-}
-
-function sliceWords(meshes, options, files) {
+  const include = placed.flatMap(({ mesh }) => readings.get(mesh).include ?? []);
+  const ofAll = include.length > 0 ? { include: [...new Set(include)] } : {};
   // Placements of all meshes go before the first one.
-  return ['slice', ...wordsOf(options, files), ...inputWords(meshes, files), '--progress=json'];
+  return ['slice', ...wordsOf({ ...ofAll, ...options }, files), ...inputs, '--progress=json'];
 }
 
 /**
@@ -445,56 +538,36 @@ function sliceWords(meshes, options, files) {
  */
 export async function slice(meshes, options = {}) {
   const files = {};
-  const words = sliceWords(meshes, options, files);
+  const words = sliceWords(meshes, options, files, 'slice');
   const { files: written, warnings } = await run([...words, '-o', 'layers.npz', '--stats', 'layers.stats'], files, options);
   const statistics = JSON.parse(new TextDecoder().decode(written['layers.stats']));
   return new Stack(written['layers.npz'], { statistics, warnings, source: statistics.scan ? { meshes, options } : null });
 }
 
-/** A layer of a JSON file of layers. */
-function layerOf({ index, z, bottom, top, parts }) {
-  const contours = parts.flatMap(({ rings, chains = [] }, part) => [
-    ...rings.map((points) => ({ points, closed: 1, part })),
-    ...chains.map((points) => ({ points, closed: 0, part })),
-  ]);
-  const offsets = new BigInt64Array(contours.length + 1);
-  contours.forEach(({ points }, i) => (offsets[i + 1] = offsets[i] + BigInt(points.length / 2)));
-  const points = new Float64Array(2 * Number(offsets.at(-1)));
-  contours.forEach((contour, i) => points.set(contour.points, 2 * Number(offsets[i])));
-  const hatchParts = parts.flatMap(({ hatches = [] }, part) => Array(hatches.length / 4).fill(BigInt(part)));
-  const arrays = {
-    index: [index],
-    z: [z],
-    bottom: [bottom],
-    top: [top],
-    points,
-    offsets,
-    closed: Uint8Array.from(contours, ({ closed }) => closed),
-    layer: new BigInt64Array(contours.length),
-    part: BigInt64Array.from(contours, ({ part }) => BigInt(part)),
-    hatches: Float64Array.from(parts.flatMap(({ hatches = [] }) => hatches)),
-    hatch_layer: new BigInt64Array(hatchParts.length),
-    hatch_part: BigInt64Array.from(hatchParts),
-  };
-  return new Layer(arrays, 0, {});
-}
-
-/** The layers of a run that writes them as JSON, one on each line, to standard output. */
-async function* comingLayers(words, files, { signal, onProgress }, facts) {
-  const ready = []; // lines
+/** The layers of a run that writes them in the format `raw` to standard output. */
+async function* comingLayers(meshes, options, facts) {
+  const { signal, onProgress } = options;
+  const files = {};
+  const words = [...sliceWords(meshes, options, files, 'sliceLayers'), '-o', '-', '--format', 'raw'];
+  const chunks = []; // that have come and are not read
+  const ready = []; // layers
   let wake = () => {};
   let over = false;
   let failure;
-  const takeLine = (line) => {
-    if (line.startsWith('{"format"')) facts.labels.push(...JSON.parse(`${line}]}`).parts.map(({ label }) => label));
-    else if (line.startsWith('{"index"')) ready.push(line.replace(/,$/, ''));
+  const read = rawReader(
+    ({ parts }) => facts.labels.push(...parts.map(({ label }) => label)),
+    (arrays) => ready.push(new Layer(arrays, 0, {})),
+  );
+  const onOutput = (bytes) => {
+    chunks.push(bytes);
     wake();
   };
   const stop = new AbortController();
   const abort = () => stop.abort(signal.reason);
   signal?.addEventListener('abort', abort, { once: true });
   if (signal?.aborted) abort();
-  run(words, files, { signal: stop.signal, onProgress, onOutput: lines(takeLine) })
+  const flow = newFlow();
+  runCounted(words, files, { signal: stop.signal, onProgress, onOutput }, flow)
     .then(
       ({ warnings }) => facts.warnings.push(...warnings.map((text) => text.replace(/^standard output: /, 'layers: '))),
       (error) => (failure = error),
@@ -504,9 +577,10 @@ async function* comingLayers(words, files, { signal, onProgress }, facts) {
       wake();
     });
   try {
-    while (!over || ready.length > 0) {
+    while (!over || chunks.length > 0 || ready.length > 0) {
       stop.signal.throwIfAborted();
-      if (ready.length > 0) yield layerOf(JSON.parse(ready.shift()));
+      if (ready.length > 0) yield ready.shift();
+      else if (chunks.length > 0) flow.release(take(chunks, read));
       else await new Promise((resolve) => (wake = resolve));
     }
     if (failure) throw failure;
@@ -516,15 +590,21 @@ async function* comingLayers(words, files, { signal, onProgress }, facts) {
   }
 }
 
+/** Reads the first chunk. @returns {number} its bytes */
+function take(chunks, read) {
+  const bytes = chunks.shift();
+  read(bytes);
+  return bytes.length;
+}
+
 /**
- * Slices like `slice`, and gives the layers one by one while they come.
+ * Slices like `slice`, and yields the layers one by one while they come. Where threads can share memory, slicing waits for the
+ * loop.
  * @returns {AsyncGenerator<Layer> & {labels: string[], warnings: string[]}} `warnings` are complete behind the last layer
  */
 export function sliceLayers(meshes, options = {}) {
-  const files = {};
-  const words = [...sliceWords(meshes, options, files), '-o', '-', '--format', 'json'];
   const facts = { labels: [], warnings: [] };
-  return Object.assign(comingLayers(words, files, options, facts), facts);
+  return Object.assign(comingLayers(meshes, options, facts), facts);
 }
 
 /** The files of a run, or the bytes of the only one. */
@@ -539,7 +619,7 @@ function result(files, name) {
  */
 export async function sliceToFile(meshes, format, options = {}) {
   const files = {};
-  const words = sliceWords(meshes, options, files);
+  const words = sliceWords(meshes, options, files, 'sliceToFile');
   const { files: all, warnings } = await run([...words, '-o', 'layers', '--format', format, '--stats', 'figures.json'], files, options);
   const { 'figures.json': figures, ...written } = all;
   return { bytes: result(written, 'layers'), statistics: JSON.parse(new TextDecoder().decode(figures)), warnings };
@@ -547,6 +627,7 @@ export async function sliceToFile(meshes, format, options = {}) {
 
 /** Writes layers in any slice format. @returns {Promise<Uint8Array>} */
 export async function writeLayers(stack, format, options = {}) {
+  checked(stack, [Stack], 'writeLayers');
   if (stack.source) return (await sliceToFile(stack.source.meshes, format, { ...stack.source.options, ...options })).bytes;
   const { files } = await run(['convert', 'stack.npz', 'layers', '--format', format, '--progress=json', ...wordsOf(options, {})], { 'stack.npz': stack.bytes }, options);
   return result(files, 'layers');
@@ -561,7 +642,9 @@ export async function readLayers(data, name = 'layers', options = {}) {
 
 /** A page that shows a mesh's or a file's layers, as `lamella view` writes it. @returns {Promise<Uint8Array>} HTML */
 export async function view(meshOrStack, options = {}) {
-  const name = meshOrStack instanceof Mesh ? meshOrStack.name : 'stack.npz';
-  const { files } = await run(['view', name, '-o', 'page.html', '--progress=json', ...wordsOf(options, {})], { [name]: meshOrStack.bytes }, options);
-  return files['page.html'];
+  const { name = 'stack.npz', bytes } = checked(meshOrStack, [Mesh, Stack], 'view');
+  const files = { [name]: bytes };
+  const words = wordsOf({ ...readings.get(meshOrStack), ...options }, files);
+  const { files: written } = await run(['view', name, '-o', 'page.html', '--progress=json', ...words], files, options);
+  return written['page.html'];
 }

@@ -1,5 +1,6 @@
 // Runs the program of Lamella in WebAssembly, on files in memory. Used inside a worker.
 
+import { holdBack } from './flow.js';
 import { lines } from './lines.js';
 import { newMemory } from './memory.js';
 
@@ -14,11 +15,29 @@ function onWrite(FS, number, take) {
   stream.stream_ops = { ...stream.stream_ops, write: (_, buffer, offset, length) => (take(buffer.slice(offset, offset + length)), length) };
 }
 
-/** Gives a file in memory room for `bytes`, in place of Emscripten's function, which copies large files time and again. */
-function growFile(node, bytes) {
+/** Of a file in memory, bytes: browsers pass no larger arrays between threads, and Node.js makes no larger ones. */
+export const mostInFile = typeof process === 'object' && process.versions?.node ? 2 ** 32 - 1 : 2 ** 31 - 1;
+const tooLarge = 22; // EFBIG
+
+/**
+ * Gives a file in memory room for `bytes`, in place of Emscripten's function, which copies large files time and again.
+ * @param {(number: number) => Error} errorOf an error number @param {(name: string) => void} refuse called with the name of a file that is too large
+ */
+export function growFile(node, bytes, errorOf, refuse) {
   const { contents, usedBytes } = node;
   if (contents && contents.length >= bytes) return;
-  node.contents = new Uint8Array(Math.max(bytes, 2 * (contents?.length ?? 0), 256));
+  const fail = () => {
+    refuse(node.name);
+    throw errorOf(tooLarge);
+  };
+  if (bytes > mostInFile) fail();
+  let grown;
+  try {
+    grown = new Uint8Array(Math.min(Math.max(bytes, 2 * (contents?.length ?? 0), 256), mostInFile));
+  } catch {
+    fail(); // there is not enough memory
+  }
+  node.contents = grown;
   if (usedBytes > 0) node.contents.set(contents.subarray(0, usedBytes));
 }
 
@@ -46,6 +65,7 @@ export class Program {
   #environment;
   #instance = null;
   #memory;
+  #refused = null; // name of a file that became too large
 
   /**
    * @param create the function of lamella.js
@@ -72,7 +92,8 @@ export class Program {
         wasmMemory: this.#memory,
         preRun: [({ ENV }) => Object.assign(ENV, this.#environment)],
       });
-      this.#instance.MEMFS.expandFileStorage = growFile;
+      const { FS, MEMFS } = this.#instance;
+      MEMFS.expandFileStorage = (node, bytes) => growFile(node, bytes, (number) => new FS.ErrnoError(number), (name) => (this.#refused = name));
       if (!shared) this.#instance.PThread.getNewWorker = () => null; // there are then no threads
     }
     return this.#instance;
@@ -90,13 +111,15 @@ export class Program {
    *     it may use; 0: only this thread
    * @param {(line: string) => void} onLine of standard error
    * @param {(bytes: Uint8Array) => void} onOutput bytes of standard output
-   * @returns {Promise<{code: number, files: NamedBytes[]}>} the files that it wrote
+   * @returns {Promise<{code: number, files: NamedBytes[], refused: string | null}>} the files that it wrote, and the name of
+   *     one that became too large
    */
   async run({ words, inputs, processors }, onLine, onOutput) {
     const instance = await this.#ready();
     const { FS } = instance;
     onWrite(FS, 1, onOutput);
     onWrite(FS, 2, lines(onLine));
+    this.#refused = null;
     FS.mkdir('/job');
     FS.chdir('/job');
     for (const { name, bytes } of inputs) {
@@ -109,7 +132,7 @@ export class Program {
       const { code, early } = await runProgram(instance, words, this.#compiled.shared ? processors : 0);
       spoiled = early;
       const known = new Set(inputs.map(({ name }) => `/job/${name}`));
-      return { code, files: this.#collect('/job', known) };
+      return { code, files: this.#collect('/job', known), refused: this.#refused };
     } finally {
       if (spoiled || this.#memory.buffer.byteLength > mostKept) this.#drop();
       else this.#empty('/job');
@@ -147,7 +170,7 @@ export class Program {
 }
 
 /**
- * Answers the messages of `api.js`: {words, inputs, processors} gives {line} for each line of standard error, {output} for
+ * Answers the messages of `api.js`: {words, inputs, processors, flow} gives {line} for each line of standard error, {output} for
  * bytes of standard output, and {result} or {trap} at the end.
  * @param {(message: object, transfer?: ArrayBuffer[]) => void} post
  * The other parameters are those of Program.
@@ -160,7 +183,11 @@ export function answering(post, create, compiled, environment = {}) {
       const result = await program.run(
         request,
         (line) => post({ line }),
-        (output) => post({ output }, [output.buffer]),
+        (output) => {
+          const { length } = output; // it is gone once it is posted
+          post({ output }, [output.buffer]);
+          holdBack(request.flow, length);
+        },
       );
       post({ result }, result.files.map(({ bytes }) => bytes.buffer));
     } catch (error) {
