@@ -213,6 +213,247 @@ test('several files make a plate, and overlapping boxes are reported', async () 
   await close();
 });
 
+/** The viewer that is seen: its frame, as playwright's frames are. */
+const frameOf = async (page) => (await page.locator('#viewer').elementHandle()).contentFrame();
+const layerOf = (page) => page.frameLocator('#viewer').locator('#layer').inputValue();
+const timesOf = (page) => page.locator('#times').textContent();
+/** Changes a setting, and waits until the layers of it are there. */
+async function change(page, name, value) {
+  await page.evaluate(() => (document.getElementById('status').textContent = ''));
+  const field = page.locator(`[name=${name}]`);
+  if ((await field.evaluate((one) => one.localName)) === 'select') await field.selectOption(value);
+  else {
+    await field.fill(value);
+    await field.blur();
+  }
+  await sliced(page);
+}
+
+test('the same file can be opened again', async () => {
+  native('make', 'rook', '-o', 'again.stl');
+  const { page, complaints, close } = await open('#layerHeight=1');
+  for (let i = 0; i < 2; ++i) {
+    await page.locator('#file').setInputFiles(join(folder, 'again.stl'));
+    await page.locator('#input', { hasText: /^again.stl: [\d,]+ triangles/ }).waitFor();
+    assert.equal(await page.locator('#file').inputValue(), '');
+    await page.locator('#body').selectOption('box');
+    await page.locator('#input', { hasText: /^box.stl: 12 triangles/ }).waitFor();
+  }
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('a file that is dropped on the viewer is sliced', async () => {
+  const { page, complaints, close } = await open('#layerHeight=1&body=box');
+  await sliced(page);
+  native('make', 'rook', '-o', 'dropped.stl');
+  const bytes = readFileSync(join(folder, 'dropped.stl')).toString('base64');
+  await (await frameOf(page)).evaluate((text) => {
+    const dataTransfer = new DataTransfer();
+    dataTransfer.items.add(new File([Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0))], 'dropped.stl'));
+    for (const kind of ['dragover', 'drop']) {
+      const event = new DragEvent(kind, { dataTransfer, bubbles: true, cancelable: true });
+      if (document.body.dispatchEvent(event)) throw new Error(`${kind} is left to the browser`);
+    }
+  }, bytes);
+  await page.locator('#input', { hasText: /^dropped.stl: [\d,]+ triangles/ }).waitFor();
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('the viewer keeps height, view and look from run to run, and forgets where it was in another part', async () => {
+  const { page, complaints, close } = await open('#layerHeight=0.2&body=rook');
+  await sliced(page);
+  const frame = await layersOf(page);
+  const stateOf = async () => {
+    const view = await layersOf(page);
+    return {
+      z: Number(/z = ([\d.]+) mm/.exec(await view.locator('.height').textContent())[1]),
+      scale: await view.locator('.scale span').textContent(),
+      contours: await view.getByRole('button', { name: 'Contours', exact: true }).getAttribute('aria-pressed'),
+      theme: await view.locator('html').getAttribute('data-theme'),
+    };
+  };
+  await frame.locator('#layer').fill('10');
+  await frame.getByRole('button', { name: 'Contours', exact: true }).click();
+  await frame.locator('#theme').click();
+  for (let i = 0; i < 3; ++i) await frame.locator('canvas[data-layer]').press('+');
+  const before = await stateOf();
+  assert.equal(before.z, 2.1);
+  assert.equal(before.contours, 'false');
+  assert.equal(await page.locator('html').getAttribute('data-theme'), before.theme);
+  await change(page, 'layerHeight', '0.25');
+  const after = await stateOf();
+  assert.ok(Math.abs(after.z - before.z) <= 0.125, `z = ${after.z} mm`);
+  assert.deepEqual({ ...after, z: 0 }, { ...before, z: 0 });
+  await page.getByRole('button', { name: 'Diagnosis of the mesh' }).click();
+  await page.frameLocator('#viewer').locator('canvas[data-ready]').first().waitFor();
+  await page.locator('#views [data-view=layers]').click();
+  await page.frameLocator('#viewer').locator('canvas[data-layer]').first().waitFor();
+  assert.deepEqual(await stateOf(), after);
+  await page.locator('#body').selectOption('box');
+  await page.locator('#input', { hasText: /^box.stl: 12/ }).waitFor();
+  const other = await stateOf();
+  assert.ok(other.z > 4, `z = ${other.z} mm`);
+  assert.equal(other.theme, before.theme);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('an invalid value is named where it stands, also in a folded section, and nothing is called sliced', async () => {
+  const { page, complaints, close } = await open('#layerHeight=1&body=box');
+  await sliced(page);
+  const section = page.locator('details', { has: page.locator('[name=minArea]') });
+  await section.locator('summary').click();
+  await page.locator('[name=minArea]').fill('-3');
+  await page.locator('[name=minArea]').blur();
+  assert.equal(await section.locator('.fault').textContent(), 'the least is 0');
+  await section.locator('summary').click();
+  assert.match(await section.getAttribute('class'), /wrong/);
+  assert.match(await page.locator('#error').textContent(), /“Drop areas below”: the least is 0/);
+  assert.match(await page.locator('#status').textContent(), /of the settings before/);
+  await page.locator('#slice').click();
+  assert.equal(await page.evaluate(() => document.activeElement.name), 'minArea');
+  assert.ok(await page.locator('[name=minArea]').isVisible());
+  await change(page, 'minArea', '');
+  assert.equal(await page.locator('.fault').count(), 0);
+  assert.equal(await page.locator('#error').textContent(), '');
+  for (const [name, value] of [['layerHeight', '0'], ['layerHeight', '-1'], ['layerHeight', ''], ['copies', '1.5'], ['scale', '0'], ['adaptiveMin', '0.1']]) {
+    await page.evaluate((name) => document.querySelector(`[name=${name}]`).closest('details')?.setAttribute('open', ''), name);
+    const before = await page.locator(`[name=${name}]`).inputValue();
+    await page.locator(`[name=${name}]`).fill(value);
+    await page.locator(`[name=${name}]`).blur();
+    assert.ok((await page.locator('.fault').count()) > 0, `${name} ${value}`);
+    assert.doesNotMatch(await page.locator('#status').textContent(), /Sliced/);
+    await change(page, name, before);
+  }
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('messages use the words of the page, and a pattern needs no order of clicks', async () => {
+  const { page, complaints, close } = await open('#layerHeight=1&body=box&pattern=chessboard');
+  await sliced(page);
+  assert.ok(await page.locator('[name=pattern]').isDisabled());
+  await page.locator('[name=scan]').check();
+  await page.locator('#format option[value=ilt]').waitFor({ state: 'attached' });
+  assert.equal(await page.locator('#warnings').textContent(), '');
+  await page.locator('#format').selectOption('svg');
+  await page.getByRole('button', { name: 'Download' }).click();
+  await page.locator('#warnings li').first().waitFor();
+  const warnings = await page.locator('#warnings').textContent();
+  assert.match(warnings, /^box.svg: /);
+  assert.doesNotMatch(warnings, /--|out\//);
+  await page.locator('[name=hatchDistance]').fill('0.0001');
+  await page.locator('[name=hatchDistance]').blur();
+  await page.locator('[name=unit]').evaluate((one) => one.closest('details').setAttribute('open', ''));
+  await page.locator('[name=scan]').uncheck();
+  await sliced(page);
+  await page.evaluate(() => {
+    const one = document.querySelector('[name=layerHeight]');
+    one.min = '';
+    one.value = '1e-12';
+    one.dispatchEvent(new Event('change', { bubbles: true }));
+  });
+  await page.locator('#error:not(:empty)').waitFor();
+  assert.match(await page.locator('#error').textContent(), /“Layer height”/);
+  assert.doesNotMatch(await page.locator('#error').textContent(), /--/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('nothing scrolls by itself, and on a phone settings and layers take turns', async () => {
+  for (const viewport of [{ width: 390, height: 844 }, { width: 700, height: 410 }]) {
+    const { page, complaints, close } = await open('', { viewport });
+    await page.locator('#body').selectOption('box');
+    await page.locator('main[data-pane=layers]').waitFor();
+    const inView = async (name) => {
+      const { x, y, width, height } = await page.locator(name).boundingBox();
+      return x >= 0 && y >= 0 && x + width <= viewport.width && y + height <= viewport.height + 1;
+    };
+    assert.ok(await inView('#viewer'));
+    await page.getByRole('button', { name: 'Settings' }).click();
+    await page.locator('details', { has: page.locator('[name=orient]') }).locator('summary').click();
+    await page.locator('[name=orient]').scrollIntoViewIfNeeded();
+    const scrolls = () => page.evaluate(() => [scrollX, scrollY, document.getElementById('settings').scrollTop]);
+    const before = await scrolls();
+    await page.evaluate(() => (document.getElementById('status').textContent = ''));
+    await page.locator('[name=orient]').check();
+    await sliced(page);
+    assert.deepEqual(await scrolls(), before);
+    assert.equal(await page.locator('main').getAttribute('data-pane'), 'settings');
+    assert.deepEqual(await page.evaluate(() => [document.documentElement.scrollWidth, document.documentElement.scrollHeight]), [viewport.width, viewport.height]);
+    assert.deepEqual(complaints, []);
+    await close();
+  }
+});
+
+test('a link that is pasted into the open page is followed', async () => {
+  const { page, complaints, close } = await open('#layerHeight=1&body=box&orient=on');
+  await sliced(page);
+  await page.evaluate(() => (document.getElementById('status').textContent = ''));
+  await page.evaluate(() => (location.hash = '#layerHeight=2&body=rook'));
+  await sliced(page);
+  assert.match(await page.locator('#input').textContent(), /^rook/);
+  assert.equal(await page.locator('[name=orient]').isChecked(), false);
+  assert.equal(await page.locator('[name=layerHeight]').inputValue(), '2');
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('the command that the page shows writes what the page downloads', async () => {
+  const settings = '#layerHeight=1&firstLayerHeight=0.5&zTo=8&rotateX=90&scale=-1&scan=on&hatchAngle=30&pattern=lines&pixelSize=0.2&displayX=50&displayY=50&body=torus';
+  for (const format of ['cli', 'png-zip']) {
+    const { page, complaints, close } = await open(format === 'cli' ? settings : settings.replace('scan=on', 'scale=2'));
+    await sliced(page);
+    await page.locator('#format').selectOption(format);
+    const coming = page.waitForEvent('download');
+    await page.getByRole('button', { name: 'Download' }).click();
+    const bytes = readFileSync(await (await coming).path());
+    const commands = (await page.locator('#command').textContent()).split('\n');
+    assert.equal(commands.length, 2);
+    for (const command of commands) {
+      assert.match(command, /^lamella /);
+      execFileSync('/bin/sh', ['-c', `"$0" ${command.slice(8)}`, program], { cwd: folder, stdio: 'pipe' });
+    }
+    assert.ok(Buffer.compare(bytes, readFileSync(join(folder, `torus.${format === 'cli' ? 'cli' : 'zip'}`))) === 0, commands[1]);
+    assert.deepEqual(complaints, []);
+    await close();
+  }
+});
+
+test('a strategy file makes the vectors, and layers may follow the slope', async () => {
+  writeFileSync(join(folder, 'narrow.toml'), native('strategy', 'show').replace(/distance = 0\.1\b/g, 'distance = 0.5'));
+  const { page, complaints, close } = await open('#layerHeight=5&body=box&scan=on');
+  await sliced(page);
+  const linesOf = async () => Number(/contours([\d,]+)/.exec(await timesOf(page))[1].replaceAll(',', ''));
+  await page.evaluate(() => (document.getElementById('status').textContent = ''));
+  await page.locator('#strategy').setInputFiles(join(folder, 'narrow.toml'));
+  await sliced(page);
+  assert.equal(await page.locator('#strategyName').textContent(), 'narrow.toml');
+  assert.match(await page.locator('#command').textContent(), /--strategy=narrow.toml/);
+  await page.locator('#noStrategy').click();
+  await page.getByText('none', { exact: true }).waitFor();
+  await sliced(page);
+  await page.evaluate(() => document.querySelector('[name=adaptiveMin]').closest('details').setAttribute('open', ''));
+  await page.locator('[name=adaptiveMin]').fill('1');
+  await change(page, 'adaptiveMax', '5');
+  assert.ok(await page.locator('[name=layerHeight]').isDisabled());
+  assert.match(await page.locator('#command').textContent(), /--adaptive=1:5/);
+  assert.ok((await linesOf()) > 0);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('ten thousand copies leave the page alive', async () => {
+  const { page, complaints, close } = await open('#layerHeight=5&copies=10000');
+  await page.locator('#body').selectOption('box');
+  await sliced(page);
+  assert.match(await timesOf(page), /contours20,000/);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test('every control has a name for a screen reader', async () => {
   const { page, close } = await open('#body=box');
   await sliced(page);

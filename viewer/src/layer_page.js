@@ -94,13 +94,18 @@ export const signsOfLayers = [
     'a square on its corner a defect of the mesh.',
 ];
 
-/** Builds the page of a stack of layers. Returns its table of keys. */
-export function buildLayerPage(page, store, main, help) {
+/**
+ * Builds the page of a stack of layers.
+ * @param {{z?: number, order?: number, layer?: object, stack?: object}} before where one looked in the page before (host.js)
+ * @returns {{keys: object[], place: () => object}} its table of keys, and what tells where one looks
+ */
+export function buildLayerPage(page, store, main, help, before) {
   if (page.head.layers === 0) {
     main.append(element('p', { className: 'trouble' }, 'There are no layers in this file.'));
-    return [];
+    return { keys: [], place: () => before };
   }
-  store.set({ layer: layerInAddress(page.table) ?? firstLayer(page) });
+  const layerBefore = before.z === undefined ? undefined : nearest(page.table.z, before.z);
+  store.set({ layer: layerInAddress(page.table) ?? layerBefore ?? firstLayer(page) });
   keepLayerInAddress(page.table, store, (layer) => player.go(layer));
   store.on(['layer'], () => store.set({ order: Infinity, executing: false }));
   const shelf = new LayerShelf(page);
@@ -115,6 +120,9 @@ export function buildLayerPage(page, store, main, help) {
     stackView.lookAt([x, y, z]);
   };
   const stackView = new StackView(page, shelf, store, layerView.drawn);
+  if (before.layer) layerView.outlook = before.layer;
+  if (before.stack) stackView.outlook = before.stack;
+  if (before.order) store.set({ order: before.order });
   const stage = element('div', { className: 'stage' }, layerView.node, stackView.node);
   switchViews(store, layerView, stackView);
   main.append(stage, timeline.node, layerPanels(page, store, (layer) => player.go(layer), show));
@@ -129,5 +137,11 @@ export function buildLayerPage(page, store, main, help) {
   const node = document.getElementById('verdict');
   node.className = `verdict ${tone}`;
   node.textContent = text;
-  return keyTable(page, store, player, orderPlayer, layerView, stackView, help);
+  const place = () => ({
+    z: page.table.z[store.state.layer],
+    ...(Number.isFinite(store.state.order) ? { order: store.state.order } : {}),
+    layer: layerView.outlook,
+    stack: stackView.outlook,
+  });
+  return { keys: keyTable(page, store, player, orderPlayer, layerView, stackView, help), place };
 }

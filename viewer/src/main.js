@@ -1,6 +1,7 @@
 import './styles.css';
 import { readPage } from './data/page.js';
 import { element } from './element.js';
+import { answerHost, lookOf, shownBefore, tellReady } from './host.js';
 import { listenToKeys } from './keys.js';
 import { buildLayerPage, signsOfLayers } from './layer_page.js';
 import { buildMeshPage } from './mesh_page.js';
@@ -29,10 +30,11 @@ import { nextTurn } from './turn.js';
 async function build() {
   await nextTurn(); // it took a while to load the modules
   const page = readPage(document);
+  const before = shownBefore();
   const store = new Store({
     layer: 0,
     playing: false,
-    theme: firstTheme(),
+    theme: firstTheme(before.look.theme),
     fill: true,
     lines: true,
     directions: true,
@@ -45,6 +47,7 @@ async function build() {
     executing: false,
     jumps: true,
     shell: null,
+    ...lookOf(before.look),
   });
   followTheme(store);
   watchScrolling();
@@ -54,10 +57,11 @@ async function build() {
   document.getElementById('theme').addEventListener('click', () => switchTheme(store));
   let help;
   const isMesh = page.head.kind === 'mesh';
-  const keys = await (isMesh ? buildMeshPage : buildLayerPage)(page, store, document.getElementById('main'), () => help);
+  const { keys, place } = await (isMesh ? buildMeshPage : buildLayerPage)(page, store, document.getElementById('main'), () => help, before.place);
   help = helpDialog(keys, isMesh ? [] : signsOfLayers);
   document.getElementById('help').addEventListener('click', () => help.showModal());
   listenToKeys(keys);
+  answerHost(store, place);
 }
 
 const main = document.getElementById('main');
@@ -70,4 +74,5 @@ try {
   throw error;
 } finally {
   main.classList.remove('loading');
+  tellReady();
 }

@@ -18,8 +18,12 @@ function verdictOf(page) {
   return { tone: 'good', text: 'The mesh is sound' };
 }
 
-/** Builds the page of a mesh. Returns its table of keys. */
-export async function buildMeshPage(page, store, main, help) {
+/**
+ * Builds the page of a mesh.
+ * @param {{mesh?: object}} before where one looked in the page before (host.js)
+ * @returns {Promise<{keys: object[], place: () => object}>} its table of keys, and what tells where one looks
+ */
+export async function buildMeshPage(page, store, main, help, before) {
   const stage = element('div', { className: 'stage tall' });
   const diagonal = Math.hypot(...page.head.box[0].map((low, k) => page.head.box[1][k] - low));
   let view = null;
@@ -41,11 +45,12 @@ export async function buildMeshPage(page, store, main, help) {
   try {
     view = new MeshView(page, mesh, store);
     stage.append(view.node);
+    if (before.mesh) view.outlook = before.mesh;
   } catch {
     stage.append(element('p', { className: 'trouble' }, 'This browser draws nothing in space: WebGL is missing or switched off.'));
   }
   const turn = 0.2;
-  return [
+  const keys = [
     { keys: ['ArrowLeft'], label: '← → ↑ ↓', help: 'rotate the mesh', act: () => view?.turnBy(turn, 0) },
     { keys: ['ArrowRight'], act: () => view?.turnBy(-turn, 0) },
     { keys: ['ArrowUp'], act: () => view?.turnBy(0, turn) },
@@ -56,4 +61,5 @@ export async function buildMeshPage(page, store, main, help) {
     { keys: ['t'], label: 'T', help: 'dark or light', act: () => switchTheme(store) },
     { keys: ['?'], label: '?', help: 'this list', act: () => help().showModal() },
   ];
+  return { keys, place: () => ({ mesh: view?.outlook }) };
 }

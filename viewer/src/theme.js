@@ -49,8 +49,8 @@ function apply(name) {
   return coloursInEffect();
 }
 
-/** The theme to begin with: what was chosen before, else what the system asks for. */
-export const firstTheme = () => apply(stored.get() ?? (wishOfSystem.matches ? 'dark' : 'light'));
+/** The theme to begin with: that of the page before in the same frame, else what was chosen before, else what the system asks for. */
+export const firstTheme = (before) => apply(before ?? stored.get() ?? (wishOfSystem.matches ? 'dark' : 'light'));
 
 /** Keeps the theme in the store, and follows the system until somebody chooses. */
 export function followTheme(store) {

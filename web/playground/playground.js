@@ -2,6 +2,9 @@
 
 import { LamellaError, run, usePlatform } from '../package/api.js';
 import { previewOn } from './preview.js';
+import { check, enter, entered, goTo, labelOf, onlyImages, onlySteps, options as optionsWith, withoutImages, words } from './settings.js';
+import { commandText, inWordsOfPage, warningsOfPage } from './texts.js';
+import { ViewerFrame } from './viewer_frame.js';
 
 // build_playground.mjs puts these texts into the page.
 const textOf = (id) => document.getElementById(id).textContent;
@@ -9,7 +12,9 @@ const textOf = (id) => document.getElementById(id).textContent;
 async function wasmModule() {
   // It is at the end of the page, behind all that is seen.
   if (document.readyState === 'loading') await new Promise((resolve) => addEventListener('DOMContentLoaded', resolve, { once: true }));
-  const packed = Uint8Array.from(atob(textOf('wasm')), (letter) => letter.charCodeAt(0));
+  const text = atob(textOf('wasm'));
+  const packed = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
   return WebAssembly.compile(await new Response(stream).arrayBuffer());
 }
@@ -35,94 +40,113 @@ const patience = 300; // ms without a picture, after which layers are shown one 
 const meshFormats = { cli: 'cli', 'cli-ascii': 'cli', svg: 'svg', slc: 'slc', '3mf': '3mf', dxf: 'dxf', geojson: 'geojson', json: 'json', npz: 'npz', 'png-zip': 'zip', sl1: 'sl1', sl1s: 'sl1s', html: 'html' };
 const scanFormats = { ilt: 'ilt', ovf: 'ovf', '3mf-toolpath': '3mf', cli: 'cli', svg: 'svg', dxf: 'dxf', json: 'json', npz: 'npz', html: 'html' };
 
+const imageFormats = ['png-zip', 'sl1', 'sl1s'];
+/** Whose bytes come one after the other and do not depend on the name. */
+const streamedFormats = ['cli', 'cli-ascii', 'svg', 'slc', 'dxf', 'geojson', 'json'];
+const blobBytes = 64 << 20; // of chunks that become one
 const $ = (id) => document.getElementById(id);
 const form = $('settings');
 let input = null; // {files: bytes by name, mesh: whether they are meshes}
+let strategy = null; // {name, text} of a file
 let pages = {}; // addresses of the pages of layers and mesh
 let abort = null; // of the call in progress
 let turn = 0; // of the last slicing: an older one shows nothing
+let done = false; // what is seen is of the settings
 
-const rememberedTheme = () => {
+const strategyFile = 'strategy.toml';
+const options = () => optionsWith(strategy ? strategyFile : undefined);
+
+// ---- Dark and light ---------------------------------------------------------------------------------------------------
+
+const storage = (act) => {
   try {
-    return localStorage.getItem('lamella-theme');
+    return act();
   } catch {
-    return null;
+    return null; // it is refused to some pages opened from disk
   }
 };
+let chosenTheme = storage(() => localStorage.getItem('lamella-theme')); // in the viewer, now or before
 const dark = matchMedia('(prefers-color-scheme: dark)');
-const applyTheme = () => (document.documentElement.dataset.theme = rememberedTheme() ?? (dark.matches ? 'dark' : 'light'));
+const theme = () => chosenTheme ?? (dark.matches ? 'dark' : 'light');
+const viewer = new ViewerFrame($('viewer'), {
+  theme(name) {
+    chosenTheme = name;
+    storage(() => localStorage.setItem('lamella-theme', name));
+    applyTheme();
+  },
+  drag: (over) => document.body.classList.toggle('over', over),
+  files: (files) => takeFiles(files),
+});
+function applyTheme() {
+  document.documentElement.dataset.theme = viewer.theme = theme();
+}
 applyTheme();
 dark.addEventListener('change', applyTheme);
-addEventListener('storage', applyTheme);
 
-// ---- Settings ---------------------------------------------------------------------------------------------------------
-
-const fields = () => [...form.elements].filter((field) => field.name);
-const options = () => Object.fromEntries(fields().map((field) => [field.name, field.type === 'checkbox' ? field.checked : field.value]).filter(([, value]) => value !== '' && value !== false));
+// ---- The address ------------------------------------------------------------------------------------------------------
 
 function keepSettings() {
-  const kept = new URLSearchParams(options());
+  const kept = new URLSearchParams(entered());
   if (bodies.includes($('body').value)) kept.set('body', $('body').value);
-  try {
-    history.replaceState(null, '', `#${kept}`);
-  } catch {
-    // Some browsers allow it to no page from disk.
-  }
+  storage(() => history.replaceState(null, '', `#${kept}`));
 }
 
+/** Takes settings from the address. Returns the test body that it names. */
 function takeSettings() {
   const given = new URLSearchParams(location.hash.slice(1));
-  for (const field of fields()) {
-    if (!given.has(field.name)) continue;
-    if (field.type === 'checkbox') field.checked = true;
-    else field.value = given.get(field.name);
-    field.closest('details')?.setAttribute('open', '');
-  }
-  return given.get('body');
+  enter(given);
+  const body = given.get('body');
+  return bodies.includes(body) ? body : '';
 }
 
-const kebab = (name) => name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
-const words = (given) => Object.entries(given).flatMap(([name, value]) => (value === true ? [`--${kebab(name)}`] : [`--${kebab(name)}=${value}`]));
-
-/** Of an input of layers only the steps are of use. */
-const stepNames = ['fill', 'offset', 'minArea'];
-const onlyOf = (given, names) => Object.fromEntries(Object.entries(given).filter(([name]) => names.includes(name)));
+function link() {
+  const kept = new URLSearchParams(entered());
+  if (bodies.includes($('body').value)) kept.set('body', $('body').value);
+  return `${location.href.replace(/#.*/, '')}#${kept}`;
+}
 
 // ---- What the page shows ----------------------------------------------------------------------------------------------
 
-const deeds = { read: 'Reading', weld: 'Joining vertices', link: 'Linking triangles', slice: 'Slicing', polygon: 'Changing layers', write: 'Writing' };
+const deeds = { read: 'Reading', weld: 'Joining vertices', link: 'Linking triangles', slice: 'Slicing', polygon: 'Changing layers', scan: 'Making scan vectors', write: 'Writing' };
+const named = (tag, textContent) => Object.assign(document.createElement(tag), { textContent });
 
-function showProgress({ stage, done, total }) {
+function showProgress({ stage, done: ready, total }) {
   $('bar').hidden = false;
-  $('bar').value = total > 0 ? done / total : 0;
-  $('status').textContent = `${deeds[stage] ?? stage} …`;
+  // What still takes time at the end of the last stage is not counted.
+  if (total > 0 && ready < total) $('bar').value = ready / total;
+  else $('bar').removeAttribute('value');
+  $('status').textContent = `${deeds[stage] ?? 'Working'} …`;
 }
 
-function showWarnings(warnings) {
-  $('warnings').replaceChildren(...warnings.map((warning) => Object.assign(document.createElement('li'), { textContent: warning })));
-}
+const showWarnings = (warnings, output) => $('warnings').replaceChildren(...warningsOfPage(warnings, output).map((warning) => named('li', warning)));
+const showTimes = (rows) => $('times').replaceChildren(...rows.flatMap(([name, text]) => [named('dt', name), named('dd', text)]));
 
-function showTimes(rows) {
-  $('times').replaceChildren(
-    ...rows.flatMap(([name, text]) => [Object.assign(document.createElement('dt'), { textContent: name }), Object.assign(document.createElement('dd'), { textContent: text })]),
-  );
-}
-
+/** Shows one of what covers the place of the layers. */
 function reveal(shown) {
   for (const id of ['viewer', 'preview', 'nothing']) $(id).hidden = id !== shown;
-  // On a phone the layers are below the settings.
-  if (shown !== 'nothing' && matchMedia('(max-width: 800px)').matches) $(shown).scrollIntoView({ behavior: 'smooth' });
 }
 
-function showPage(name) {
+/** On a phone, settings and layers take turns. */
+function showPane(name) {
+  document.querySelector('main').dataset.pane = name;
+  for (const button of $('panes').children) button.setAttribute('aria-pressed', String(button.dataset.pane === name));
+}
+
+async function showPage(name) {
+  const isSeen = await viewer.show(pages[name], name, name === 'mesh' ? 'The mesh and its defects' : 'Layers');
+  if (!isSeen) return false;
   for (const button of $('views').children) button.setAttribute('aria-pressed', String(button.dataset.view === name));
-  $('viewer').title = name === 'mesh' ? 'The mesh and its defects' : 'Layers';
-  $('viewer').src = pages[name];
   reveal('viewer');
+  return true;
+}
+
+function forgetPage(name) {
+  if (pages[name]) URL.revokeObjectURL(pages[name]);
+  delete pages[name];
 }
 
 function keepPage(name, bytes) {
-  if (pages[name]) URL.revokeObjectURL(pages[name]);
+  forgetPage(name);
   pages[name] = URL.createObjectURL(new Blob([bytes], { type: 'text/html' }));
 }
 
@@ -134,7 +158,7 @@ async function attempt(act) {
   $('error').textContent = '';
   $('cancel').hidden = false;
   try {
-    await act({ signal: mine.signal, onProgress: showProgress });
+    await act({ signal: mine.signal, onProgress: (progress) => number === turn && showProgress(progress) });
   } catch (error) {
     if (number !== turn) return;
     if (!$('preview').hidden) reveal(pages.layers ? 'viewer' : 'nothing');
@@ -142,8 +166,8 @@ async function attempt(act) {
       $('status').textContent = 'Cancelled.';
     } else {
       $('status').textContent = '';
-      $('error').textContent = error instanceof LamellaError ? error.message : `${error}`;
-      $('error').scrollIntoView({ block: 'nearest' });
+      $('error').textContent = error instanceof LamellaError ? inWordsOfPage(error.message) : `${error}`;
+      showPane('settings');
     }
   } finally {
     if (number === turn) {
@@ -166,25 +190,49 @@ function fillFormats() {
 const nameOf = ({ files }) => Object.keys(files).join(', ');
 const sizeOf = (bytes) => (bytes < 1e5 ? `${grouped(bytes)} bytes` : `${(bytes / 1e6).toLocaleString('en', { maximumFractionDigits: 2 })} MB`);
 
+// ---- Runs of the program ----------------------------------------------------------------------------------------------
+
 /** Runs a command on the input, with the texts of the page for its progress. */
-const runOn = ({ files }, command, calls) => run([...command, '--progress=json'], files, calls);
+const runOn = ({ files }, command, calls) => run([...command, '--progress=json'], strategy ? { ...files, [strategyFile]: strategy.text } : files, calls);
 
 /** The command that writes layers of the input. */
 const writing = ({ files, mesh }, given, ...more) => {
   const names = Object.keys(files);
-  return mesh ? ['slice', ...words(given), ...names, ...more] : ['convert', ...words(onlyOf(given, stepNames)), ...names, ...more];
+  return mesh ? ['slice', ...words(given), ...names, ...more] : ['convert', ...words(onlySteps(given)), ...names, ...more];
 };
+
+/** Name of a download, and the command that writes it to a path. */
+function writingDownload(path) {
+  const format = $('format').value;
+  const given = { ...withoutImages(options()), ...(imageFormats.includes(format) ? onlyImages(options()) : {}) };
+  const images = input.mesh ? [] : words(onlyImages(given));
+  const [first] = Object.keys(input.files);
+  const name = `${first.replace(/\.[^.]*$/, '')}.${{ ...meshFormats, ...scanFormats }[format]}`;
+  const output = path(name);
+  return { name, output, command: writing(input, given, ...images, ...(input.mesh ? ['-o', output] : [output]), '--format', format) };
+}
+
+/** Shows the command that does the same in a terminal. */
+function tellCommand() {
+  if (!input || $('results').hidden) return;
+  const { command } = writingDownload((name) => name);
+  const body = $('body').value;
+  const making = body ? [commandText(['make', body, '-o', `${body}.stl`, ...words(smaller[body] ?? {})])] : [];
+  const taken = command.map((word) => (word === `--strategy=${strategyFile}` ? `--strategy=${strategy.name}` : word));
+  $('command').textContent = [...making, commandText(taken)].join('\n');
+}
 
 async function sliceInput(calls) {
   const begun = performance.now();
   let shownAfter = null; // s, until layers were seen
   const seeLayers = () => (shownAfter ??= (performance.now() - begun) / 1000);
-  const given = options();
-  pages.mesh = undefined;
+  const given = withoutImages(options());
+  forgetPage('mesh');
   const preview = previewOn($('preview'), () => (reveal('preview'), seeLayers()));
   const chunks = []; // of layers that come before anybody waits for them
   const isLate = () => performance.now() - begun > patience;
   const onOutput = (bytes) => {
+    if (calls.signal.aborted) return;
     chunks.push(bytes);
     if (isLate()) chunks.splice(0).forEach(preview);
   };
@@ -200,13 +248,18 @@ async function sliceInput(calls) {
       shown.mesh = false;
     }
   }
-  if (!shown.mesh) result = await runOn(shown, ['view', ...Object.keys(shown.files), ...words(onlyOf(given, stepNames)), '-o', 'page.html'], calls);
-  $('viewer').addEventListener('load', () => seeLayers(), { once: true });
+  if (!shown.mesh) result = await runOn(shown, ['view', ...Object.keys(shown.files), ...words(onlySteps(given)), '-o', 'page.html'], calls);
   keepPage('layers', result.files['page.html']);
-  showPage('layers');
-  fillFormats();
-  $('results').hidden = false;
-  $('views').hidden = !shown.mesh || Object.keys(shown.files).length > 1;
+  $('status').textContent = 'Showing …';
+  if (!(await showPage('layers')) || calls.signal.aborted) return;
+  seeLayers();
+  showFigures(shown, result, [
+    ...(shownAfter !== null ? [['until layers were seen', seconds(shownAfter)]] : []),
+    ['until all was done', seconds((performance.now() - begun) / 1000)],
+  ]);
+}
+
+function showFigures(shown, result, times) {
   const rows = [];
   const warnings = [...result.warnings];
   if (shown.mesh) {
@@ -216,11 +269,32 @@ async function sliceInput(calls) {
     rows.push(['layers', grouped(figures.layers.length)], ['contours', grouped(figures.contours)], ['points', grouped(figures.points)]);
     for (const stage of ['read', 'weld', 'link', 'slice', 'write']) if (figures.seconds[stage] > 0) rows.push([deeds[stage].toLowerCase(), seconds(figures.seconds[stage])]);
   }
+  fillFormats();
+  $('results').hidden = false;
+  $('views').hidden = !shown.mesh || Object.keys(shown.files).length > 1;
+  tellCommand();
   showWarnings(warnings);
-  if (shownAfter !== null) rows.push(['until layers were seen', seconds(shownAfter)]);
-  rows.push(['until all was done', seconds((performance.now() - begun) / 1000)]);
-  showTimes(rows);
+  showTimes([...rows, ...times]);
+  done = true;
   $('status').textContent = shown.mesh ? 'Sliced.' : 'Read.';
+}
+
+/** Slices, if all that was entered is valid. */
+function sliceIfValid() {
+  const faults = check();
+  if (faults.length > 0) {
+    abort?.abort();
+    turn += 1;
+    $('bar').hidden = $('cancel').hidden = true;
+    const [{ field, text }] = faults;
+    $('error').textContent = `Not sliced: “${labelOf(field)}”: ${text}${faults.length > 1 ? `; ${faults.length - 1} more below` : ''}.`;
+    $('status').textContent = done ? 'The layers shown are those of the settings before.' : '';
+    return faults;
+  }
+  done = false;
+  if (input) attempt(sliceInput);
+  else $('error').textContent = '';
+  return faults;
 }
 
 /** Whether a file that cannot be sliced holds layers. */
@@ -241,11 +315,16 @@ function describe(shown, { input: { triangles, bbox } }) {
 
 /** Files of one plate keep their positions, which may not have been meant for each other. */
 function overlaps({ files }, parts = []) {
+  if (Object.keys(files).length === 1) return [];
   const inside = (a, b) => [0, 1, 2].every((axis) => a.bbox[0][axis] < b.bbox[1][axis] && b.bbox[0][axis] < a.bbox[1][axis]);
-  const pairs = parts.flatMap((one, i) => parts.slice(i + 1).filter((other) => inside(one, other)).map((other) => `${one.label} and ${other.label}`));
-  if (pairs.length === 0 || Object.keys(files).length === 1) return [];
-  const more = pairs.length > 1 ? ` (and ${pairs.length - 1} pairs more)` : '';
-  return [`the boxes of ${pairs[0]}${more} overlap: each file keeps its own position; to place parts, use lamella slice with --translate behind each file`];
+  let pairs = 0;
+  let first;
+  parts.forEach((one, i) => {
+    for (let k = i + 1; k < parts.length; ++k) if (inside(one, parts[k])) first = pairs++ === 0 ? `${one.label} and ${parts[k].label}` : first;
+  });
+  if (pairs === 0) return [];
+  const more = pairs > 1 ? ` (and ${grouped(pairs - 1)} more pairs)` : '';
+  return [`the boxes of ${first}${more} overlap: each file keeps its own coordinates, because the page does not move parts`];
 }
 
 async function take(load) {
@@ -257,13 +336,17 @@ async function take(load) {
     $('slice').disabled = true;
     $('input').textContent = '';
     input = null;
-    pages = {};
+    done = false;
+    for (const name of Object.keys(pages)) forgetPage(name);
+    viewer.forgetPlaces();
     reveal('nothing');
     const files = await load(calls);
     input = { files };
     $('slice').disabled = false;
     $('input').textContent = `${nameOf(input)}: ${sizeOf(Object.values(files).reduce((sum, { length }) => sum + length, 0))}`;
+    if (check().length > 0) return void sliceIfValid();
     await sliceInput(calls);
+    if (done) showPane('layers');
   });
 }
 
@@ -280,7 +363,7 @@ async function takeFiles(list) {
 function unusedName(name, files) {
   for (let number = 1; ; ++number) {
     const unused = number === 1 ? name : name.replace(/(\.[^.]*)?$/, ` ${number}$1`);
-    if (files[unused] === undefined) return unused;
+    if (files[unused] === undefined && unused !== strategyFile) return unused;
   }
 }
 
@@ -288,38 +371,88 @@ const takeBody = (body) =>
   take(async (calls) => (await run(['make', body, '-o', `${body}.stl`, ...words(smaller[body] ?? {})], {}, calls)).files);
 
 async function showMesh() {
-  if (pages.mesh) return showPage('mesh');
   await attempt(async (calls) => {
-    const unit = options().unit;
-    const { files, warnings } = await runOn(input, ['info', ...Object.keys(input.files), ...(unit ? [`--unit=${unit}`] : []), '--report', 'mesh.html'], calls);
-    keepPage('mesh', files['mesh.html']);
-    showPage('mesh');
-    showWarnings(warnings);
-    $('status').textContent = 'The mesh with its shells and defects.';
+    if (!pages.mesh) {
+      const unit = options().unit;
+      const { files, warnings } = await runOn(input, ['info', ...Object.keys(input.files), ...(unit ? [`--unit=${unit}`] : []), '--report', 'mesh.html'], calls);
+      keepPage('mesh', files['mesh.html']);
+      showWarnings(warnings);
+    }
+    if (await showPage('mesh')) $('status').textContent = 'The mesh with its shells and defects.';
   });
+}
+
+/** The bytes of a download. They come in chunks where the format permits it: no array of a browser holds more than 2 GB. */
+async function downloaded({ name, output, command }, calls) {
+  const blobs = []; // which browsers may keep on disk
+  let chunks = [];
+  let waiting = 0; // bytes in chunks
+  const flush = () => {
+    blobs.push(new Blob(chunks));
+    [chunks, waiting] = [[], 0];
+  };
+  const onOutput = (bytes) => {
+    chunks.push(bytes);
+    waiting += bytes.length;
+    if (waiting > blobBytes) flush();
+  };
+  const isStreamed = streamedFormats.includes($('format').value);
+  const taken = isStreamed ? command.map((word) => (word === output ? '-' : word)) : command;
+  const { files, warnings } = await runOn(input, taken, isStreamed ? { ...calls, onOutput } : calls);
+  showWarnings(warnings, name);
+  flush();
+  return new Blob(isStreamed ? blobs : [files[output]]);
 }
 
 async function download() {
   await attempt(async (calls) => {
-    const format = $('format').value;
-    const extension = { ...meshFormats, ...scanFormats }[format];
-    const [first] = Object.keys(input.files);
-    const name = `${first.replace(/\.[^.]*$/, '')}.${extension}`;
-    const output = `output.${extension}`;
-    const call = writing(input, options(), ...(input.mesh ? ['-o', output] : [output]), '--format', format);
-    const { files, warnings } = await runOn(input, call, calls);
-    showWarnings(warnings);
-    const address = URL.createObjectURL(new Blob([files[output]]));
+    const writing = writingDownload((file) => `out/${file}`);
+    const { name } = writing;
+    const bytes = await downloaded(writing, calls);
+    const address = URL.createObjectURL(bytes);
     Object.assign(document.createElement('a'), { href: address, download: name }).click();
     setTimeout(() => URL.revokeObjectURL(address), 60000);
-    $('status').textContent = `${name}: ${sizeOf(files[output].length)}.`;
+    $('status').textContent = `${name}: ${sizeOf(bytes.size)}.`;
   });
+}
+
+/** Copies a text, also where a page from disk may not write to the clipboard. */
+async function copy(text, button) {
+  try {
+    await navigator.clipboard.writeText(text);
+  } catch {
+    const area = Object.assign(document.createElement('textarea'), { value: text, className: 'unseen' });
+    document.body.append(area);
+    area.select();
+    document.execCommand('copy');
+    area.remove();
+  }
+  const before = button.textContent;
+  button.textContent = 'Copied';
+  setTimeout(() => (button.textContent = before), 1500);
+}
+
+function takeStrategy(given) {
+  strategy = given;
+  $('strategyName').textContent = given?.name ?? 'none';
+  $('noStrategy').hidden = !given;
+  if (entered().scan) sliceIfValid();
 }
 
 // ---- What people do ---------------------------------------------------------------------------------------------------
 
 $('body').append(...bodies.map((body) => new Option(body, body)));
-$('file').addEventListener('change', ({ target }) => target.files.length > 0 && takeFiles(target.files));
+$('file').addEventListener('change', ({ target }) => {
+  const list = [...target.files];
+  target.value = ''; // so that the same file can be chosen again
+  if (list.length > 0) takeFiles(list);
+});
+$('strategy').addEventListener('change', async ({ target }) => {
+  const [file] = target.files;
+  target.value = '';
+  if (file) takeStrategy({ name: file.name, text: await file.text() });
+});
+$('noStrategy').addEventListener('click', () => takeStrategy(null));
 $('body').addEventListener('change', ({ target }) => {
   keepSettings();
   if (target.value) takeBody(target.value);
@@ -327,28 +460,55 @@ $('body').addEventListener('change', ({ target }) => {
 form.addEventListener('submit', (event) => {
   event.preventDefault();
   keepSettings();
-  if (input) attempt(sliceInput);
+  const [first] = sliceIfValid();
+  if (first) goTo(first.field);
 });
+const isOfImages = (name) => /^(pixel|display|antialias)/.test(name);
 form.addEventListener('change', ({ target }) => {
   if (!target.name) return;
   keepSettings();
-  if (input && form.checkValidity()) attempt(sliceInput);
+  if (isOfImages(target.name)) return void (check(), tellCommand()); // the layers stay as they are
+  sliceIfValid();
+});
+form.addEventListener('click', ({ target }) => {
+  if (!target.dataset.height) return;
+  form.elements.layerHeight.value = target.dataset.height;
+  form.elements.layerHeight.dispatchEvent(new Event('change', { bubbles: true }));
 });
 $('cancel').addEventListener('click', () => abort?.abort());
-$('download').addEventListener('click', download);
+$('format').addEventListener('change', tellCommand);
+$('download').addEventListener('click', () => {
+  const [first] = check();
+  if (first) sliceIfValid(), goTo(first.field);
+  else download();
+});
+$('results').addEventListener('click', ({ target }) => {
+  if (target.dataset.copy === 'command') copy($('command').textContent, target);
+  if (target.dataset.copy === 'link') copy(link(), target);
+});
 $('views').addEventListener('click', ({ target }) => {
   if (target.dataset.view === 'layers') showPage('layers');
   else if (target.dataset.view === 'mesh') showMesh();
 });
-for (const [kind, over] of [['dragover', true], ['dragleave', false], ['drop', false]])
+$('panes').addEventListener('click', ({ target }) => target.dataset.pane && showPane(target.dataset.pane));
+for (const kind of ['dragover', 'dragleave', 'drop'])
   addEventListener(kind, (event) => {
     event.preventDefault();
-    document.body.classList.toggle('over', over);
-    if (kind === 'drop' && event.dataTransfer.files.length > 0) takeFiles(event.dataTransfer.files);
+    document.body.classList.toggle('over', kind === 'dragover');
+    if (kind === 'drop' && event.dataTransfer.files.length > 0) takeFiles([...event.dataTransfer.files]);
   });
+addEventListener('hashchange', () => {
+  const body = takeSettings();
+  const other = body !== $('body').value && body !== '';
+  if (body) $('body').value = body;
+  check();
+  if (other) takeBody(body);
+  else sliceIfValid();
+});
 
 const body = takeSettings();
-if (bodies.includes(body)) {
+check();
+if (body) {
   $('body').value = body;
   takeBody(body);
 } else {

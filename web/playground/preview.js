@@ -5,60 +5,132 @@ const mostLayers = 150; // drawn, of all that come
 const mostPoints = 20000; // of a layer; a picture shows no more
 const [endOfHeader, layerCommand, contourCommand, hatchCommand] = ['$$HEADEREND', 127, 130, 132];
 
-/** Reads some of the layers, at equal distances, from chunks of a file. */
-class Reader {
-  #rest = new Uint8Array();
-  #header = null;
-  #layer = null; // that is read
-  #come = 0; // layers
+/** Bytes that have come and are not read. Taking them costs their number, whatever the sizes of chunks. */
+class Bytes {
+  #chunks = [];
+  #at = 0; // in the first chunk
+  length = 0;
 
-  /** @returns {{header: object, layers: {z: number, contours: Float32Array[]}[]} | undefined} layers that have become complete */
-  take(bytes) {
-    const all = new Uint8Array(this.#rest.length + bytes.length);
-    all.set(this.#rest);
-    all.set(bytes, this.#rest.length);
-    let at = 0;
-    const layers = [];
-    if (!this.#header) {
-      const text = new TextDecoder('latin1').decode(all.subarray(0, 1 << 16));
-      const end = text.indexOf(endOfHeader);
-      if (end < 0) return void (this.#rest = all);
-      const values = (name) => new RegExp(`\\$\\$${name}/([^\\n\\r]*)`).exec(text)[1].split(',').map(Number);
-      this.#header = { unit: values('UNITS')[0], box: values('DIMENSION'), layers: values('LAYERS')[0] };
-      at = end + endOfHeader.length;
-    }
-    const view = new DataView(all.buffer);
-    for (; at + 14 <= all.length; ) {
-      const command = view.getUint16(at, true);
-      let next = at + 6;
-      if (command === layerCommand) {
-        if (this.#layer) layers.push(this.#layer);
-        const isDrawn = this.#come++ % Math.ceil(this.#header.layers / mostLayers) === 0;
-        this.#layer = isDrawn ? { z: view.getFloat32(at + 2, true) * this.#header.unit, contours: [] } : null;
-      } else if (command === contourCommand) {
-        next = at + 14 + 8 * view.getInt32(at + 10, true);
-        if (next > all.length) break;
-        this.#layer?.contours.push(new Float32Array(all.slice(at + 14, next).buffer));
-      } else if (command === hatchCommand) {
-        next = at + 10 + 16 * view.getInt32(at + 6, true);
-      } else {
-        break;
+  add(chunk) {
+    this.#chunks.push(chunk);
+    this.length += chunk.length;
+  }
+
+  /** The next bytes, as one array. @param {number} count no more than there are */
+  take(count) {
+    const taken = new Uint8Array(count);
+    for (let filled = 0; filled < count; ) {
+      const part = this.#chunks[0].subarray(this.#at, this.#at + count - filled);
+      taken.set(part, filled);
+      filled += part.length;
+      this.#at += part.length;
+      if (this.#at === this.#chunks[0].length) {
+        this.#chunks.shift();
+        this.#at = 0;
       }
-      if (next > all.length) break;
-      at = next;
     }
-    this.#rest = all.slice(at);
-    return { header: this.#header, layers };
+    this.length -= count;
+    return taken;
+  }
+
+  /** Passes over the next bytes. @returns {number} how many there were, at most `count` */
+  skip(count) {
+    const skipped = Math.min(count, this.length);
+    for (let left = skipped; left > 0; ) {
+      const there = Math.min(left, this.#chunks[0].length - this.#at);
+      left -= there;
+      this.#at += there;
+      if (this.#at === this.#chunks[0].length) {
+        this.#chunks.shift();
+        this.#at = 0;
+      }
+    }
+    this.length -= skipped;
+    return skipped;
   }
 }
 
+/** Reads some of the layers, at equal distances, from chunks of a file. */
+export class LayerReader {
+  #bytes = new Bytes();
+  #header = null;
+  #text = ''; // of the header
+  #layer = null; // that is read, if it is drawn
+  #come = 0; // layers
+  #command = null; // whose length is read: { head, length }
+  #unwanted = 0; // bytes of a contour that is not drawn
+
+  /** @returns {{header: object, layers: {z: number, contours: Float32Array[]}[]}} layers that have become complete */
+  take(chunk) {
+    const layers = [];
+    if (!this.#header) {
+      const rest = this.#takeHeader(chunk);
+      if (!rest) return { header: null, layers };
+      this.#bytes.add(rest);
+    } else {
+      this.#bytes.add(chunk);
+    }
+    while (this.#step(layers));
+    return { header: this.#header, layers };
+  }
+
+  /** Returns what follows the header, if that has come. It may be long: it has a line for each part. */
+  #takeHeader(chunk) {
+    const begin = Math.max(0, this.#text.length - endOfHeader.length);
+    const before = this.#text.length;
+    this.#text += latin1(chunk);
+    const end = this.#text.indexOf(endOfHeader, begin);
+    if (end < 0) return null;
+    const values = (name) => new RegExp(`\\$\\$${name}/([^\\n\\r]*)`).exec(this.#text)[1].split(',').map(Number);
+    this.#header = { unit: values('UNITS')[0], box: values('DIMENSION'), layers: values('LAYERS')[0] };
+    this.#text = '';
+    return chunk.subarray(end + endOfHeader.length - before);
+  }
+
+  /** Reads a part of a command. Returns whether there was enough of it. */
+  #step(layers) {
+    const bytes = this.#bytes;
+    if (this.#unwanted > 0) {
+      this.#unwanted -= bytes.skip(this.#unwanted);
+      return this.#unwanted === 0;
+    }
+    if (!this.#command) {
+      if (bytes.length < 2) return false;
+      const id = new DataView(bytes.take(2).buffer).getUint16(0, true);
+      this.#command = { id, head: { [layerCommand]: 4, [contourCommand]: 12, [hatchCommand]: 8 }[id] ?? Infinity };
+    }
+    const { id, head, points } = this.#command;
+    if (points !== undefined) {
+      if (bytes.length < points) return false;
+      this.#layer.contours.push(new Float32Array(bytes.take(points).buffer));
+      this.#command = null;
+      return true;
+    }
+    if (bytes.length < head) return false;
+    const view = new DataView(bytes.take(head).buffer);
+    this.#command = null;
+    if (id === layerCommand) {
+      if (this.#layer) layers.push(this.#layer);
+      const isDrawn = this.#come++ % Math.ceil(this.#header.layers / mostLayers) === 0;
+      this.#layer = isDrawn ? { z: view.getFloat32(0, true) * this.#header.unit, contours: [] } : null;
+    } else if (id === contourCommand && this.#layer) {
+      this.#command = { id, head, points: 8 * view.getInt32(8, true) };
+    } else {
+      this.#unwanted = id === contourCommand ? 8 * view.getInt32(8, true) : 16 * view.getInt32(4, true);
+    }
+    return true;
+  }
+}
+
+const latin1 = (bytes) => new TextDecoder('latin1').decode(bytes);
+
 /** Draws on `canvas`, which `show` makes visible as soon as there is something to see. */
 export function previewOn(canvas, show) {
-  const reader = new Reader();
+  const reader = new LayerReader();
   let draw = null;
   return (bytes) => {
-    const { header, layers } = reader.take(bytes) ?? {};
-    for (const layer of layers ?? []) {
+    const { header, layers } = reader.take(bytes);
+    for (const layer of layers) {
       if (!draw) show();
       draw ??= drawingOn(canvas, header);
       draw(layer);
@@ -68,8 +140,9 @@ export function previewOn(canvas, show) {
 
 function drawingOn(canvas, { unit, box: [x0, y0, z0, x1, y1, z1] }) {
   const scale = window.devicePixelRatio || 1;
-  canvas.width = canvas.clientWidth * scale;
-  canvas.height = canvas.clientHeight * scale;
+  // What is not shown at the moment has no size.
+  canvas.width = (canvas.clientWidth || innerWidth) * scale;
+  canvas.height = (canvas.clientHeight || innerHeight) * scale;
   const context = canvas.getContext('2d');
   const style = getComputedStyle(canvas);
   context.fillStyle = style.getPropertyValue('--layer');

@@ -240,6 +240,17 @@ export class LayerView {
     this.redraw();
   }
 
+  /** Where one looks, mm of the part's coordinates; undefined as long as all is shown. */
+  get outlook() {
+    const { x, y, scale, fitted } = this.#camera;
+    return fitted ? undefined : { x: x + this.origin[0], y: y + this.origin[1], scale };
+  }
+
+  set outlook({ x, y, scale }) {
+    Object.assign(this.#camera, { x: x - this.origin[0], y: y - this.origin[1], scale, fitted: false });
+    this.redraw();
+  }
+
   /** In the next frame, all of it. */
   redraw() {
     this.#executed.count = Infinity;

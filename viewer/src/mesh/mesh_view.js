@@ -134,6 +134,15 @@ export class MeshView {
     this.#space.zoomBy(factor);
   }
 
+  /** From where one looks, in the mesh's coordinates; see Space. */
+  get outlook() {
+    return this.#space.outlookFrom(this.#origin);
+  }
+
+  set outlook(given) {
+    this.#space.lookAsFrom(given, this.#origin);
+  }
+
   fit() {
     this.#space.fit();
   }

@@ -151,6 +151,24 @@ export class Space {
     this.redraw();
   }
 
+  /** From where one looks: the name of a direction from which all is seen, or points in coordinates in which the scene begins at `origin`. */
+  outlookFrom(origin) {
+    if (this.#view !== null) return { view: this.#view };
+    const inPart = ({ x, y, z }) => [x + origin[0], y + origin[1], z + origin[2]];
+    return { position: inPart(this.camera.position), target: inPart(this.controls.target) };
+  }
+
+  /** Looks as `outlookFrom` of another scene tells. */
+  lookAsFrom({ view, position, target }, origin) {
+    if (view !== undefined) return this.look(view);
+    const inScene = (point) => new Vector3(...point.map((value, axis) => value - origin[axis]));
+    this.#view = null;
+    this.controls.target.copy(inScene(target));
+    this.camera.position.copy(inScene(position));
+    this.controls.update();
+    this.redraw();
+  }
+
   /** Turns around the part, by radians. */
   turnBy(sideways, upwards) {
     this.#view = null;

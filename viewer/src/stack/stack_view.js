@@ -84,6 +84,7 @@ export class StackView {
   #floor;
   #marks;
   #begun = false;
+  #before; // the outlook, until there is a space
   #failed = false; // nothing can be drawn in space
   #goOn = () => {};
 
@@ -117,6 +118,7 @@ export class StackView {
       if (this.#store.state.view === 'both') this.#store.set({ view: 'layer' });
       return;
     }
+    if (this.#before) this.outlook = this.#before;
     this.#bodies = bodyOfParts(head);
     this.#parts = partsTexture(head.parts.length);
     const heights = heightsTexture(table.bottom.map((z) => z - bottom), table.top.map((z) => z - bottom));
@@ -298,6 +300,16 @@ export class StackView {
   /** @param {number[]} place mm of the part's coordinates */
   lookAt(place) {
     this.#space?.lookAt(new Vector3(...place.map((value, k) => value - this.#origin[k])), this.#space.reach / 6);
+  }
+
+  /** From where one looks, in the part's coordinates; see Space. */
+  get outlook() {
+    return this.#space?.outlookFrom(this.#origin) ?? this.#before;
+  }
+
+  set outlook(given) {
+    this.#before = given;
+    this.#space?.lookAsFrom(given, this.#origin);
   }
 
   turnBy(sideways, upwards) {
