@@ -3,7 +3,9 @@
 #include "lamella/core/error.hpp"
 
 #include "contour/distance.hpp"
+#include "contour/grid.hpp"
 #include "contour/nearest_points.hpp"
+#include "core/layer_budget.hpp"
 #include "core/orientation.hpp"
 
 #include <fmt/format.h>
@@ -11,6 +13,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <cstdint>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -23,56 +26,106 @@ namespace {
 /// A possible join from the last point of one chain to the first point of another.
 struct Candidate {
     double length;
-    Point2 from;
-    Point2 to;
     std::size_t chain; ///< the chain that is continued
     std::size_t next;
-
-    friend bool operator<(const Candidate& a, const Candidate& b) noexcept {
-        return std::tuple(a.length, a.from, a.to, a.chain, a.next) <
-               std::tuple(b.length, b.from, b.to, b.chain, b.next);
-    }
 };
 
-constexpr std::size_t most_candidates_of_an_end = 64;
-
-std::vector<Candidate> find_candidates(const Layer& layer, double within) {
-    std::vector<std::size_t> chains; // without those of a layer made by hand that have no points
-    std::vector<Point2> first_points;
-    for (std::size_t c = layer.rings; c < layer.contours(); ++c) {
-        if (layer.contour(c).empty())
-            continue;
-        chains.push_back(c);
-        first_points.push_back(layer.contour(c).front());
+/// All ends of the chains of a layer that are close enough to be joined. Chains that begin, or end, in one
+/// point are searched for once, so that thousands of them cost no more than others.
+class Candidates {
+  public:
+    Candidates(const Layer& layer, double within, const LayerBudget& budget)
+        : layer_(layer), within_(within), budget_(budget) {
+        for (std::size_t c = layer.rings; c < layer.contours(); ++c)
+            if (!layer.contour(c).empty()) // a layer made by hand may have chains without points
+                starts_.push_back(c);
+        ends_ = starts_;
+        sort_by(starts_, [&](std::size_t chain) { return start(chain); });
+        sort_by(ends_, [&](std::size_t chain) { return end(chain); });
     }
-    const NearestPoints starts(std::move(first_points));
+
+    /// Returns them in the order in which they are to be joined.
+    [[nodiscard]] std::vector<Candidate> sorted() {
+        std::vector<Point2> places;
+        for (std::size_t i = 0; i < starts_.size(); ++i)
+            if (i == 0 || start(starts_[i - 1]) != start(starts_[i])) {
+                places.push_back(start(starts_[i]));
+                first_at_.push_back(i);
+            }
+        first_at_.push_back(starts_.size());
+        const NearestPoints nearest(std::move(places));
+        std::vector<Candidate> all;
+        for (std::size_t i = 0; i < ends_.size(); ++i) {
+            budget_.check();
+            if (i == 0 || end(ends_[i - 1]) != end(ends_[i]))
+                search(nearest, ends_[i]);
+            // A vector that grows is held twice for a moment, and may be twice as large as its contents.
+            budget_.need(all.size() + of_end_.size(), 3 * sizeof(Candidate), "pairs of ends to be joined",
+                         "a smaller `close_gaps_mm`");
+            for (const Candidate& found : of_end_)
+                all.push_back({found.length, ends_[i], found.next});
+        }
+        std::sort(all.begin(), all.end(), [this](const Candidate& a, const Candidate& b) {
+            budget_.check();
+            return sooner(a, b);
+        });
+        return all;
+    }
+
+  private:
+    static constexpr std::size_t most_of_an_end = 64;
+
+    [[nodiscard]] const Point2& start(std::size_t chain) const { return layer_.contour(chain).front(); }
+    [[nodiscard]] const Point2& end(std::size_t chain) const { return layer_.contour(chain).back(); }
+    [[nodiscard]] bool sooner(const Candidate& a, const Candidate& b) const {
+        if (a.length != b.length)
+            return a.length < b.length;
+        return std::tuple(end(a.chain), start(a.next), a.chain, a.next) <
+               std::tuple(end(b.chain), start(b.next), b.chain, b.next);
+    }
+    template <class PointOf>
+    static void sort_by(std::vector<std::size_t>& chains, const PointOf& point) {
+        std::sort(chains.begin(), chains.end(), [&](std::size_t a, std::size_t b) {
+            return std::tuple(point(a), a) < std::tuple(point(b), b);
+        });
+    }
     // Rounding may place a point slightly outside of its box in the tree, so the search reaches slightly
     // farther.
-    const auto reach = [](double length) {
-        return std::nextafter(length * (1 + 1e-15), Box3::infinity);
-    };
-    std::vector<Candidate> all;
-    std::vector<Candidate> of_end; // a heap with the worst on top
-    for (const std::size_t c : chains) {
-        const Point2& end = layer.contour(c).back();
-        of_end.clear();
-        starts.for_each_closer(end, reach(within), [&](std::size_t start, double length, double& below) {
-            if (length > within)
+    static double reach(double length) { return std::nextafter(length * (1 + 1e-15), Box3::infinity); }
+
+    /// Finds the candidates of the last point of this chain.
+    void search(const NearestPoints& starts, std::size_t chain) {
+        const auto is_sooner = [this](const Candidate& a, const Candidate& b) {
+            return sooner(a, b);
+        };
+        of_end_.clear(); // a heap with the worst on top
+        starts.for_each_closer(end(chain), reach(within_), [&](std::size_t at, double length, double& below) {
+            if (length > within_)
                 return;
-            const std::size_t next = chains[start];
-            of_end.push_back({length, end, layer.contour(next).front(), c, next});
-            std::push_heap(of_end.begin(), of_end.end());
-            if (of_end.size() > most_candidates_of_an_end) {
-                std::pop_heap(of_end.begin(), of_end.end());
-                of_end.pop_back();
-                below = reach(of_end.front().length);
+            for (std::size_t i = first_at_[at]; i < first_at_[at + 1]; ++i) {
+                const Candidate found{length, chain, starts_[i]};
+                if (of_end_.size() == most_of_an_end) {
+                    if (!sooner(found, of_end_.front()))
+                        break; // as are all others that begin here
+                    std::pop_heap(of_end_.begin(), of_end_.end(), is_sooner);
+                    of_end_.pop_back();
+                }
+                of_end_.push_back(found);
+                std::push_heap(of_end_.begin(), of_end_.end(), is_sooner);
             }
+            if (of_end_.size() == most_of_an_end)
+                below = std::min(below, reach(of_end_.front().length));
         });
-        all.insert(all.end(), of_end.begin(), of_end.end());
     }
-    std::sort(all.begin(), all.end());
-    return all;
-}
+
+    const Layer& layer_;
+    double within_;
+    const LayerBudget& budget_;
+    std::vector<std::size_t> starts_;   ///< chains in the order of their first points
+    std::vector<std::size_t> ends_;     ///< chains in the order of their last points
+    std::vector<std::size_t> first_at_; ///< of each different first point, the first chain in `starts_`
+    std::vector<Candidate> of_end_;
+};
 
 struct Piece {
     Point2 a;
@@ -105,47 +158,69 @@ bool is_barred(const Piece& join, const Piece& by) noexcept {
     return cross(join, by);
 }
 
-/// The segments of a layer, sorted into rows of y that are at least as high as the longest join.
-class Rows {
+/// The segments of a layer, and those added to it, in the cells of a grid.
+class Segments {
   public:
-    Rows(const Layer& layer, double within) {
-        double length = 0;
-        std::size_t count = 0;
-        double high = -Box3::infinity;
-        low_ = Box3::infinity;
+    Segments(const Layer& layer, const LayerBudget& budget) : budget_(budget), grid_({0, 0, 0, 0}, 1) {
+        const std::size_t count = layer.points.size(); // chains have fewer
+        if (count > most_points)
+            throw Error(
+                ErrorKind::limit,
+                fmt::format("a layer has more than {} points; gaps are closed in smaller ones", most_points));
+        budget.need(count, sizeof(Piece), "segments");
+        pieces_.reserve(count);
+        double extents = 0;
         for_each_segment(layer, [&](const Piece& piece) {
-            length += std::abs(piece.a.y - piece.b.y);
-            ++count;
+            pieces_.push_back(piece);
+            extents += std::abs(piece.a.x - piece.b.x) + std::abs(piece.a.y - piece.b.y);
         });
-        for (const Point2& p : layer.points) {
-            low_ = std::min(low_, p.y);
-            high = std::max(high, p.y);
-        }
-        // With rows of the mean height of a segment, each segment is in two or three rows.
-        height_ = std::max(within, length / static_cast<double>(count));
-        const double rows = (high - low_) / height_;
-        if (!(rows < static_cast<double>(count) + 1)) // also if numbers overflow
-            height_ = Box3::infinity;
-        rows_.resize(row(high) + 1);
-        for_each_segment(layer, [&](const Piece& piece) { add(piece); });
+        const Box2 whole = box_of(layer.points);
+        // Joins are shorter than most segments, so small cells repay what the long ones cost: those are in
+        // about ten cells.
+        const double size = Grid::cell_size(
+            whole, static_cast<double>(std::max<std::size_t>(1, pieces_.size())), extents / 4);
+        if (std::isfinite(size) && std::isnormal(size) && std::isfinite(1 / size))
+            grid_ = Grid(whole, size);
+        else
+            single_cell_ = true; // the layer is one point, or its extents overflow
+        sort_into_cells();
     }
 
     void add(const Piece& piece) {
-        const auto [low, high] = std::minmax(piece.a.y, piece.b.y);
-        for (std::size_t r = row(low); r <= row(high); ++r)
-            rows_[r].push_back(piece);
+        for_cells(piece, [&](std::size_t cell) {
+            added_.push_back({pieces_.size(), last_added_[cell]});
+            last_added_[cell] = added_.size();
+        });
+        pieces_.push_back(piece);
     }
 
+    /// Returns whether one of them crosses the join, or ends on it.
     [[nodiscard]] bool bar(const Piece& join) const {
-        const auto [low, high] = std::minmax(join.a.y, join.b.y);
-        for (std::size_t r = row(low); r <= row(high); ++r)
-            if (std::any_of(rows_[r].begin(), rows_[r].end(),
-                            [&](const Piece& piece) { return is_barred(join, piece); }))
-                return true;
-        return false;
+        bool barred = false;
+        if (join.a == join.b)
+            return barred; // nothing crosses a point, nor ends within it
+        for_cells(join, [&](std::size_t cell) {
+            if (barred)
+                return;
+            budget_.check();
+            const std::span<const std::uint32_t> here = grid_.in_cell(cell);
+            barred = std::any_of(here.begin(), here.end(),
+                                 [&](std::uint32_t i) { return is_barred(join, pieces_[i]); });
+            for (std::size_t i = last_added_[cell]; i != 0 && !barred; i = added_[i - 1].before)
+                barred = is_barred(join, pieces_[added_[i - 1].piece]);
+        });
+        return barred;
     }
 
   private:
+    /// A segment is in fewer than 16 cells in the mean, and entries of cells are numbered by 32 bits.
+    static constexpr std::size_t most_points = std::size_t{1} << 28;
+
+    struct Added {
+        std::size_t piece;
+        std::size_t before; ///< number of the one before it in its cell, from 1; 0: none
+    };
+
     template <class Visit>
     static void for_each_segment(const Layer& layer, const Visit& visit) {
         for (std::size_t c = 0; c < layer.contours(); ++c) {
@@ -156,14 +231,31 @@ class Rows {
                 visit(Piece{points.back(), points.front()});
         }
     }
-    [[nodiscard]] std::size_t row(double y) const noexcept {
-        assert(y >= low_ && height_ > 0);
-        return static_cast<std::size_t>((y - low_) / height_);
+    template <class Visit>
+    void for_cells(const Piece& piece, const Visit& visit) const {
+        if (single_cell_)
+            visit(std::size_t{0});
+        else
+            grid_.for_cells_along(piece.a, piece.b, visit);
+    }
+    void sort_into_cells() {
+        const NumbersBelow all{static_cast<std::uint32_t>(pieces_.size())};
+        const std::uint64_t room = budget_.room(sizeof(std::uint32_t));
+        const bool sorted = grid_.sort(all, room, [&](std::uint32_t i, const auto& visit) {
+            budget_.check();
+            for_cells(pieces_[i], visit);
+        });
+        if (!sorted) // so there is a limit: `most_points` keeps the entries countable
+            budget_.need(room + 1, sizeof(std::uint32_t), "segments in cells of a grid");
+        last_added_.assign(grid_.cells(), 0);
     }
 
-    double low_ = 0;
-    double height_ = 1;
-    std::vector<std::vector<Piece>> rows_;
+    const LayerBudget& budget_;
+    std::vector<Piece> pieces_;
+    Grid grid_;
+    bool single_cell_ = false;
+    std::vector<Added> added_;
+    std::vector<std::size_t> last_added_; ///< of each cell, a number as in `Added`
 };
 
 /// A sequence of joined chains.
@@ -182,7 +274,7 @@ struct JoinedContour {
 ///
 /// Returns the remaining points in their order. No end is dropped if the new segment would cross another
 /// segment.
-std::vector<Point2> without_overlaps(const JoinedContour& contour, Rows& rows) {
+std::vector<Point2> without_overlaps(const JoinedContour& contour, Segments& segments) {
     const std::vector<Point2>& points = contour.points;
     const std::size_t n = points.size();
     constexpr std::size_t none = ~std::size_t{0};
@@ -199,7 +291,7 @@ std::vector<Point2> without_overlaps(const JoinedContour& contour, Rows& rows) {
         --left;
         next[before[i]] = next[i];
         before[next[i]] = before[i];
-        rows.add({points[before[i]], points[next[i]]});
+        segments.add({points[before[i]], points[next[i]]});
     };
     for (std::size_t a : contour.joins) {
         a = std::min(a, n - 1); // the last point of a ring may have been equal to its first one
@@ -210,9 +302,9 @@ std::vector<Point2> without_overlaps(const JoinedContour& contour, Rows& rows) {
         const std::size_t q = b == none ? none : next[b];
         if (p == none || q == none || left <= 3 || !cross({points[p], points[a]}, {points[b], points[q]}))
             continue;
-        if (!rows.bar({points[a], points[q]}))
+        if (!segments.bar({points[a], points[q]}))
             leave_out(b);
-        else if (!rows.bar({points[p], points[b]}))
+        else if (!segments.bar({points[p], points[b]}))
             leave_out(a);
     }
     std::vector<Point2> kept;
@@ -291,7 +383,7 @@ class Joined {
     /// Returns the number of points of the ring that this join would make; at most 3.
     [[nodiscard]] std::size_t ring_points(const Candidate& join) const {
         std::size_t points = 0;
-        Point2 before = join.from;
+        Point2 before = layer_.contour(join.chain).back();
         for (std::size_t c = join.next; c != none && points < 3; c = next_[c])
             for (const Point2& p : layer_.contour(c)) {
                 points += p != before ? 1 : 0;
@@ -313,28 +405,33 @@ class Joined {
 
 } // namespace
 
-ClosedGaps close_gaps(const Layer& layer, double within_mm) {
+ClosedGaps close_gaps(const Layer& layer, double within_mm, const LayerLimits& limits) {
     if (!(std::isfinite(within_mm) && within_mm > 0))
         throw Error(ErrorKind::usage,
                     fmt::format("gaps up to {} mm cannot be closed; it must be a number above 0", within_mm));
     ClosedGaps result{.layer = layer, .joins = {}};
-    const std::vector<Candidate> candidates = find_candidates(layer, within_mm);
+    const LayerBudget budget(limits, layer.index, layer.z);
+    const std::vector<Candidate> candidates = Candidates(layer, within_mm, budget).sorted();
     if (candidates.empty())
         return result;
-    Rows rows(layer, within_mm);
+    const LayerBudget left = budget.without(candidates.size() * sizeof(Candidate));
+    Segments segments(layer, left);
     Joined joined(layer);
     for (const Candidate& join : candidates) {
+        budget.check();
         if (!joined.free(join))
             continue;
+        const Point2& from = layer.contour(join.chain).back();
+        const Point2& to = layer.contour(join.next).front();
         const bool thin_ring = joined.makes_ring(join) &&
                                (2 * join.length > joined.length(join.chain) || joined.ring_points(join) < 3);
-        if (thin_ring || rows.bar({join.from, join.to})) {
+        if (thin_ring || segments.bar({from, to})) {
             ++result.refused;
             continue;
         }
         joined.join(join);
-        rows.add({join.from, join.to});
-        result.joins.push_back({join.from, join.to, join.length});
+        segments.add({from, to});
+        result.joins.push_back({from, to, join.length});
         result.longest_mm = std::max(result.longest_mm, join.length);
         result.total_mm += join.length;
     }
@@ -344,7 +441,8 @@ ClosedGaps close_gaps(const Layer& layer, double within_mm) {
     for (std::size_t c = 0; c < layer.rings; ++c)
         builder.add_contour(layer.contour(c), true);
     joined.for_each([&](const JoinedContour& contour) {
-        const std::vector<Point2> points = without_overlaps(contour, rows);
+        budget.check();
+        const std::vector<Point2> points = without_overlaps(contour, segments);
         result.left_out += contour.points.size() - points.size();
         builder.add_contour(points, contour.closed);
     });
@@ -354,10 +452,10 @@ ClosedGaps close_gaps(const Layer& layer, double within_mm) {
     return result;
 }
 
-ClosedPlane close_gaps_on_plane(std::span<const Layer> layers, double within_mm) {
+ClosedPlane close_gaps_on_plane(std::span<const Layer> layers, double within_mm, const LayerLimits& limits) {
     ClosedPlane plane;
     for (const Layer& layer : layers) {
-        ClosedGaps closed = close_gaps(layer, within_mm);
+        ClosedGaps closed = close_gaps(layer, within_mm, limits);
         plane.joins.insert(plane.joins.end(), closed.joins.begin(), closed.joins.end());
         plane.layers.push_back(std::move(closed.layer));
     }

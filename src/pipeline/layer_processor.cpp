@@ -45,7 +45,7 @@ void LayerProcessor::set_times(FileResult::Seconds& seconds) const noexcept {
 Commit LayerProcessor::prepare(std::uint32_t plane, std::span<const Layer> parts) {
     ClosedPlane closed;
     if (job_.close_gaps_mm && std::any_of(parts.begin(), parts.end(), std::mem_fn(&Layer::open_chains))) {
-        closed = close_gaps_on_plane(parts, *job_.close_gaps_mm);
+        closed = close_gaps_on_plane(parts, *job_.close_gaps_mm, job_.limits);
         parts = closed.layers;
     }
     const std::vector<InvertedRings> inverted = inverted_of(parts);

@@ -3,9 +3,9 @@
 #include "lamella/core/error.hpp"
 
 #include "contour/distance.hpp"
+#include "contour/grid.hpp"
 #include "polygon/close_sides.hpp"
 #include "polygon/crossing_pairs.hpp"
-#include "polygon/grid.hpp"
 #include "polygon/open_runs.hpp"
 #include "polygon/orientation.hpp"
 #include "polygon/segment_sweep.hpp"
@@ -209,7 +209,7 @@ class Positions {
     /// they lie within two units of it.
     template <class On, class Visit>
     void for_points_on(const Segment& s, const On& on, const Visit& visit) const {
-        cells_.for_cells_along(s, [&](std::size_t cell) {
+        cells_.for_cells_along(s.lo, s.hi, [&](std::size_t cell) {
             const std::span<const std::uint32_t> within = cells_.in_cell(cell);
             if (within.size() >= crowd && size_ > least_size) {
                 const auto found = std::lower_bound(full_cells_.begin(), full_cells_.end(), cell);

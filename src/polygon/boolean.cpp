@@ -3,7 +3,7 @@
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/polygon/fill.hpp"
 
-#include "polygon/box2.hpp"
+#include "contour/box2.hpp"
 #include "polygon/material.hpp"
 #include "polygon/overlay.hpp"
 #include "polygon/subtract_common.hpp"

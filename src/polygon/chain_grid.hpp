@@ -2,7 +2,7 @@
 
 // A grid over the chains of a layer, which finds chains that can meet, and chains below a point.
 
-#include "polygon/grid.hpp"
+#include "contour/grid.hpp"
 #include "polygon/monotone_chains.hpp"
 
 #include <cstddef>

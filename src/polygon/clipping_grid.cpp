@@ -2,7 +2,7 @@
 
 #include "lamella/core/error.hpp"
 
-#include "polygon/box2.hpp"
+#include "contour/box2.hpp"
 
 #include <algorithm>
 #include <cmath>

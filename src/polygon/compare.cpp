@@ -4,10 +4,10 @@
 #include "lamella/core/error.hpp"
 
 #include "contour/area_moments.hpp"
+#include "contour/box2.hpp"
 #include "contour/distance.hpp"
 #include "contour/same_height.hpp"
 #include "core/executor.hpp"
-#include "polygon/box2.hpp"
 #include "polygon/compared_planes.hpp"
 #include "polygon/edge_tree.hpp"
 

@@ -2,10 +2,10 @@
 
 #include "lamella/core/error.hpp"
 
+#include "contour/grid.hpp"
 #include "polygon/chain_grid.hpp"
 #include "polygon/contacts.hpp"
 #include "polygon/crossing_pairs.hpp"
-#include "polygon/grid.hpp"
 #include "polygon/line_tree.hpp"
 #include "polygon/monotone_chains.hpp"
 #include "polygon/orientation.hpp"
@@ -187,7 +187,8 @@ class CrossingSearch {
         Grid grid(whole, size);
         const bool sorted =
             grid.sort(ids, std::numeric_limits<std::uint32_t>::max(), [&](SegmentId id, const auto& visit) {
-                grid.for_cells_along(local(segments_[id]), visit);
+                const Segment segment = local(segments_[id]);
+                grid.for_cells_along(segment.lo, segment.hi, visit);
             });
         if (!sorted)
             return false;

@@ -4,7 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 
-#include "polygon/box2.hpp"
+#include "contour/box2.hpp"
 #include "polygon/orientation.hpp"
 
 #include <cstddef>

@@ -2,9 +2,9 @@
 
 #include "lamella/contour/measure.hpp"
 
+#include "contour/box2.hpp"
 #include "core/vector_clones.hpp"
 #include "core/vectors.hpp"
-#include "polygon/box2.hpp"
 #include "polygon/orientation.hpp"
 
 #include <algorithm>

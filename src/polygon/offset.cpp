@@ -5,8 +5,8 @@
 #include "lamella/core/error.hpp"
 #include "lamella/polygon/nesting.hpp"
 
+#include "contour/box2.hpp"
 #include "polygon/boundary.hpp"
-#include "polygon/box2.hpp"
 #include "polygon/clipping_grid.hpp"
 #include "polygon/collinear_points.hpp"
 #include "polygon/crossing_pairs.hpp"

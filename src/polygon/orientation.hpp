@@ -2,8 +2,8 @@
 
 // Segments for sweeps, and predicates for points and segments.
 
+#include "contour/box2.hpp"
 #include "core/orientation.hpp"
-#include "polygon/box2.hpp"
 
 #include <algorithm>
 #include <cmath>

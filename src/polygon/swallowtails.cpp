@@ -1,6 +1,6 @@
 #include "polygon/swallowtails.hpp"
 
-#include "polygon/box2.hpp"
+#include "contour/box2.hpp"
 #include "polygon/orientation.hpp"
 
 #include <algorithm>

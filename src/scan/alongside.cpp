@@ -1,7 +1,7 @@
 #include "scan/alongside.hpp"
 
+#include "contour/box2.hpp"
 #include "contour/distance.hpp"
-#include "polygon/box2.hpp"
 
 #include <algorithm>
 #include <cmath>

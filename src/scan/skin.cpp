@@ -4,8 +4,8 @@
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/offset.hpp"
 
+#include "contour/box2.hpp"
 #include "contour/same_height.hpp"
-#include "polygon/box2.hpp"
 #include "polygon/subtract_common.hpp"
 #include "scan/alongside.hpp"
 #include "scan/occupied.hpp"

@@ -7,7 +7,7 @@
 #include "lamella/polygon/nesting.hpp"
 #include "lamella/polygon/offset.hpp"
 
-#include "polygon/box2.hpp"
+#include "contour/box2.hpp"
 #include "scan/hatch.hpp"
 #include "scan/hatch_lines.hpp"
 #include "scan/occupied.hpp"

@@ -4,7 +4,7 @@
 #include "lamella/polygon/fill.hpp"
 
 #include "container/inflate.hpp"
-#include "polygon/box2.hpp"
+#include "contour/box2.hpp"
 #include "write/png.hpp"
 
 #include <algorithm>

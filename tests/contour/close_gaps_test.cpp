@@ -10,8 +10,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -264,6 +267,99 @@ TEST(CloseGaps, ManyChainsInOnePlaceAreNoTrap) {
     for (int i = 0; i < 2000; ++i)
         chains.push_back({{0, 0}, {1, static_cast<double>(i)}, {0, 0}});
     const ClosedGaps closed = close_gaps(normal_layer({}, chains), 1e-3);
+    EXPECT_GT(closed.joins.size(), 60U);
+}
+
+/// Long segments in all directions whose ends are close to many others.
+Layer random_segments(int count) {
+    Random random(7);
+    std::vector<Points> chains;
+    for (int i = 0; i < count; ++i)
+        chains.push_back({{random.real(0, 1), random.real(0, 1)}, {random.real(0, 1), random.real(0, 1)}});
+    return normal_layer({}, chains);
+}
+
+TEST(CloseGaps, MakesTheSameJoinsAsASearchThroughAllPairsAndSegments) {
+    const Layer layer = random_segments(150);
+    const auto end = [&](std::size_t chain) {
+        return layer.contour(chain).back();
+    };
+    const auto start = [&](std::size_t chain) {
+        return layer.contour(chain).front();
+    };
+    std::vector<std::pair<double, std::pair<std::size_t, std::size_t>>> pairs;
+    for (std::size_t a = 0; a < layer.contours(); ++a)
+        for (std::size_t b = 0; b < layer.contours(); ++b)
+            if (a != b) // a straight chain is no ring
+                pairs.push_back({std::hypot(end(a).x - start(b).x, end(a).y - start(b).y), {a, b}});
+    std::sort(pairs.begin(), pairs.end());
+    std::vector<std::pair<Point2, Point2>> segments;
+    for (std::size_t c = 0; c < layer.contours(); ++c)
+        segments.push_back({start(c), end(c)});
+    const auto side = [](const Point2& a, const Point2& b, const Point2& p) {
+        return (b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x);
+    };
+    std::vector<bool> ended(layer.contours());
+    std::vector<bool> started(layer.contours());
+    std::vector<GapJoin> joins;
+    for (const auto& [length, pair] : pairs) {
+        const Point2 from = end(pair.first);
+        const Point2 to = start(pair.second);
+        const bool barred = std::any_of(segments.begin(), segments.end(), [&](const auto& by) {
+            return by.first != from && by.second != from && by.first != to && by.second != to &&
+                   side(from, to, by.first) * side(from, to, by.second) < 0 &&
+                   side(by.first, by.second, from) * side(by.first, by.second, to) < 0;
+        });
+        if (length > 0.1 || ended[pair.first] || started[pair.second] || barred)
+            continue;
+        ended[pair.first] = started[pair.second] = true;
+        segments.push_back({from, to});
+        joins.push_back({from, to, length});
+    }
+    const ClosedGaps closed = close_gaps(layer, 0.1);
+    ASSERT_GT(joins.size(), 20U);
+    ASSERT_EQ(closed.joins.size(), joins.size());
+    for (std::size_t i = 0; i < joins.size(); ++i) {
+        EXPECT_EQ(closed.joins[i].from, joins[i].from);
+        EXPECT_EQ(closed.joins[i].to, joins[i].to);
+    }
+}
+
+TEST(CloseGaps, EndsInTheMiddleOfALayerOnRequest) {
+    CancelFlag cancel;
+    cancel.request();
+    try {
+        (void)close_gaps(random_segments(100), 1, {.cancel = &cancel});
+        ADD_FAILURE() << "it was not cancelled";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::cancelled);
+    }
+}
+
+TEST(CloseGaps, KeepsToALimitOfMemory) {
+    const Layer layer = random_segments(2000);
+    for (const std::uint64_t memory : {1U, 100'000U, 5'100'000U})
+        try {
+            (void)close_gaps(layer, 1, {.memory = memory});
+            ADD_FAILURE() << "it took no more than " << memory << " bytes";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::limit) << error.what();
+            EXPECT_NE(std::string(error.what()).find("layer 0"), std::string::npos) << error.what();
+        }
+    EXPECT_FALSE(close_gaps(layer, 1, {.memory = 20'000'000}).joins.empty());
+}
+
+TEST(CloseGaps, ManyChainsThatMeetInOnePlaceAreNoTrap) {
+    // From the points of a circle to its centre and from there to others: all ends are equally far from all
+    // starts.
+    std::vector<Points> chains;
+    constexpr int n = 3000;
+    for (int i = 0; i < n; ++i) {
+        const double a = 2 * std::numbers::pi * i / n;
+        chains.push_back({{std::cos(a), std::sin(a)}, {0, 0}});
+        chains.push_back({{0, 0}, {2 * std::cos(a), 2 * std::sin(a)}});
+    }
+    const ClosedGaps closed = close_gaps(normal_layer({}, chains), 1.5);
     EXPECT_GT(closed.joins.size(), 60U);
 }
 

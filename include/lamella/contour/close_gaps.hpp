@@ -3,6 +3,7 @@
 // Closes gaps in layers with open chains by joining ends that are close to one another.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/layer_limits.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -43,16 +44,20 @@ struct ClosedGaps {
 /// edge of a neighbour (a T-junction): both points differ by rounding.
 ///
 /// A layer without chains is returned as it is. Throws Error{usage} for a distance that is not a positive
-/// finite number. O(n + c log c) for n points and c chains if each chain is close to few others.
-[[nodiscard]] ClosedGaps close_gaps(const Layer& layer, double within_mm);
+/// finite number, Error{limit} if more pairs of ends are close enough than `limits` allow, and
+/// Error{cancelled}. O(n + c log c) for n points and c chains, and 64 pairs for each chain at worst; also
+/// where many ends are close to one another, unless segments are long and so many that no grid separates
+/// them.
+[[nodiscard]] ClosedGaps close_gaps(const Layer& layer, double within_mm, const LayerLimits& limits = {});
 
 struct ClosedPlane {
     std::vector<Layer> layers;
     std::vector<GapJoin> joins; ///< of the first layer, then of the second, and so on
 };
 
-/// Closes the gaps of several layers on one plane, each by itself.
-[[nodiscard]] ClosedPlane close_gaps_on_plane(std::span<const Layer> layers, double within_mm);
+/// Closes the gaps of several layers on one plane, each by itself. Throws the errors of close_gaps.
+[[nodiscard]] ClosedPlane close_gaps_on_plane(std::span<const Layer> layers, double within_mm,
+                                              const LayerLimits& limits = {});
 
 } // namespace lamella
 LAMELLA_API_END

@@ -1,5 +1,5 @@
+#include "contour/grid.hpp"
 #include "fixtures/layers.hpp"
-#include "polygon/grid.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@ using test::Random;
 
 using Cells = std::vector<std::size_t>;
 
-Cells along(const Grid& grid, const Segment& segment) {
+Cells along(const Grid& grid, const Point2& a, const Point2& b) {
     Cells cells;
-    grid.for_cells_along(segment, [&](std::size_t cell) { cells.push_back(cell); });
+    grid.for_cells_along(a, b, [&](std::size_t cell) { cells.push_back(cell); });
     return cells;
 }
 
@@ -42,11 +42,11 @@ TEST(Grid, HasEveryPointOfASegmentInOneOfTheCellsAlongIt) {
         const Grid grid(whole, Grid::cell_size(whole, 1 + 200 * random.real(0, 1), 0));
         // From far outside to far outside, steep, flat and level.
         const double steepness = std::pow(10, random.real(-6, 3));
-        const Segment s = segment_between({random.real(-50, 100), random.real(-50, 100)},
-                                          {random.real(-50, 100), steepness * random.real(-50, 100)});
-        Cells cells = along(grid, s);
+        const Point2 a{random.real(-50, 100), random.real(-50, 100)};
+        const Point2 b{random.real(-50, 100), steepness * random.real(-50, 100)};
+        Cells cells = along(grid, a, b);
         for (int i = 0; i <= 300; ++i) {
-            const Point2 p{s.lo.x + i / 300.0 * (s.hi.x - s.lo.x), s.lo.y + i / 300.0 * (s.hi.y - s.lo.y)};
+            const Point2 p{a.x + i / 300.0 * (b.x - a.x), a.y + i / 300.0 * (b.y - a.y)};
             if (Box2::of(p).meets(whole)) {
                 ++inside;
                 ASSERT_TRUE(contains(cells, grid.cell(p))) << round;

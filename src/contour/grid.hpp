@@ -2,8 +2,7 @@
 
 // A grid of square cells, to find objects that are close to each other.
 
-#include "polygon/box2.hpp"
-#include "polygon/orientation.hpp"
+#include "contour/box2.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -84,13 +83,13 @@ class Grid {
     }
 
     /// Calls visit(cell) once for every cell whose distance from the segment is less than `margin` cells,
-    /// which is far more than all rounding errors. The segment may reach beyond the grid.
+    /// which is far more than all rounding errors. The segment from a to b may reach beyond the grid.
     template <class Visit>
-    void for_cells_along(const Segment& s, const Visit& visit) const {
-        double u0 = (s.lo.x - whole_.x0) * scale_;
-        double v0 = (s.lo.y - whole_.y0) * scale_;
-        double u1 = (s.hi.x - whole_.x0) * scale_;
-        double v1 = (s.hi.y - whole_.y0) * scale_;
+    void for_cells_along(const Point2& a, const Point2& b, const Visit& visit) const {
+        double u0 = (a.x - whole_.x0) * scale_;
+        double v0 = (a.y - whole_.y0) * scale_;
+        double u1 = (b.x - whole_.x0) * scale_;
+        double v1 = (b.y - whole_.y0) * scale_;
         if (v0 > v1) {
             std::swap(u0, u1);
             std::swap(v0, v1);
