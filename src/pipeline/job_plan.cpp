@@ -89,6 +89,16 @@ void check_layer_heights(const FileJob& job, const UniformLayers& layers, const 
                 memory.asked ? "of `max_memory`" : "that layers may take unless `max_memory` says more"));
 }
 
+/// Returns the number of planes that fit into the memory for them.
+std::uint64_t most_planes(const FileJob& job, const Plate& plate) {
+    const auto overhead = [&](std::uint64_t planes) {
+        return JobMemory::overhead(1, planes, plate.shapes.size(), job.layer_statistics);
+    };
+    const std::uint64_t memory = JobMemory(job).of_planes();
+    const std::uint64_t none = overhead(0);
+    return std::max<std::uint64_t>(few_layers, memory > none ? (memory - none) / (overhead(1) - none) : 0);
+}
+
 /// Throws if this number of planes takes too much memory.
 void check_planes(const FileJob& job, const Plate& plate, std::uint64_t planes) {
     const JobMemory memory(job);
@@ -128,11 +138,17 @@ Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution)
     Plan plan;
     try {
         plan = plan_of(
-            job.layering, plate.box, [&] { return material_surface(plate, execution); }, execution);
+            job.layering, plate.box, [&] { return material_surface(plate, execution); }, execution,
+            most_planes(job, plate));
     } catch (const Error& error) {
         if (error.kind() != ErrorKind::usage && error.kind() != ErrorKind::limit)
             throw;
-        throw Error(error.kind(), fmt::format("{}: {}", highest_part(plate), error.what()));
+        const JobMemory memory(job);
+        const std::string fit =
+            error.kind() == ErrorKind::limit
+                ? fmt::format(", or allow more than {} of `max_memory`", byte_amount(memory.of_planes()))
+                : std::string();
+        throw Error(error.kind(), fmt::format("{}: {}{}", highest_part(plate), error.what(), fit));
     }
     check_planes(job, plate, plan.layers.size());
     return plan;

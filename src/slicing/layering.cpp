@@ -39,6 +39,7 @@ struct Planner {
     const Box3& box;
     const std::function<Mesh()>& mesh;
     const Execution& execution;
+    std::uint64_t most_layers;
 
     Plan operator()(const UniformLayers& layers) const {
         return plan_uniform(box.min.z, box.max.z, layers, layering.at, layering.only);
@@ -50,15 +51,15 @@ struct Planner {
         return selected(layering, plan_by_ranges(box.min.z, box.max.z, heights, layering.at), box);
     }
     Plan operator()(const AdaptiveLayers& layers) const {
-        return selected(layering, plan_adaptive(mesh(), layers, layering.at, execution), box);
+        return selected(layering, plan_adaptive(mesh(), layers, layering.at, execution, most_layers), box);
     }
 };
 
 } // namespace
 
 Plan plan_of(const Layering& layering, const Box3& box, const std::function<Mesh()>& mesh,
-             const Execution& execution) {
-    Plan plan = std::visit(Planner{layering, box, mesh, execution}, layering.cut);
+             const Execution& execution, std::uint64_t most_layers) {
+    Plan plan = std::visit(Planner{layering, box, mesh, execution, most_layers}, layering.cut);
     plan.snap_mm = layering.snap_mm;
     check(plan);
     return plan;

@@ -9,12 +9,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <vector>
 
 namespace lamella {
-
-inline constexpr std::uint64_t max_layers = (std::uint64_t{1} << 31) - 2; // ranks are 31-bit numbers
 
 // A part of a layer below this fraction of its height is rounding noise of the file, not material.
 inline constexpr double negligible = 1e-3;

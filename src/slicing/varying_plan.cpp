@@ -31,10 +31,17 @@ void require_stack(double z_min, double z_max, double count, double lowest_heigh
                         lowest_height, count, z_max - z_min, max_layers));
 }
 
+/// Limits of a stack of layers whose number is known only at its end.
+struct StackLimits {
+    std::uint64_t most_layers = max_layers;
+    const CancelFlag* cancel = nullptr;
+};
+
 /// Returns layers stacked from z_min with heights height_at(bottom), as long as their cuts meet the part. If
 /// rounding makes a height 0, the error reports `lowest_height` instead.
 template <class HeightAt>
-Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at, const HeightAt& height_at) {
+Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at, const StackLimits& limits,
+             const HeightAt& height_at) {
     Plan plan;
     plan.rule = rule_for(slice_at);
     for (double bottom = z_min;; bottom = plan.layers.back().top) {
@@ -48,6 +55,13 @@ Plan stacked(double z_min, double z_max, double lowest_height, SliceAt slice_at,
                         fmt::format("a layer height of {} mm is too small for coordinates around {} mm: "
                                     "neighbouring cuts fall on the same number",
                                     std::max(height, lowest_height), z));
+        if (plan.layers.size() == limits.most_layers)
+            throw Error(ErrorKind::limit,
+                        fmt::format("layers of down to {} mm make more than {} layers, the limit, of a "
+                                    "part that is {:.6g} mm high; choose higher ones",
+                                    lowest_height, limits.most_layers, z_max - z_min));
+        if (limits.cancel != nullptr && limits.cancel->requested())
+            throw Error(ErrorKind::cancelled, "cancelled");
         plan.layers.push_back({plan.layers.size(), z, bottom, top});
     }
     if (plan.layers.empty())
@@ -184,11 +198,11 @@ Plan plan_by_ranges(double z_min, double z_max, const HeightRanges& heights, Sli
         expected = bottom + (top - bottom);
         return top - bottom;
     };
-    return stacked(z_min, z_max, lowest, slice_at, height_at);
+    return stacked(z_min, z_max, lowest, slice_at, {}, height_at);
 }
 
 Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers, SliceAt slice_at,
-                   const Execution& execution) {
+                   const Execution& execution, std::uint64_t most_layers) {
     require_height(layers.min_height, "the lowest layer height");
     require_height(layers.max_height, "the largest layer height");
     require_height(layers.cusp_mm, "the cusp height");
@@ -230,7 +244,7 @@ Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers, SliceAt slice
         const double rest = z_max - bottom;
         return rest >= layers.min_height ? std::min(height, rest) : height;
     };
-    return stacked(z_min, z_max, layers.min_height, slice_at, height_at);
+    return stacked(z_min, z_max, layers.min_height, slice_at, {most_layers, execution.cancel}, height_at);
 }
 
 } // namespace lamella

@@ -215,5 +215,20 @@ TEST(AdaptivePlan, RefusesHeightsThatMakeNoSense) {
     EXPECT_THROW((void)plan_adaptive(TriangleSoup(), {}), Error);
 }
 
+TEST(PlanAdaptive, HoldsNoMoreLayersThanAreAllowed) {
+    const Mesh box = make_box(1, 1, 10);
+    const AdaptiveLayers layers{.min_height = 0.1, .max_height = 0.5, .cusp_mm = 0.1};
+    const std::size_t count = plan_adaptive(box, layers).layers.size();
+    EXPECT_EQ(plan_adaptive(box, layers, SliceAt::middle, {}, count).layers.size(), count);
+    // These would be 10^9 layers.
+    for (const AdaptiveLayers& many : {layers, AdaptiveLayers{.min_height = 1e-8, .max_height = 1e-8}})
+        try {
+            (void)plan_adaptive(box, many, SliceAt::middle, {}, count - 1);
+            ADD_FAILURE() << "there are more layers";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.kind(), ErrorKind::limit) << error.what();
+        }
+}
+
 } // namespace
 } // namespace lamella

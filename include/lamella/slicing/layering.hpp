@@ -8,6 +8,7 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/varying_plan.hpp"
 
+#include <cstdint>
 #include <functional>
 #include <variant>
 #include <vector>
@@ -33,9 +34,10 @@ struct Layering {
 };
 
 /// Returns the plan for a part with the bounding box `box`. Calls `mesh` only for adaptive layers. Throws
-/// Error{usage} for an impossible plan, and if no plane meets the box.
+/// Error{usage} for an impossible plan, and if no plane meets the box. `most_layers` is that of
+/// plan_adaptive.
 [[nodiscard]] Plan plan_of(const Layering& layering, const Box3& box, const std::function<Mesh()>& mesh,
-                           const Execution& execution = {});
+                           const Execution& execution = {}, std::uint64_t most_layers = max_layers);
 
 } // namespace lamella
 LAMELLA_API_END

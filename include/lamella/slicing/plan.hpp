@@ -36,9 +36,12 @@ struct Plan {
     double snap_mm = 0;
 };
 
+/// The largest number of layers of a plan, whose planes have 31-bit numbers.
+inline constexpr std::uint64_t max_layers = (std::uint64_t{1} << 31) - 2;
+
 /// Throws Error{usage} that names the first layer whose heights are not finite, whose z is outside its bottom
 /// and top, or whose z is not above the previous z. Also throws it for a snap distance that is negative or
-/// not finite, and for more than 2^31 - 2 layers. O(layers).
+/// not finite, and for more than `max_layers` layers. O(layers).
 void check(const Plan& plan);
 
 /// The planes [begin, end) of a plan, by position.

@@ -53,9 +53,12 @@ struct AdaptiveLayers {
 /// One pass over the triangles gathers their slopes by height, in steps of min_height / 4, or of a 2^20th of
 /// the part's height if that is more. Next to a change of slope a layer may therefore be slightly lower than
 /// necessary. The result is the same for any number of threads. Throws the Error{usage} of `plan_uniform`,
-/// and Error{usage} unless 0 < min_height <= max_height and 0 < cusp_mm. O(triangles + s log s) for s steps.
+/// and Error{usage} unless 0 < min_height <= max_height and 0 < cusp_mm; Error{limit} as soon as there are
+/// more than `most_layers` layers, so that no more are held; Error{cancelled}. O(triangles + s log s) for s
+/// steps.
 [[nodiscard]] Plan plan_adaptive(const Mesh& mesh, const AdaptiveLayers& layers,
-                                 SliceAt slice_at = SliceAt::middle, const Execution& execution = {});
+                                 SliceAt slice_at = SliceAt::middle, const Execution& execution = {},
+                                 std::uint64_t most_layers = max_layers);
 
 } // namespace lamella
 LAMELLA_API_END
