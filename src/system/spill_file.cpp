@@ -17,7 +17,12 @@ namespace lamella {
 
 SpillFile::SpillFile(std::uint64_t bytes, std::uint64_t of_all)
     : folder_(scratch_folder()), bytes_(std::max(bytes, of_all)), file_(create_scratch(folder_)) {
-    if (!file_.is_open() || (bytes > 0 && !reserve_space(file_, bytes)))
+    if (!file_.is_open())
+        fail(errno);
+    // Some file systems take all blocks of the disk before they find that there are too few.
+    if (const std::optional<std::uint64_t> free = free_bytes(folder_); free && bytes > *free)
+        fail(ENOSPC);
+    if (bytes > 0 && !reserve_space(file_, bytes))
         fail(errno);
 }
 
@@ -43,7 +48,7 @@ void SpillFile::fail(int system_error) const {
     std::string text = fmt::format("{}: cannot hold {}: ", folder_, what);
     const std::optional<std::uint64_t> free = free_bytes(folder_);
     if (system_error == ENOSPC && free)
-        text += fmt::format("the disk is full ({} free)", byte_amount(*free));
+        text += fmt::format("the disk has {} free", byte_amount(*free));
     else if (system_error == quota_error)
         text += "the disk quota is used up";
     else if (system_error == EFBIG)

@@ -18,8 +18,9 @@ namespace lamella {
 /// threads may use it at once.
 class SpillFile {
   public:
-    /// `bytes` is the total size, 0 if unknown. If the file system supports it, this space is reserved at
-    /// once, so that a full disk is detected before the work is done. `of_all` is the total size of several
+    /// `bytes` is the total size, 0 if unknown. A disk with less free space is refused before any of it is
+    /// taken. If the file system supports it, the space is reserved at once, so that a full disk is detected
+    /// before the work is done. `of_all` is the total size of several
     /// such files, for errors.
     explicit SpillFile(std::uint64_t bytes = 0, std::uint64_t of_all = 0);
 

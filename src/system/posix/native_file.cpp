@@ -158,7 +158,8 @@ void free_space(const NativeFile& file, std::uint64_t offset, std::uint64_t byte
 
 std::optional<std::uint64_t> free_bytes(const std::string& folder) {
     struct statvfs status {};
-    if (::statvfs(folder.c_str(), &status) != 0)
+    if (::statvfs(folder.c_str(), &status) != 0 ||
+        status.f_blocks == 0) // some file systems do not count blocks
         return std::nullopt;
     return std::uint64_t{status.f_bavail} * status.f_frsize;
 }
