@@ -234,10 +234,9 @@ OptionGroup run_options(RunOptions& target, const std::vector<Option>& more) {
 }
 
 Execution RunOptions::execution(const Context& context) const {
-    constexpr std::uint64_t most = 4096;
-    if (threads.value_or(0) > most)
+    if (threads.value_or(0) > most_threads)
         throw Error(ErrorKind::usage,
-                    fmt::format("--threads: {} are too many, {} is the most", *threads, most));
+                    fmt::format("--threads: {} are too many, {} is the most", *threads, most_threads));
     const bool asked = find_option(context.command, "progress")->given.has_value();
     check_conflict(quiet, asked && progress != "none", "--quiet and --progress",
                    "one wants progress, the other none");

@@ -27,6 +27,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <new>
 #include <span>
@@ -160,6 +161,13 @@ lamella_mesh read(MeshFile file, const Execution& execution) {
     return placed(std::make_shared<const MeshFile>(std::move(file)), {}, execution);
 }
 
+/// Throws Error{usage} if an array of so many items of this size cannot exist.
+std::size_t possible(std::size_t count, std::size_t bytes_each, const char* name) {
+    if (count > static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()) / bytes_each)
+        throw Error(ErrorKind::usage, fmt::format("{}: found {}, more than any array has", name, count));
+    return count;
+}
+
 /// `numbers` are three.
 Point3 point_of(const double* numbers, const char* name) {
     static_cast<void>(required(numbers, name));
@@ -236,7 +244,7 @@ lamella_status lamella_read_mesh_bytes(const void* bytes, size_t size, const cha
     return give(mesh, "mesh", [&] {
         const Execution execution = execution_of(settings);
         const std::span<const std::byte> content(&required(static_cast<const std::byte*>(bytes), "bytes"),
-                                                 size);
+                                                 possible(size, 1, "size"));
         return read(
             read_mesh(content, &required(name, "name"), {.max_memory = memory_of(settings)}, execution),
             execution);
@@ -248,11 +256,11 @@ lamella_status lamella_make_mesh(const double* vertices, size_t vertex_count, co
     return give(mesh, "mesh", [&] {
         IndexedMesh made;
         const double* const numbers = &required(vertices, "vertices");
-        made.vertices.resize(vertex_count);
+        made.vertices.resize(possible(vertex_count, sizeof(Point3), "vertex_count"));
         for (size_t i = 0; i < vertex_count; ++i)
             made.vertices[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
         const std::uint32_t* const indices = &required(triangles, "triangles");
-        made.triangles.resize(triangle_count);
+        made.triangles.resize(possible(triangle_count, 3 * sizeof *indices, "triangle_count"));
         for (size_t i = 0; i < triangle_count; ++i)
             made.triangles[i] = {indices[3 * i], indices[3 * i + 1], indices[3 * i + 2]};
         MeshFile file;
@@ -311,7 +319,8 @@ lamella_status lamella_slice_at(const lamella_mesh* mesh, const double* heights,
                                 const lamella_settings* settings, lamella_layers** layers) {
     return give(layers, "layers", [&] {
         const double* const z = &required(heights, "heights");
-        return sliced(required(mesh, "mesh").plate, ListedPlanes{.z = {z, z + count}}, settings);
+        return sliced(required(mesh, "mesh").plate,
+                      ListedPlanes{.z = {z, z + possible(count, sizeof *z, "count")}}, settings);
     });
 }
 

@@ -20,7 +20,11 @@ unsigned thread_count(const Execution& execution) noexcept {
 }
 
 Executor::Executor(const Execution& execution)
-    : workers_(thread_count(execution)), cancel_(execution.cancel), run_tasks_(execution.run_tasks) {}
+    : workers_(thread_count(execution)), cancel_(execution.cancel), run_tasks_(execution.run_tasks) {
+    if (workers_ > most_threads)
+        throw Error(ErrorKind::usage,
+                    fmt::format("threads: found {}, expected at most {}", workers_, most_threads));
+}
 
 Executor::~Executor() {
     {

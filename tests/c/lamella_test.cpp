@@ -107,6 +107,18 @@ TEST(C, RefusesWhatItCannotUse) {
     EXPECT_EQ(lamella_slice(box.get(), none, nullptr, &layers), LAMELLA_USAGE);
     EXPECT_EQ(lamella_slice_at(box.get(), nullptr, 3, nullptr, &layers), LAMELLA_USAGE);
     EXPECT_EQ(lamella_slice_at(box.get(), numbers, 2, nullptr, &layers), LAMELLA_USAGE); // 0 and 0
+    // Counts that no array has, such as -1, and threads that no system has.
+    const std::uint32_t corners[3] = {0, 0, 0};
+    const std::size_t absurd = static_cast<std::size_t>(-1);
+    EXPECT_EQ(lamella_make_mesh(numbers, absurd, corners, 1, &mesh), LAMELLA_USAGE);
+    EXPECT_EQ(lamella_make_mesh(numbers, 1, corners, absurd, &mesh), LAMELLA_USAGE);
+    EXPECT_EQ(lamella_slice_at(box.get(), numbers, absurd, nullptr, &layers), LAMELLA_USAGE);
+    EXPECT_EQ(lamella_read_mesh_bytes(numbers, absurd, "x.stl", nullptr, &mesh), LAMELLA_USAGE);
+    lamella_settings many_threads{};
+    many_threads.threads = 4'000'000'000;
+    EXPECT_EQ(lamella_slice(box.get(), 1, &many_threads, &layers), LAMELLA_USAGE);
+    EXPECT_NE(std::string(lamella_error()).find("threads: found 4000000000"), std::string::npos)
+        << lamella_error();
     EXPECT_EQ(lamella_prepare(nullptr, nullptr, &slicer), LAMELLA_USAGE);
     EXPECT_EQ(lamella_section(nullptr, 1, &layers), LAMELLA_USAGE);
     EXPECT_EQ(lamella_transform_mesh(box.get(), nullptr, &mesh), LAMELLA_USAGE);

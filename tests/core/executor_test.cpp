@@ -21,6 +21,11 @@ TEST(Executor, UsesAsManyWorkersAsAskedForAndAtLeastOne) {
     EXPECT_GE(Executor({}).workers(), 1U);
 }
 
+TEST(Executor, RefusesMoreThreadsThanAnySystemStarts) {
+    EXPECT_EQ(Executor(Execution{.threads = most_threads}).workers(), most_threads); // none is started yet
+    EXPECT_THROW(Executor(Execution{.threads = most_threads + 1}), Error);
+}
+
 TEST(Executor, RunsTheBodyOnceForEachWorker) {
     Executor executor({.threads = 4});
     for (int region = 0; region < 50; ++region) {

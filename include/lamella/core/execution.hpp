@@ -43,11 +43,14 @@ class CancelFlag {
     const CancelFlag* outer_;
 };
 
+/// The largest number of threads that an Execution may ask for.
+inline constexpr unsigned most_threads = 4096;
+
 /// Parameters of every long computation. These parameters never change results: any number of threads gives
 /// the same bytes.
 struct Execution {
     /// Number of threads; 0 means one per processor available to this process. Fewer threads are used if the
-    /// system cannot start all of them.
+    /// system cannot start all of them. Computations throw Error{usage} for more than `most_threads`.
     unsigned threads = 0;
 
     /// Runs tasks on threads of the caller, for example of a thread pool; Lamella then starts no threads.
