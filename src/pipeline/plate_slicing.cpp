@@ -3,11 +3,11 @@
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/fill.hpp"
 
+#include "contour/box2.hpp"
 #include "core/executor.hpp"
 #include "core/ordered_stage.hpp"
 #include "core/progress.hpp"
 #include "core/stopwatch.hpp"
-#include "polygon/box2.hpp"
 #include "slicing/layer_counter.hpp"
 #include "slicing/plane_ranges.hpp"
 #include "slicing/shrunken_contours.hpp"
@@ -26,12 +26,17 @@
 namespace lamella {
 namespace {
 
-/// Reports the progress of several runs of the slicer as one.
+/// Reports the progress of several runs of the slicer, and of what becomes of their layers, as one. The unit
+/// of slicing is a layer: of a shape when it is sliced, and of each body when it is emitted.
 class JointProgress {
   public:
     void expect(std::uint64_t triangles, std::uint64_t planes) {
         triangles_ += triangles;
-        planes_ += planes;
+        layers_ += planes;
+    }
+    void expect_emission(std::uint64_t planes, std::uint64_t bodies) {
+        layers_ += planes * bodies;
+        bodies_ = bodies;
     }
 
     /// Returns the execution of the next run.
@@ -41,9 +46,19 @@ class JointProgress {
         return with_progress(execution, [this](const Progress& progress) {
             Count& count = counts_.at(static_cast<std::size_t>(progress.stage));
             count.total = progress.total;
-            const std::uint64_t all = progress.stage == Stage::slice ? planes_ : triangles_;
-            const std::uint64_t done = count.before + progress.done;
+            const bool of_layers = progress.stage == Stage::slice;
+            const std::uint64_t all = of_layers ? layers_ : triangles_;
+            const std::uint64_t done = count.before + progress.done + (of_layers ? emitted_ : 0);
             return std::optional(Progress{progress.stage, done, std::max(all, done)});
+        });
+    }
+    /// Returns the execution of the meter of all emitted planes.
+    [[nodiscard]] Execution emission(const Execution& execution) {
+        return with_progress(execution, [this](const Progress& progress) {
+            emitted_ = progress.done * bodies_;
+            const Count& sliced = counts_.at(static_cast<std::size_t>(Stage::slice));
+            const std::uint64_t done = sliced.before + sliced.total + emitted_;
+            return std::optional(Progress{Stage::slice, done, std::max(layers_, done)});
         });
     }
 
@@ -54,7 +69,9 @@ class JointProgress {
     };
     std::array<Count, 6> counts_;
     std::uint64_t triangles_ = 0;
-    std::uint64_t planes_ = 0;
+    std::uint64_t layers_ = 0;
+    std::uint64_t bodies_ = 0;
+    std::uint64_t emitted_ = 0;
 };
 
 Layer moved(const Layer& layer, double dx, double dy) {
@@ -232,7 +249,9 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
     // If the sink expands layers, its work takes most of the time, and its progress is reported instead.
     const bool sink_counts = cost == SinkCost::expanding;
     const Execution slicing = sink_counts ? without_slicing(execution) : execution;
-    const Execution quiet;
+    if (!sink_counts)
+        progress.expect_emission(all, plate.parts.size() + plate.negatives.size());
+    const Execution emission = sink_counts ? execution : progress.emission(execution);
     std::optional<ProgressMeter> emitted;
     std::vector<bool> seen(planes.size(), false);
     Executor executor(execution);
@@ -254,7 +273,7 @@ SliceReport slice_parts(const PlateSink& sink, const Plate& plate, const Plan& p
                 seen[shape] = true;
             }
         if (!emitted)
-            emitted.emplace(sink_counts ? execution : quiet, Stage::slice, all);
+            emitted.emplace(emission, Stage::slice, all);
         const Stopwatch emitting;
         emit(sink, plate, plan, run, at_once, points_in_flight, shapes, executor, *emitted);
         report.slice_seconds += emitting.seconds();

@@ -115,7 +115,8 @@ TEST(PlateSlicing, SlicesAShapeOnlyWhereItStands) {
                                          sliced = progress.done;
                                  }};
             expect_layers(deliver(plate, plan, points, told), plate, plan);
-            EXPECT_EQ(sliced, 3 * 5 + 13U); // each on planes from its lower face to its upper one
+            // Each on planes from its lower face to its upper one; then all four of them on each plane.
+            EXPECT_EQ(sliced, 3 * 5 + 13U + 4 * plan.layers.size());
         }
     }
 }
@@ -193,8 +194,27 @@ TEST(PlateSlicing, ReportsProgressOfAllWindowsAsThatOfOneRunToItsEnd) {
         const auto of_the_torus =
             std::count_if(plan.layers.begin(), plan.layers.end(),
                           [](const PlannedLayer& layer) { return -2 < layer.z && layer.z < 2; });
-        EXPECT_EQ(last[Stage::slice].total, plan.layers.size() + static_cast<std::uint64_t>(of_the_torus));
+        EXPECT_EQ(last[Stage::slice].total,
+                  plan.layers.size() + static_cast<std::uint64_t>(of_the_torus) + 4 * plan.layers.size());
     }
+}
+
+TEST(PlateSlicing, IsNotAtTheEndOfItsProgressWhileManyCopiesAreMadeOfAFewLayers) {
+    const Plate plate = plate_of({{make_box(1, 2, 5), 200}});
+    const Plan plan = plan_of(plate, 0.5);
+    Progress now;
+    const Execution told{.threads = 1, .progress = [&](const Progress& progress) {
+                             now = progress;
+                         }};
+    double first = 1;
+    const PlateSink sink{.prepare = [&](std::span<const Layer>) -> Commit {
+        if (now.stage == Stage::slice && now.total > 0)
+            first = std::min(first, static_cast<double>(now.done) / static_cast<double>(now.total));
+        return {};
+    }};
+    static_cast<void>(slice_to(sink, plate, plan, {.execution = told}));
+    EXPECT_LT(first, 0.01);
+    EXPECT_EQ(now.done, now.total);
 }
 
 /// In how many windows the plate is sliced: each looks at all triangles, so many of them are told of a stage.
