@@ -18,6 +18,10 @@ namespace {
 
 constexpr int deepest = 64;
 
+/// Longer strings are read to their end, but not kept: the file determines their length, and no reader needs
+/// more of a key or a label.
+constexpr std::size_t longest_kept = std::size_t{1} << 16;
+
 } // namespace
 
 void JsonText::fail(const std::string& found, const std::string& expected) const {
@@ -125,10 +129,13 @@ std::string JsonText::string() {
         ++at_;
         if (c == '"')
             return value;
+        const std::size_t kept = value.size();
         if (c == '\\')
             append_escaped(value);
         else
             value += c;
+        if (kept >= longest_kept)
+            value.resize(kept);
     }
 }
 

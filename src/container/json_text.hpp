@@ -41,8 +41,10 @@ class JsonText {
     /// array, which is not read.
     bool next_element();
 
-    /// Reads the next value, which must be a string or a number.
+    /// Reads the next value, which must be a string. Of long strings, only the first 64 KB or slightly more are
+    /// returned.
     std::string string();
+    /// Reads the next value, which must be a number.
     double number();
     /// Skips the next value, of any type.
     void skip();
