@@ -288,7 +288,7 @@ FileJob make_job(const SliceArguments& arguments) {
     job.include = arguments.limits.include;
     job.max_triangles = arguments.limits.max_triangles.value_or(0);
     job.max_memory = arguments.limits.max_memory.value_or(0);
-    job.layering = arguments.layering.layering();
+    job.layering = arguments.layering.layering(job.max_memory);
     if (arguments.shard)
         job.shard = Shard{arguments.shard->first, arguments.shard->second};
     job.repair = arguments.repair;

@@ -66,9 +66,9 @@ void check_ways(const LayeringOptions& options) {
                            fmt::format("{} and {}", way.option.name, other.name), way.reason);
 }
 
-Cut cut_of(const LayeringOptions& options) {
+Cut cut_of(const LayeringOptions& options, std::uint64_t max_memory) {
     if (!options.z_list.empty())
-        return ListedPlanes{.z = read_z_list(options.z_list)};
+        return ListedPlanes{.z = read_z_list(options.z_list, max_memory)};
     if (options.adaptive) {
         AdaptiveLayers layers{.min_height = options.adaptive->first, .max_height = options.adaptive->second};
         layers.cusp_mm = options.cusp.value_or(layers.cusp_mm);
@@ -82,9 +82,12 @@ Cut cut_of(const LayeringOptions& options) {
 
 } // namespace
 
-Layering LayeringOptions::layering() const {
+Layering LayeringOptions::layering(std::uint64_t max_memory) const {
     check_ways(*this);
-    return {.cut = cut_of(*this), .at = slice_at_named(slice_at), .only = only, .snap_mm = snap.value_or(0)};
+    return {.cut = cut_of(*this, max_memory),
+            .at = slice_at_named(slice_at),
+            .only = only,
+            .snap_mm = snap.value_or(0)};
 }
 
 Option snap_option(std::optional<double>& target) {

@@ -26,8 +26,8 @@ struct LayeringOptions {
     std::optional<double> snap;
 
     /// Returns the layering that the options define; reads the list of z if there is one. Throws Error{usage}
-    /// for options that contradict each other, and the errors of read_z_list.
-    [[nodiscard]] Layering layering() const;
+    /// for options that contradict each other, and the errors of read_z_list, which gets `max_memory`.
+    [[nodiscard]] Layering layering(std::uint64_t max_memory) const;
 };
 
 [[nodiscard]] Option snap_option(std::optional<double>& target);

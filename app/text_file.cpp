@@ -20,15 +20,19 @@ std::string reason(int error) {
 }
 
 [[noreturn]] void fail_to_print(int error) {
-    throw Error(ErrorKind::output, fmt::format("standard output: cannot be written: {}", reason(error)));
+    throw Error(ErrorKind::output, fmt::format("standard output: cannot be written: {}", reason(error)),
+                error);
 }
 
 } // namespace
 
-std::string read_text_file(const std::string& path) {
+std::string read_text_file(const std::string& path, std::uint64_t most) {
     const std::string name = input_name(path);
     std::string text;
-    const int error = read_text(path, text);
+    const int error = read_text(path, text, most == 0 ? text.max_size() : most);
+    if (error == EFBIG)
+        throw Error(ErrorKind::limit,
+                    fmt::format("{}: has more than {} bytes; a larger --max-memory allows more", name, most));
     if (error == ENOENT)
         throw Error(ErrorKind::input, fmt::format("{}: there is no such file", name));
     if (error != 0)

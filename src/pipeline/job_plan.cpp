@@ -135,6 +135,8 @@ Plan plan_of(const FileJob& job, const Plate& plate, const Execution& execution)
         if (const double count = count_by_ranges(*ranges, plate.box.max.z - plate.box.min.z);
             count > few_layers && count < std::numeric_limits<std::int32_t>::max())
             check_planes(job, plate, static_cast<std::uint64_t>(count));
+    if (const auto* const listed = std::get_if<ListedPlanes>(&job.layering.cut))
+        check_planes(job, plate, listed->z.size());
     Plan plan;
     try {
         plan = plan_of(

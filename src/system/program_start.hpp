@@ -26,8 +26,9 @@ void prepare_standard_streams() noexcept;
 /// progress bar. A terminal that does not know its size has 80.
 [[nodiscard]] std::optional<unsigned> terminal_columns() noexcept;
 
-/// Reads a file, or standard input if the path is "-", to its end. Returns an errno, or 0.
-[[nodiscard]] int read_text(const std::string& path, std::string& text);
+/// Reads a file, or standard input if the path is "-", to its end. Returns an errno, or 0; EFBIG as soon as
+/// there are more than `most` bytes.
+[[nodiscard]] int read_text(const std::string& path, std::string& text, std::uint64_t most);
 
 /// Identifies a file, whatever its path is.
 using FileIdentity = std::pair<std::uint64_t, std::uint64_t>;

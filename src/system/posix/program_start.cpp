@@ -38,7 +38,7 @@ std::optional<unsigned> terminal_columns() noexcept {
     return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
 }
 
-int read_text(const std::string& path, std::string& text) {
+int read_text(const std::string& path, std::string& text, std::uint64_t most) {
     // Standard input is read by its descriptor, because some files, such as a socket, cannot be opened by
     // name.
     const int descriptor = path == "-" ? ::dup(STDIN_FILENO) : ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -51,6 +51,10 @@ int read_text(const std::string& path, std::string& text) {
         if (got == 0)
             break;
         if (got > 0) {
+            if (static_cast<std::uint64_t>(got) > most - text.size()) {
+                failed = EFBIG;
+                break;
+            }
             text.append(block.data(), static_cast<std::size_t>(got));
         } else if (errno == EINTR || errno == EAGAIN) {
             pollfd waiting{descriptor, POLLIN, 0}; // an inherited descriptor may be non-blocking

@@ -117,7 +117,7 @@ std::optional<unsigned> terminal_columns() noexcept {
     return known ? static_cast<unsigned>(info.srWindow.Right - info.srWindow.Left + 1) : usual;
 }
 
-int read_text(const std::string& path, std::string& text) {
+int read_text(const std::string& path, std::string& text, std::uint64_t most) {
     const NativeFile file = open_input(path);
     if (!file.is_open())
         return errno;
@@ -131,6 +131,8 @@ int read_text(const std::string& path, std::string& text) {
             return errno;
         if (got == 0)
             return 0;
+        if (static_cast<std::uint64_t>(got) > most - text.size())
+            return EFBIG;
         text.append(reinterpret_cast<const char*>(block.data()), static_cast<std::size_t>(got));
     }
 }
