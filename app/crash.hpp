@@ -13,7 +13,8 @@ namespace lamella::app {
 [[noreturn]] void leave_at_once(std::string_view last_words, int exit_code) noexcept;
 
 /// Installs handlers for crashes. From then on:
-/// - A crash removes the temporary files of outputs before it ends the program as usual.
+/// - A crash, and a signal such as SIGQUIT or SIGUSR1, removes the temporary files of outputs before it ends the
+///   program as usual.
 /// - Writing to a pipe without a reader, or to a file that becomes too large, is an error instead of a
 ///   signal.
 /// - If the limit of processor time is exceeded, the program ends with the exit code of limits. A worker

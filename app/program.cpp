@@ -16,12 +16,14 @@
 #include "numbers.hpp"
 #include "standard_streams.hpp"
 #include "suggest.hpp"
+#include "system/program_ending.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -133,6 +135,17 @@ int run(std::vector<Command>& commands, const std::vector<std::string>& words, M
     return run_command(*command, {*command, messages, &cancel});
 }
 
+/// Returns whether a pipe without a reader is the reason of the failure.
+bool reader_has_gone(const std::exception_ptr& failure) {
+    try {
+        std::rethrow_exception(failure);
+    } catch (const Error& error) {
+        return error.kind() == ErrorKind::output && error.system_error() == EPIPE;
+    } catch (...) {
+        return false;
+    }
+}
+
 } // namespace
 
 int run_program(std::vector<Command> commands, const std::vector<std::string>& words, bool speaks) {
@@ -149,6 +162,8 @@ int run_program(std::vector<Command> commands, const std::vector<std::string>& w
         code = run(commands, words, messages, interrupt->flag());
         finish_printing();
     } catch (...) {
+        if (reader_has_gone(std::current_exception()))
+            end_by_broken_pipe();
         const Failure failure = failure_of(std::current_exception());
         messages.error(failure.text, failure.exit_code);
         code = failure.exit_code;

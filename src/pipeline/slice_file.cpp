@@ -409,7 +409,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
         } catch (const Error& error) {
             if (job.output.empty() || job.output == "-")
                 throw;
-            throw Error(error.kind(), fmt::format("{}; {} is complete", error.what(), job.output));
+            throw Error(error.kind(), fmt::format("{}; {} is complete", error.what(), job.output),
+                        error.system_error());
         }
     result.seconds.total = total.seconds();
     return result;

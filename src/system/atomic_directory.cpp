@@ -29,8 +29,9 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
         throw Error(ErrorKind::output, "cannot write a folder without a name");
     check_replaceable();
     const UnfinishedName::Creation creation;
-    working_ = take_free_name(target_, this_machine(),
-                              [this](const char* name) { return create_locked(name, lock_); });
+    working_ = take_free_name(target_, this_machine(), [this](const char* name) {
+        return create_locked(name, lock_, [this](const char* left) { return is_left_by_a_run(left); });
+    });
     if (working_.empty())
         throw output_error(target_.string(), errno);
     permissions_ = take_permissions(target_, working_);
@@ -82,6 +83,16 @@ void AtomicDirectory::check_replaceable() const {
     }
     if (error && error != std::errc::no_such_file_or_directory)
         throw output_error(path_, error.value());
+}
+
+bool AtomicDirectory::is_left_by_a_run(const char* folder) const {
+    std::error_code error;
+    fs::directory_iterator entries(folder, error);
+    for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+        if (!may_remove_(entries->path()) && !is_unfinished_name(entries->path()))
+            return false;
+    }
+    return !error;
 }
 
 void AtomicDirectory::write(const std::string& name, std::string_view bytes) {
@@ -140,6 +151,11 @@ void AtomicDirectory::commit() {
     }
     working_.clear();
     remove_folder(aside);
+}
+
+bool is_unfinished_name(const fs::path& path) {
+    const std::string name = path.filename().string();
+    return name.starts_with('.') && name.ends_with(".tmp");
 }
 
 bool begins_with_magic(const fs::path& path, std::string_view mark) {

@@ -39,6 +39,8 @@ class AtomicDirectory {
 
   private:
     void check_replaceable() const;
+    /// Returns whether a run left this hidden folder, and nobody put anything else into it.
+    [[nodiscard]] bool is_left_by_a_run(const char* folder) const;
 
     std::string path_;
     std::filesystem::path target_;
@@ -49,6 +51,9 @@ class AtomicDirectory {
     UnfinishedName unfinished_;
     std::atomic<std::uint64_t> bytes_{0};
 };
+
+/// Returns whether a path has the hidden name of an unfinished file or folder.
+[[nodiscard]] bool is_unfinished_name(const std::filesystem::path& path);
 
 /// Returns whether a path is a regular file that begins with `mark`, which identifies files of Lamella.
 [[nodiscard]] bool begins_with_magic(const std::filesystem::path& path, std::string_view mark);

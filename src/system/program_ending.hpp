@@ -12,10 +12,16 @@ void write_last_words(std::string_view text) noexcept;
 /// Ends the process without destructors.
 [[noreturn]] void leave(int exit_code) noexcept;
 
-/// Calls `at_crash` when the program crashes, before it ends as usual, and `at_time_limit` when the processor
-/// time is used up; if that returns, the program ends as in a crash. Existing handlers, such as those of a
-/// sanitizer, are kept. From then on, writing to a pipe without a reader, or to a file that becomes too
-/// large, is an error and does not end the program.
+/// Ends the program by the signal of a broken pipe, if standard output is a pipe whose reader has gone, as other
+/// programs end whose reader wants no more. Returns otherwise, and if the signal was ignored when the program
+/// started, or the system has none. Needs handle_crashes.
+void end_by_broken_pipe() noexcept;
+
+/// Calls `at_crash` when the program crashes or is ended by a signal that others send, other than the
+/// interrupts of the user, before it ends as usual, and `at_time_limit` when the processor time is used up;
+/// if that returns, the program ends as in a crash. Existing handlers, such as those of a sanitizer, are
+/// kept. From then on, writing to a pipe without a reader, or to a file that becomes too large, is an error
+/// and does not end the program.
 void handle_crashes(void (*at_crash)() noexcept, void (*at_time_limit)() noexcept) noexcept;
 
 /// Requests to end the program.

@@ -27,9 +27,9 @@ class UnfinishedName {
     bool withdraw() noexcept;
 
     /// Must be held from before a name is created until it is announced or, if that fails, removed again.
-    /// remove_unfinished waits for all holders; after that the constructor throws Error{cancelled}. The
-    /// signal of used-up processor time is held back from this thread, because its handler could not wait for
-    /// the thread that it interrupts.
+    /// remove_unfinished waits for all holders; after that the constructor throws Error{cancelled}. Signals
+    /// that end the program are held back from this thread, because their handler could not wait for the
+    /// thread that it interrupts.
     class Creation {
       public:
         Creation();
@@ -38,7 +38,7 @@ class UnfinishedName {
         Creation& operator=(const Creation&) = delete;
 
       private:
-        TimeSignalHold hold_; ///< until the creation has ended
+        EndingSignalHold hold_; ///< until the creation has ended
     };
 
     struct Slot;

@@ -5,6 +5,7 @@
 #include "system/native_file.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -16,9 +17,10 @@ namespace lamella {
 [[nodiscard]] std::string this_machine();
 
 /// Creates a folder and locks it as long as `lock` is open; `lock` stays closed if the file system has no
-/// locks. If a process that no longer runs has left a folder of this name, it is removed. Returns false and
-/// sets errno on failure, to EEXIST if another process has the name.
-[[nodiscard]] bool create_locked(const char* name, NativeFile& lock);
+/// locks. If a process that no longer runs has left a folder of this name, and `may_remove(name)`, it is
+/// removed. Returns false and sets errno on failure, to EEXIST if the name is taken.
+[[nodiscard]] bool create_locked(const char* name, NativeFile& lock,
+                                 const std::function<bool(const char*)>& may_remove);
 
 /// Gives the new folder the permissions of the one that it will replace, but this process may write into it.
 /// Returns the permissions for `set_permissions`, when the new folder is complete; none if nothing is

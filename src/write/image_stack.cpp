@@ -58,9 +58,10 @@ class Manifest {
 /// Returns whether an existing entry of a folder was written by this program.
 bool is_ours(const fs::path& path) {
     std::error_code ignored;
+    const fs::path folder = path.parent_path();
     if (!fs::is_regular_file(fs::symlink_status(path, ignored)) ||
-        !begins_with_magic(path.parent_path() / manifest_name, manifest_magic))
-        return false;
+        !(is_unfinished_name(folder) || begins_with_magic(folder / manifest_name, manifest_magic)))
+        return false; // the manifest is written at the end
     const std::string name = path.filename().string();
     const std::string number = path.stem().string();
     return name == manifest_name ||

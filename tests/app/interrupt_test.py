@@ -93,6 +93,20 @@ class Interrupt(ProgramTest):
         self.assertIn("processor time", last["error"])
         self.assertEqual(self.listing(), ["rook.stl"])
 
+    @needs_posix("signals")
+    def test_other_signals_that_end_a_program_leave_nothing_either(self):
+        """Ctrl-\\, and what batch systems announce their limits by."""
+        self.succeed("make", "rook")
+        for name in ["SIGQUIT", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGVTALRM", "SIGPROF"]:
+            with self.subTest(name):
+                process = self.start("slice", "rook.stl", "-o", "rook", "--format", "png", "--layer-height", "0.001")
+                while process.poll() is None and not self.has_unfinished_file(process):
+                    time.sleep(0.01)
+                process.send_signal(signal.Signals[name])
+                process.communicate(timeout=60)
+                self.assertEqual(process.returncode, -signal.Signals[name])
+                self.assertEqual([one for one in self.listing() if not one.startswith("core")], ["rook.stl"])
+
     def test_a_second_signal_leaves_nothing_either(self):
         process = self.start_and_get_stuck()
         process.send_signal(signal.SIGINT)

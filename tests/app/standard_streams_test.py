@@ -80,6 +80,26 @@ class StandardStreams(ProgramTest):
                 self.assertEqual(code, 6, err)
                 self.assertRegex(err, "^lamella: error: .*standard output.* closed")
 
+    @needs_posix("signals")
+    def test_a_reader_of_results_that_has_gone_ends_a_run_in_silence(self):
+        """As `lamella help --man | head -1` does; whoever ignores the signal gets an error."""
+        for arguments in [["help", "--man"], ["slice", "--help"], ["info", "box.stl", "--json"], ["slice", "box.stl", "-o", "-", "--format", "cli"],
+                          ["slice", "box.stl", "-o", "box.cli"]]:
+            for ignored in [False, True]:
+                with self.subTest(arguments, ignored=ignored):
+                    reading, writing = os.pipe()
+                    os.close(reading)
+                    # Python ignores the signal, and restores it for its children unless it is told not to.
+                    process = subprocess.run([*COMMAND, *arguments], cwd=self.folder, stdout=writing, stderr=subprocess.PIPE,
+                                             restore_signals=not ignored, timeout=60)
+                    os.close(writing)
+                    if ignored:
+                        self.assertEqual(process.returncode, 6)
+                        self.assertTrue(process.stderr)
+                    else:
+                        self.assertEqual((process.returncode, process.stderr), (-signal.SIGPIPE, b""))
+        self.assertEqual(self.listing(), sorted([*CONTENTS, "box.cli"]))
+
     def test_a_signal_ends_a_run_that_waits_for_standard_input(self):
         reading, writing = os.pipe()
         self.addCleanup(os.close, writing)

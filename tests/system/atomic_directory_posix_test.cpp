@@ -55,6 +55,24 @@ TEST(AtomicDirectory, RemovesWhatAProcessThatIsDeadLeftForTheSameName) {
     EXPECT_TRUE(folder.entries().front().starts_with(".another."));
 }
 
+TEST(AtomicDirectory, LeavesAFolderAloneInWhichSomebodyPutSomethingElse) {
+    const TemporaryFolder folder;
+    const int code = exit_code_of_child([&] {
+        AtomicDirectory left(folder.file("out"), is_layer);
+        left.write("a.svg", "a");
+        _exit(0); // before any destructor
+    });
+    ASSERT_EQ(code, 0);
+    const fs::path left = folder.path() / folder.entries().front();
+    fs::copy_file(left / "a.svg", left / "notes.txt");
+    {
+        AtomicDirectory directory(folder.file("out"), is_layer);
+        directory.commit();
+    }
+    EXPECT_TRUE(fs::exists(left / "notes.txt") && fs::exists(left / "a.svg"));
+    EXPECT_TRUE(fs::exists(folder.path() / "out"));
+}
+
 TEST(AtomicDirectory, LeavesWhatIsNotItsOwnKindOfLeftoverAlone) {
     const TemporaryFolder folder;
     AtomicDirectory living(folder.file("out"), is_layer);

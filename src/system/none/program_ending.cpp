@@ -7,4 +7,6 @@ namespace lamella {
 InterruptWatch::InterruptWatch(Interrupts /*kind*/) {}
 InterruptWatch::~InterruptWatch() = default;
 
+void end_by_broken_pipe() noexcept {}
+
 } // namespace lamella

@@ -1,5 +1,6 @@
 #include "system/ending.hpp"
 
+#include "system/posix/ending_signals.hpp"
 #include "system/posix/kernel.hpp"
 
 #include <fcntl.h>
@@ -41,15 +42,17 @@ void wait_a_moment() noexcept {
     ::nanosleep(&a_moment, nullptr);
 }
 
-TimeSignalHold::TimeSignalHold() noexcept {
+EndingSignalHold::EndingSignalHold() noexcept {
     static_assert(sizeof(sigset_t) <= sizeof before_);
-    sigset_t time_is_up;
-    sigemptyset(&time_is_up);
-    sigaddset(&time_is_up, SIGXCPU);
-    ::pthread_sigmask(SIG_BLOCK, &time_is_up, new (before_) sigset_t);
+    sigset_t held;
+    sigemptyset(&held);
+    sigaddset(&held, SIGXCPU);
+    for (const int number : ending_signals)
+        sigaddset(&held, number);
+    ::pthread_sigmask(SIG_BLOCK, &held, new (before_) sigset_t);
 }
 
-TimeSignalHold::~TimeSignalHold() {
+EndingSignalHold::~EndingSignalHold() {
     ::pthread_sigmask(SIG_SETMASK, std::launder(reinterpret_cast<const sigset_t*>(before_)), nullptr);
 }
 

@@ -1,5 +1,6 @@
 #include "system/program_ending.hpp"
 
+#include "system/posix/ending_signals.hpp"
 #include "system/posix/program_kernel.hpp"
 
 #include <fcntl.h>
@@ -20,6 +21,8 @@ namespace {
 // Global, because a signal handler has no parameter for them.
 void (*crashed)() noexcept = nullptr;
 void (*time_is_up)() noexcept = nullptr;
+// The action for a broken pipe when the program started.
+bool broken_pipes_are_ignored = true;
 
 extern "C" void at_crash_signal(int number) {
     if (number == SIGXCPU)
@@ -70,19 +73,32 @@ void leave(int exit_code) noexcept {
     ::_exit(exit_code);
 }
 
+void end_by_broken_pipe() noexcept {
+    pollfd output{STDOUT_FILENO, POLLOUT, 0};
+    if (broken_pipes_are_ignored || ::poll(&output, 1, 0) <= 0 || (output.revents & POLLERR) == 0)
+        return;
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+}
+
 void handle_crashes(void (*at_crash)() noexcept, void (*at_time_limit)() noexcept) noexcept {
     crashed = at_crash;
     time_is_up = at_time_limit;
+    broken_pipes_are_ignored = !has_action(SIGPIPE, SIG_DFL);
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);
-    for (const int number : {SIGBUS, SIGSEGV, SIGILL, SIGFPE, SIGABRT, SIGXCPU}) {
+    const auto handle = [](int number) {
         if (!has_action(number, SIG_DFL))
-            continue;
+            return;
         struct sigaction action {};
         action.sa_handler = at_crash_signal;
         action.sa_flags = SA_RESETHAND;
         ::sigaction(number, &action, nullptr);
-    }
+    };
+    for (const int number : {SIGBUS, SIGSEGV, SIGILL, SIGFPE, SIGABRT, SIGXCPU})
+        handle(number);
+    for (const int number : ending_signals)
+        handle(number);
 }
 
 void block_interrupts() noexcept {

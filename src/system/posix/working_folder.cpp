@@ -37,9 +37,9 @@ bool lock(const NativeFile& folder) {
 
 /// Removes the hidden folder unless its process is still running. (A lock ends with its process in any case.)
 /// Returns whether the name is free afterwards.
-bool remove_abandoned(const char* name) {
+bool remove_abandoned(const char* name, const std::function<bool(const char*)>& may_remove) {
     const NativeFile folder = open_folder(name);
-    if (!folder.is_open() || !lock(folder) || !is_still(folder, name))
+    if (!folder.is_open() || !lock(folder) || !is_still(folder, name) || !may_remove(name))
         return false;
     remove_folder(name);
     struct stat status {};
@@ -54,11 +54,11 @@ std::string this_machine() {
     return id.size() >= enough ? id.substr(0, enough) : this_process();
 }
 
-bool create_locked(const char* name, NativeFile& locked) {
+bool create_locked(const char* name, NativeFile& locked, const std::function<bool(const char*)>& may_remove) {
     constexpr mode_t everybody = 0777; // the umask applies
     if (::mkdir(name, everybody) != 0) {
         if (errno == EEXIST)
-            errno = remove_abandoned(name) ? EINTR : EEXIST; // try again, or try the next name
+            errno = remove_abandoned(name, may_remove) ? EINTR : EEXIST; // try again, or try the next name
         return false;
     }
     locked = open_folder(name);

@@ -33,8 +33,8 @@ void wait_a_moment() noexcept {
     Sleep(1);
 }
 
-TimeSignalHold::TimeSignalHold() noexcept : before_{} {}
+EndingSignalHold::EndingSignalHold() noexcept : before_{} {}
 
-TimeSignalHold::~TimeSignalHold() = default;
+EndingSignalHold::~EndingSignalHold() = default;
 
 } // namespace lamella

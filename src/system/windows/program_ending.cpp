@@ -66,6 +66,8 @@ void leave(int exit_code) noexcept {
     std::abort();
 }
 
+void end_by_broken_pipe() noexcept {}
+
 void handle_crashes(void (*at_crash)() noexcept, void (* /*at_time_limit*/)() noexcept) noexcept {
     crashed = at_crash;
     SetErrorMode(SEM_FAILCRITICALERRORS | SEM_NOGPFAULTERRORBOX | SEM_NOOPENFILEERRORBOX);

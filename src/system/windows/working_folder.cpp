@@ -40,7 +40,7 @@ std::string this_machine() {
     return result;
 }
 
-bool create_locked(const char* name, NativeFile& lock) {
+bool create_locked(const char* name, NativeFile& lock, const std::function<bool(const char*)>& may_remove) {
     // The mutex comes first, so whoever has it may remove a folder of that name.
     const HANDLE mutex = CreateMutexW(nullptr, FALSE, mutex_of(name).c_str());
     if (mutex == nullptr || GetLastError() == ERROR_ALREADY_EXISTS) {
@@ -54,7 +54,7 @@ bool create_locked(const char* name, NativeFile& lock) {
     if (CreateDirectoryW(path.c_str(), nullptr) != 0)
         return true;
     set_errno();
-    if (errno == EEXIST) {
+    if (errno == EEXIST && may_remove(name)) {
         remove_folder(name);
         if (CreateDirectoryW(path.c_str(), nullptr) != 0)
             return true;
