@@ -10,6 +10,10 @@
 #include <memory>
 #include <utility>
 
+#ifndef _WIN32
+#include <unistd.h>
+#endif
+
 namespace py = pybind11;
 
 namespace lamella::python {
@@ -17,6 +21,14 @@ namespace {
 
 // 16 MB, so that threads need not wait for each other.
 constexpr std::size_t most_points = (std::size_t{16} << 20) / sizeof(Point2);
+
+long this_process() {
+#ifdef _WIN32
+    return 0; // there is no fork
+#else
+    return ::getpid();
+#endif
+}
 
 } // namespace
 
@@ -67,7 +79,7 @@ MendedLayer CutPlan::mended(std::span<const Layer> bodies, const SourcePlate& pl
     MendedLayer made;
     ClosedPlane closed;
     if (close_gaps_mm) {
-        closed = close_gaps_on_plane(bodies, *close_gaps_mm);
+        closed = close_gaps_on_plane(bodies, *close_gaps_mm, limits);
         made.joins = std::move(closed.joins);
         bodies = closed.layers;
     }
@@ -104,26 +116,26 @@ Plan CutPlan::only(std::uint64_t begin, std::uint64_t end, const SourcePlate& pl
 LayerStream::LayerStream(PlatePointer plate, CutPlan cuts, const Engine& with, unsigned threads,
                          py::object listener)
     : plate_(std::move(plate)), cuts_(std::move(cuts)), engine_(with), threads_(threads),
-      listener_(std::move(listener)), repairs_(plate_->repairs) {
+      listener_(std::move(listener)), process_(this_process()), repairs_(plate_->repairs) {
     cuts_.add(repairs_, {});
-    Execution execution{.threads = threads, .cancel = &queue_.closed()};
+    Execution execution{.threads = threads, .cancel = &shared_->queue.closed()};
     if (!listener_.is_none())
         execution.progress = [this](const Progress& progress) {
-            progress_.put(progress);
+            shared_->progress.put(progress);
         };
     worker_ = std::thread([this, execution] {
         std::exception_ptr failure;
         try {
             const PlateSink sink{.prepare = [&](std::span<const Layer> bodies) -> Commit {
                 return [this, kept = cuts_.mended(bodies, *plate_, layer_limits(execution))]() mutable {
-                    queue_.put(std::move(kept));
+                    shared_->queue.put(std::move(kept));
                 };
             }};
             slice_to(sink, plate_->mended, plan(), {.execution = execution, .engine = engine_});
         } catch (...) {
             failure = std::current_exception();
         }
-        queue_.end(std::move(failure));
+        shared_->queue.end(std::move(failure));
     });
 }
 
@@ -132,16 +144,24 @@ LayerStream::~LayerStream() { // NOLINT(bugprone-exception-escape)
     close();
 }
 
+bool LayerStream::forked() const {
+    return this_process() != process_;
+}
+
 LayerPointer LayerStream::next() {
+    if (forked() && !closed_)
+        throw Error(ErrorKind::usage,
+                    "this stream of layers was made before the process was forked, and the "
+                    "threads that slice stay in the process that made it; make a stream here");
     try {
         for (MendedLayer made; !closed_;) {
             LayerQueue::Found found = LayerQueue::Found::nothing_yet;
             {
                 const GilRelease released;
-                found = queue_.take(made);
+                found = shared_->queue.take(made);
             }
             // A copy, because the listener may close the stream, which releases the listener.
-            report(progress_, py::object(listener_));
+            report(shared_->progress, py::object(listener_));
             check_signals();
             if (found == LayerQueue::Found::end)
                 close();
@@ -168,9 +188,13 @@ void LayerStream::close() {
     closed_ = true;
     // If several threads close the stream, only one gets the worker.
     std::thread worker = std::move(worker_);
-    {
+    if (forked()) {
+        if (worker.joinable())
+            worker.detach();
+        static_cast<void>(shared_.release()); // NOLINT(bugprone-unused-return-value): see Shared
+    } else {
         const GilRelease released;
-        queue_.close();
+        shared_->queue.close();
         if (worker.joinable())
             worker.join();
     }

@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <deque>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
@@ -92,9 +93,10 @@ class LayerStream {
     ~LayerStream(); // NOLINT(bugprone-exception-escape): see there
 
     /// Returns the next layer. Throws pybind11::stop_iteration after the last one and once the stream is
-    /// closed.
+    /// closed; and Error{usage} in a process that was forked after the stream was made, because threads,
+    /// which slice, stay in the process that started them.
     LayerPointer next();
-    /// Stops slicing, and waits until it has stopped.
+    /// Stops slicing, and waits until it has stopped. Does not wait in a forked process.
     void close();
 
     [[nodiscard]] const SourcePlate& plate() const noexcept { return *plate_; }
@@ -121,8 +123,16 @@ class LayerStream {
     const Engine& engine_;
     unsigned threads_;
     pybind11::object listener_;
-    ProgressBox progress_;
-    LayerQueue queue_;
+    /// What the worker uses. A forked process never destroys it: there, nobody releases a lock that the
+    /// worker held at the time of the fork, and a condition variable waits for those who waited for it.
+    struct Shared {
+        ProgressBox progress;
+        LayerQueue queue;
+    };
+    [[nodiscard]] bool forked() const;
+
+    long process_; ///< the one that made the stream
+    std::unique_ptr<Shared> shared_ = std::make_unique<Shared>();
     std::size_t taken_ = 0;
     Repairs repairs_;
     bool closed_ = false;
