@@ -376,6 +376,29 @@ def test_threads_may_share_a_stream(sheet):
     assert_threads_end(before)
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="a system without fork")
+def test_a_stream_raises_in_a_process_that_was_forked_from_its_own(sheet):
+    """Its threads stay behind, so nothing would ever come; letting it go there does not wait for them either."""
+    code = """
+import os, sys
+import lamella
+stream = lamella.iter_layers(sys.argv[1], 0.01)
+next(stream)
+child = os.fork()
+if child == 0:
+    try:
+        next(stream)
+    except lamella.UsageError as error:
+        told = "forked" in str(error)
+        del stream, error
+        own = len(list(lamella.iter_layers(sys.argv[1], 1)))
+        os._exit(7 if told and own > 0 else 8)
+    os._exit(9)
+print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), len(list(stream)) > 100)
+"""
+    assert run_python(code, sheet) == "7 True\n"
+
+
 def test_a_program_may_end_with_a_stream_open(sheet):
     code = "import sys, lamella; layers = lamella.iter_layers(sys.argv[1], 0.0001); print(next(layers).index)"
     assert run_python(code, sheet) == "0\n"
