@@ -17,6 +17,7 @@ namespace lamella::app {
 ///   program as usual.
 /// - Writing to a pipe without a reader, or to a file that becomes too large, is an error instead of a
 ///   signal.
+/// - If memory runs out where no error can be reported, the program ends with the exit code of limits.
 /// - If the limit of processor time is exceeded, the program ends with the exit code of limits. A worker
 ///   process, which reports nothing, ends by that signal.
 ///

@@ -44,7 +44,8 @@ void after_output(const std::string& output, const Work& work) {
     } catch (const Error& error) {
         if (output.empty() || output == "-")
             throw;
-        throw Error(error.kind(), fmt::format("{}; {} is complete", error.what(), output));
+        throw Error(error.kind(), fmt::format("{}; {} is complete", error.what(), output),
+                    error.system_error());
     }
 }
 
