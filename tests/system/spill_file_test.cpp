@@ -47,8 +47,10 @@ TEST(SpillFile, SaysBeforeTheWorkThatThereIsNoRoom) {
     const test::ScratchFolder spill(folder.path().string());
     const std::string position = folder.path().string() + ": ";
     // More than any disk has.
-    test::expect_error(ErrorKind::output, {position.c_str(), "36028797.0 GB", scratch_variable().data()},
-                       [] { const SpillFile file(std::uint64_t{1} << 55); });
+    test::expect_error(
+        ErrorKind::output,
+        {position.c_str(), "36028797.0 GB", "the disk has ", " free", scratch_variable().data()},
+        [] { const SpillFile file(std::uint64_t{1} << 55); });
 }
 
 } // namespace
