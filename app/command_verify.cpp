@@ -1,4 +1,5 @@
 #include "lamella/core/error.hpp"
+#include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/pipeline/verify.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -10,6 +11,7 @@
 #include "layering_options.hpp"
 #include "numbers.hpp"
 #include "options.hpp"
+#include "repair_options.hpp"
 #include "scan_options.hpp"
 #include "standard_streams.hpp"
 
@@ -34,6 +36,7 @@ struct VerifyArguments {
     bool strict = false;
     bool json = false;
     PlacementOptions placement;
+    RepairPolicies repair;
     LayerStepOptions making;
     bool scan = false;
     ScanArguments scanning;
@@ -198,6 +201,9 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (arguments.mesh.empty() && arguments.snap)
         throw Error(ErrorKind::usage, "--snap says how a mesh is cut: name it with --mesh part.stl");
     const LayerSteps steps = arguments.making.steps();
+    if (arguments.mesh.empty() && (arguments.repair.change_the_mesh() || arguments.repair.close_gaps_mm))
+        throw Error(ErrorKind::usage,
+                    "what was mended is mended in the mesh, too: name it with --mesh part.stl");
     if (arguments.mesh.empty() && steps.any())
         throw Error(ErrorKind::usage, "what was made of the layers is checked against a mesh: name it with "
                                       "--mesh part.stl");
@@ -206,9 +212,8 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     arguments.limits.prepare_memory();
 
     LayerFile file = read_layers(arguments.input, arguments.limits.of_passing_layers(), execution);
-    const auto of_vectors = std::count_if(file.parts.begin(), file.parts.end(), [](const LayerPart& part) {
-        return part.exposure.has_value();
-    });
+    const auto of_vectors = std::count_if(file.parts.begin(), file.parts.end(),
+                                          [](const LayerPart& part) { return part.exposure.has_value(); });
     if (of_vectors != 0 && of_vectors != std::ssize(file.parts)) // their parts are checked apart
         file.keep_layers(arguments.limits.of_layers(), execution);
     for (std::string& warning : file.warnings)
@@ -230,6 +235,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         if (plate->parts.size() > 1)
             check_memory(*plate, bytes_per_triangle, arguments.limits.max_memory.value_or(0),
                          memory_of(file));
+        plate = repaired(std::move(*plate), arguments.repair, execution).plate;
         mesh = joined(*plate, execution);
     }
 
@@ -247,6 +253,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
                               .plate = plate,
                               .rule = rule,
                               .snap_mm = arguments.snap.value_or(0),
+                              .close_gaps_mm = arguments.repair.close_gaps_mm,
                               .steps = steps,
                               .rounding = file.rounding,
                               .tolerance_mm = arguments.tolerance};
@@ -273,6 +280,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
                               .plate = plate,
                               .rule = rule,
                               .snap_mm = arguments.snap.value_or(0),
+                              .close_gaps_mm = arguments.repair.close_gaps_mm,
                               .steps = steps,
                               .rounding = file.rounding,
                               .tolerance_mm = arguments.tolerance,
@@ -343,6 +351,7 @@ Command verify_command() {
                           arguments->strict),
                      flag("json", "print JSON", arguments->json)}},
                    placement_options(arguments->placement),
+                   repair_options(arguments->repair),
                    layer_step_options(arguments->making),
                    scan_options(
                        arguments->scanning,

@@ -2,6 +2,7 @@
 
 // Reference layers of a mesh, cut at the heights that a format may have rounded to a given height.
 
+#include "lamella/contour/close_gaps.hpp"
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/pipeline/verify.hpp"
@@ -62,12 +63,32 @@ inline std::vector<double> limits_of_mitres(double limit, const Rounding& roundi
                : std::vector{limit, std::max(1.0, (1 - spread) * limit), (1 + spread) * limit};
 }
 
-/// Returns the layers of the mesh, after these steps.
+/// Returns the layers of the mesh without its negative volumes, after gaps of each part are closed.
+inline LayerStack sections_of(const VerifyOptions& options, const Plan& plan, const Execution& execution) {
+    if (!options.close_gaps_mm)
+        return options.subtracts() ? slice(*options.plate, plan, {.execution = execution})
+                                   : slice(*options.mesh, plan, {.execution = execution});
+    LayerStack layers;
+    const double within = *options.close_gaps_mm;
+    if (!options.plate) {
+        for (const Layer& layer : slice(*options.mesh, plan, {.execution = execution}))
+            layers.push_back(close_gaps(layer, within).layer);
+        return layers;
+    }
+    const LayerSink keep = appending_to(layers);
+    const PlateSink of_parts{.prepare = [&](std::span<const Layer> bodies) {
+        const ClosedPlane closed = close_gaps_on_plane(bodies, within);
+        return keep.prepare(merged(material_of(closed.layers, options.plate->negatives).parts));
+    }};
+    slice_to(of_parts, *options.plate, plan, {.execution = execution});
+    return layers;
+}
+
+/// Returns these layers after these steps.
 inline LayerStack layers_of(const VerifyOptions& options, const Plan& plan, const LayerSteps& steps,
                             const Execution& execution) {
     std::vector<LayerStack> layers;
-    layers.push_back(options.subtracts() ? slice(*options.plate, plan, {.execution = execution})
-                                         : slice(*options.mesh, plan, {.execution = execution}));
+    layers.push_back(sections_of(options, plan, execution));
     return std::move(take_steps(steps, std::move(layers), {.execution = execution}).parts.front());
 }
 

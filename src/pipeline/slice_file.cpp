@@ -152,17 +152,10 @@ Prepared prepare(Plate& plate, const FileJob& job, const Engine& engine, const E
     }
     if (job.repair.change_the_mesh()) {
         const Stopwatch repairing;
-        for (std::size_t i = 0; i < plate.shapes.size(); ++i) {
-            PlateShape& shape = plate.shapes[i];
-            FileResult::MeshRepair& repair = done.repairs.emplace_back();
-            repair.file = shape.input;
-            RepairedMesh whole = repaired(shape.mesh, job.repair, execution);
-            shape.mesh = std::move(whole.mesh);
-            repair.repairs = std::move(whole.repairs);
-            if (shape.mesh.empty())
-                throw Error(ErrorKind::input, fmt::format("{}: nothing of the mesh is left after its repair",
-                                                          name_of_shape(plate, i)));
-        }
+        RepairedPlate whole = repaired(std::move(plate), job.repair, execution);
+        plate = std::move(whole.plate);
+        for (std::size_t i = 0; i < plate.shapes.size(); ++i)
+            done.repairs.push_back({plate.shapes[i].input, std::move(whole.repairs[i])});
         done.seconds += repairing.seconds();
     }
     return done;

@@ -108,7 +108,7 @@ void compare_areas(std::span<const Layer> layers, std::span<const CheckedLayer> 
         steps.offset_corners.mitre_limit = tried;
         const auto found =
             at_moved_cuts(layers, options.granted(), options.rule, options.snap_mm, [&](const Plan& plan) {
-                if (!steps.any() && !options.subtracts())
+                if (!steps.any() && !options.subtracts() && !options.close_gaps_mm)
                     return section_moments(*options.mesh, plan, origin, execution);
                 std::vector<AreaMoments> made;
                 for (const Layer& layer : layers_of(options, plan, steps, execution))

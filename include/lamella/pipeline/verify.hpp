@@ -25,18 +25,21 @@ namespace lamella {
 
 /// Reference for the checks of layers or scan vectors.
 struct VerifyOptions {
-    /// Reference mesh, which should be closed. The area and centroid of each layer are compared with those of
-    /// the mesh's section at the layer's z. Scan vectors must lie within the section; without a mesh, within
-    /// the outermost contour of their part.
+    /// Reference mesh, which should be closed; repaired as the one that was sliced. The area and centroid of
+    /// each layer are compared with those of the mesh's section at the layer's z. Scan vectors must lie
+    /// within the section; without a mesh, within the outermost contour of their part.
     std::optional<Mesh> mesh = {};
     /// The plate that `mesh` was made from. Its negative volumes, if any, are subtracted.
     std::optional<Plate> plate = {};
     /// The rule by which the layers were cut; relevant only for planes through horizontal faces.
     PlaneRule rule = PlaneRule::section_above;
-    double snap_mm = 0;    ///< snap distance with which the layers were cut; see Plan
-    LayerSteps steps = {}; ///< steps applied to the layers of the mesh, as one part. Deviations by
-                           ///< `simplify_mm` are tolerated. Without steps, areas are computed with
-                           ///< section_areas.
+    double snap_mm = 0; ///< snap distance with which the layers were cut; see Plan
+    /// Gaps that were closed in the layers of each part; see close_gaps. Closed alike in the sections of
+    /// `plate`, or of `mesh` if there is none.
+    std::optional<double> close_gaps_mm = {};
+    /// Steps applied to the layers of the mesh, as one part. Deviations by `simplify_mm` are tolerated. If
+    /// neither gaps are closed nor steps taken, areas are computed with section_areas.
+    LayerSteps steps = {};
     /// Rounding of coordinates and heights by the format. The tolerance of areas is proportional to it and to
     /// the layer's perimeter. Rings so thin that rounding can invert them may have either orientation.
     Rounding rounding = {};
@@ -199,9 +202,9 @@ struct VectorVerification {
 };
 
 /// Checks the parts of a file that have an exposure, and ignores the others. If the layers are not in memory,
-/// all parts must have one. Parallel over layers, with the same result for any number of threads. Throws the errors of
-/// `slice`, `offset` and `check(const LayerFile&)`, and those of `verify` for a coordinate that is not finite. O(n log n) for n points
-/// and vectors of a layer, plus the cost of slicing and offsets.
+/// all parts must have one. Parallel over layers, with the same result for any number of threads. Throws the
+/// errors of `slice`, `offset` and `check(const LayerFile&)`, and those of `verify` for a coordinate that is
+/// not finite. O(n log n) for n points and vectors of a layer, plus the cost of slicing and offsets.
 [[nodiscard]] VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& options = {},
                                                 const Execution& execution = {});
 
