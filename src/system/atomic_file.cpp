@@ -68,6 +68,9 @@ Error output_error(const std::string& path, int system_error) {
     case ENOENT:
         if (std::error_code ignored; fs::is_regular_file(first_bad_folder(path), ignored)) // as on Windows
             return output_error(path, ENOTDIR);
+        if (std::error_code ignored; fs::is_directory(folder_of(path), ignored)) // such as /proc
+            return text(
+                fmt::format("the folder '{}' takes no new files; choose another place", folder_of(path)));
         return text(fmt::format("the folder '{}' does not exist; create it first", first_bad_folder(path)));
     case ENOTDIR:
         return text(
