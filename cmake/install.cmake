@@ -1,4 +1,4 @@
-# Installs both libraries so that find_package(lamella) and pkg-config find them wherever the tree is moved.
+# Installs the libraries so that find_package(lamella) and pkg-config find them wherever the tree is moved.
 
 include(CMakePackageConfigHelpers)
 
@@ -7,6 +7,10 @@ set(pkgconfig_dir ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
 install(TARGETS lamella EXPORT lamella-targets)
 install(TARGETS lamella-io EXPORT lamella-io-targets)
+if(TARGET lamella-c)
+    install(TARGETS lamella-c EXPORT lamella-c-targets)
+    install(EXPORT lamella-c-targets NAMESPACE lamella:: DESTINATION ${package_dir})
+endif()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/lamella DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT lamella-targets NAMESPACE lamella:: DESTINATION ${package_dir})
 install(EXPORT lamella-io-targets NAMESPACE lamella:: DESTINATION ${package_dir})
@@ -41,6 +45,13 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/lamella-config-version.cm
 install(FILES ${PROJECT_BINARY_DIR}/lamella-config.cmake ${PROJECT_BINARY_DIR}/lamella-config-version.cmake
         DESTINATION ${package_dir})
 
+# The libraries of C++ that a program in C must link with a static library, by its own linker.
+set(runtime ${CMAKE_CXX_IMPLICIT_LINK_LIBRARIES})
+list(FILTER runtime INCLUDE REGEX "^(stdc\\+\\+|c\\+\\+|m)$")
+list(REMOVE_DUPLICATES runtime)
+list(TRANSFORM runtime PREPEND "-l")
+list(JOIN runtime " " runtime)
+
 # A program that links a static library must link the library's dependencies, too; a shared library has already linked
 # them.
 function(lamella_pkgconfig pc_name pc_description)
@@ -50,7 +61,7 @@ function(lamella_pkgconfig pc_name pc_description)
     list(JOIN arg_LIBRARIES " " libraries)
     if(LAMELLA_IS_STATIC)
         set(pc_requires "Requires: ${packages}")
-        set(pc_libs "${libraries} -pthread")
+        set(pc_libs "${libraries} -pthread\nLibs.private: ${runtime}")
     else()
         list(GET arg_LIBRARIES 0 library)
         set(pc_requires "Requires.private: ${packages}")
@@ -63,6 +74,19 @@ endfunction()
 lamella_pkgconfig(lamella "${PROJECT_DESCRIPTION}" LIBRARIES lamella PACKAGES fmt)
 lamella_pkgconfig(lamella-io "Files, formats and jobs for Lamella" LIBRARIES lamella-io lamella
                   PACKAGES expat fmt libdeflate zlib)
+
+if(TARGET lamella-c)
+    set(pc_name lamella-c)
+    set(pc_description "The C interface of Lamella")
+    set(pc_requires)
+    set(pc_libs -llamella-c)
+    file(RELATIVE_PATH pc_to_prefix /prefix/${pkgconfig_dir} /prefix)
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/lamella.pc.in ${PROJECT_BINARY_DIR}/lamella-c.pc @ONLY)
+    install(FILES ${PROJECT_BINARY_DIR}/lamella-c.pc DESTINATION ${pkgconfig_dir})
+    if(BUILD_SHARED_LIBS)
+        set_target_properties(lamella-c PROPERTIES INSTALL_RPATH $ORIGIN)
+    endif()
+endif()
 
 file(RELATIVE_PATH bin_to_lib /prefix/${CMAKE_INSTALL_BINDIR} /prefix/${CMAKE_INSTALL_LIBDIR})
 foreach(program lamella_app lamella_mpi)

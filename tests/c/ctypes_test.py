@@ -12,7 +12,7 @@ from pathlib import Path
 
 
 class Layer(ctypes.Structure):
-    _fields_ = [("index", c_uint64), ("z", c_double), ("bottom", c_double), ("top", c_double), ("points", POINTER(c_double)),
+    _fields_ = [("size", c_size_t), ("index", c_uint64), ("z", c_double), ("bottom", c_double), ("top", c_double), ("points", POINTER(c_double)),
                 ("point_count", c_size_t), ("offsets", POINTER(c_uint64)), ("contour_count", c_size_t), ("rings", c_size_t),
                 ("area_mm2", c_double)]
 
@@ -21,7 +21,7 @@ class Ctypes(unittest.TestCase):
     def test_a_pyramid_is_sliced_and_written(self):
         vertices = (c_double * 15)(0, 0, 0, 8, 0, 0, 8, 8, 0, 0, 8, 0, 4, 4, 4)
         triangles = (c_uint32 * 18)(0, 2, 1, 0, 3, 2, 0, 1, 4, 1, 2, 4, 2, 3, 4, 3, 0, 4)
-        mesh, layers, layer = c_void_p(), c_void_p(), Layer()
+        mesh, layers, layer = c_void_p(), c_void_p(), Layer(ctypes.sizeof(Layer))
         self.call("make_mesh", vertices, c_size_t(5), triangles, c_size_t(6), byref(mesh))
         self.call("slice", mesh, c_double(2), None, byref(layers))
         self.assertEqual(LIBRARY.lamella_layer_count(layers), 2)

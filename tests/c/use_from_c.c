@@ -38,14 +38,24 @@ int main(int argc, char **argv) {
     static const double heights[] = {1, 2, 3};
     static const double moved[] = {1, 0, 0, 10, 0, 1, 0, 0, 0, 0, 1, 0};
     static const double origin[] = {4, 4, 1}, normal[] = {1, 0, 0};
+    static const double square[] = {1, 1, 7, 1, 7, 7, 1, 7, 3, 3, 3, 5, 5, 5, 5, 3};
+    static const uint64_t offsets[] = {0, 4, 8};
     double box[6], to_mesh[12];
+    int64_t parents[2];
+    uint64_t closed = 7;
     char path[4096];
     int calls = 0;
     lamella_mesh *pyramid = NULL, *shifted = NULL, *missing = NULL;
-    lamella_layers *layers = NULL, *again = NULL, *section = NULL;
+    lamella_mesh *mended = NULL;
+    lamella_layers *layers = NULL, *again = NULL, *section = NULL, *made = NULL, *grown = NULL, *both = NULL;
     lamella_slicer *slicer = NULL;
-    lamella_layer layer;
-    lamella_settings settings = {0};
+    lamella_bytes *bytes = NULL;
+    lamella_layer layer = {.size = sizeof layer}, frame = {.size = sizeof frame};
+    lamella_settings settings = {.size = sizeof settings};
+    lamella_plan plan = {.size = sizeof plan};
+    lamella_mending mending = {.size = sizeof mending};
+    lamella_mended counts = {.size = sizeof counts};
+    lamella_corners corners = {.size = sizeof corners};
 
     EXPECT(argc == 2);
     EXPECT(lamella_abi() == LAMELLA_ABI);
@@ -82,7 +92,45 @@ int main(int argc, char **argv) {
     EXPECT(lamella_layer_count(layers) == 3);
     lamella_free_layers(layers);
 
-    EXPECT(lamella_prepare(pyramid, NULL, &slicer) == LAMELLA_OK);
+    plan.layer_height = 1;
+    plan.first_layer_height = 2;
+    plan.cut = LAMELLA_CUT_TOP;
+    EXPECT(lamella_slice_by_plan(pyramid, &plan, NULL, &layers) == LAMELLA_OK);
+    EXPECT(lamella_layer_count(layers) == 3);
+    EXPECT(lamella_get_layer(layers, 0, &layer) == LAMELLA_OK && layer.z == 2 && layer.bottom == 0);
+    EXPECT(lamella_write_layers_bytes(layers, "json", NULL, &bytes) == LAMELLA_OK);
+    EXPECT(lamella_bytes_size(bytes) > 0 && lamella_bytes_data(bytes) != NULL);
+    EXPECT(lamella_read_layers_bytes(lamella_bytes_data(bytes), lamella_bytes_size(bytes), "bytes", NULL, &again) ==
+           LAMELLA_OK);
+    EXPECT(lamella_layer_count(again) == 3);
+    lamella_free_bytes(bytes);
+    lamella_free_layers(again);
+    lamella_free_layers(layers);
+
+    mending.orient = 1;
+    EXPECT(lamella_mend(pyramid, &mending, NULL, &counts, &mended) == LAMELLA_OK);
+    EXPECT(counts.flipped_triangles == 0 && lamella_triangle_count(mended) == 6);
+    lamella_free_mesh(mended);
+
+    frame.top = 1;
+    frame.points = square;
+    frame.point_count = 8;
+    frame.offsets = offsets;
+    frame.contour_count = frame.rings = 2;
+    EXPECT(lamella_make_layer(&frame, &made) == LAMELLA_OK);
+    EXPECT(lamella_ring_parents(made, 0, parents) == LAMELLA_OK && parents[0] == -1 && parents[1] == 0);
+    corners.join = LAMELLA_BEVEL;
+    EXPECT(lamella_offset(made, 1, &corners, NULL, &grown) == LAMELLA_OK);
+    EXPECT(lamella_get_layer(grown, 0, &layer) == LAMELLA_OK && layer.rings == 1 && fabs(layer.area_mm2 - 62) < 1e-9);
+    EXPECT(lamella_combine(made, grown, LAMELLA_UNION, NULL, &both) == LAMELLA_OK);
+    EXPECT(lamella_get_layer(both, 0, &layer) == LAMELLA_OK && fabs(layer.area_mm2 - 62) < 1e-9);
+    EXPECT(lamella_close_gaps(made, 0.1, NULL, &closed, &again) == LAMELLA_OK && closed == 0);
+    lamella_free_layers(again);
+    lamella_free_layers(both);
+    lamella_free_layers(grown);
+    lamella_free_layers(made);
+
+    EXPECT(lamella_prepare(pyramid, LAMELLA_SECTION_ABOVE, NULL, &slicer) == LAMELLA_OK);
     lamella_free_mesh(pyramid); /* the slicer does not need it */
     EXPECT(lamella_section(slicer, 3, &section) == LAMELLA_OK);
     EXPECT(lamella_get_layer(section, 0, &layer) == LAMELLA_OK && layer.points[0] == 3);
@@ -101,6 +149,7 @@ int main(int argc, char **argv) {
     lamella_free_mesh(shifted);
     lamella_free_mesh(NULL);
     lamella_free_layers(NULL);
+    lamella_free_bytes(NULL);
     lamella_free_slicer(NULL);
     return 0;
 }
