@@ -43,10 +43,10 @@ from ._lamella import (
     SupportRule,
     __version__,
 )
-from ._meshes import Inspection, Intersection, SelfIntersections, inspect, read_mesh
+from ._meshes import DefectPlaces, Inspection, Intersection, SelfIntersections, inspect, mend, read_mesh
 from ._methods import ContourDefect
 from ._plates import Part
-from ._scanning import PyslmLayer, ScanLayer, scan, to_pyslm
+from ._scanning import PyslmLayer, ScanLayer, ScanStream, scan, to_pyslm
 from ._sections import Section, Slicer
 from ._slicing import Engine, engines, iter_layers, slice
 
@@ -56,6 +56,7 @@ __all__ = [
     "ContourDefect",
     "ContourRule",
     "DefectError",
+    "DefectPlaces",
     "DefectWarning",
     "Engine",
     "Error",
@@ -77,6 +78,7 @@ __all__ = [
     "ScanFigures",
     "ScanLayer",
     "ScanStrategy",
+    "ScanStream",
     "Section",
     "SelfIntersections",
     "SkinRule",
@@ -93,6 +95,7 @@ __all__ = [
     "inspect",
     "iter_layers",
     "layer_formats",
+    "mend",
     "mesh_formats",
     "read",
     "read_layers",

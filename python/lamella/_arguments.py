@@ -22,7 +22,7 @@ from typing import Any, Callable, Iterable, Literal, NoReturn, Optional, Protoco
 import numpy as np
 import numpy.typing as npt
 
-from ._errors import OutputError, UsageError, error_of, printable
+from ._errors import Error, OutputError, UsageError, error_of, name_the_file, printable
 
 
 class BinaryReader(Protocol):
@@ -50,6 +50,8 @@ FillRule = Literal["nonzero", "evenodd", "positive"]
 Corners = Literal["mitre", "bevel", "round"]
 Orientation = Literal["landscape", "portrait"]
 Mirror = Literal["none", "x", "y", "xy"]
+Vector = Union[Sequence[float], npt.NDArray[Any]]  # x, y and z
+Rule = Literal["section_above", "section_below"]
 T = TypeVar("T")
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -163,7 +165,8 @@ def nearest(word: object, known: Iterable[str]) -> str:
 
 
 def suggesting(function: Function) -> Function:
-    """Adds to the error for an unknown keyword the one that is probably meant."""
+    """Adds to the error for an unknown keyword the one that is probably meant, and to an error of the system the name of
+    the file."""
     known = list(inspect.signature(function).parameters)
 
     @functools.wraps(function)
@@ -173,7 +176,12 @@ def suggesting(function: Function) -> Function:
                 raise TypeError(
                     f"{function.__qualname__}() got an unexpected keyword argument {word!r}; did you mean {hint!r}?"
                 )
-        return function(*arguments, **keywords)
+        try:
+            return function(*arguments, **keywords)
+        except OSError as error:
+            if isinstance(error, Error):
+                name_the_file(error, (*arguments, *keywords.values()))
+            raise
 
     return call  # type: ignore[return-value]
 
@@ -304,6 +312,13 @@ def several(
 def pair(name: str, value: Any, expected: str, each: Callable[[str, Any], T]) -> Tuple[T, T]:
     first, second = several(name, value, 2, expected, each)
     return first, second
+
+
+def lengths(name: str, value: Any) -> Tuple[float, float]:
+    """Returns two lengths, along x and y. One length counts for both."""
+    if isinstance(value, (numbers.Real, decimal.Decimal)) or is_array_of_one(value):
+        return (positive(name, value),) * 2
+    return pair(name, value, "one length, or two (x, y)", positive)
 
 
 def optional(check: Callable[..., T], name: str, value: Any, *more: Any) -> Optional[T]:

@@ -5,19 +5,19 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import dataclass
-from typing import List, Optional, Sequence, Tuple, Union
+from typing import List, Optional, Tuple, Union
 
 import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import FILL_RULES, CutAt, FillRule, Progress, Readable
+from ._arguments import FILL_RULES, CutAt, FillRule, Progress, Readable, Vector
 from ._errors import UsageError
 from ._files import as_stack
 from ._lamella import Layer, Stack
-from ._meshes import UPWARDS, Placing, placing
+from ._meshes import UPWARDS, Mending, mending, placing
 from ._plates import Sliceable, plate_of
-from ._scanning import StrategyLike, as_strategy
+from ._strategies import StrategyLike, as_strategy
 from ._slicing import PLACES
 from ._warning import warn
 
@@ -55,9 +55,13 @@ def verify(
     snap: float = 0,
     tolerance: float = 0,
     fill: Optional[FillRule] = None,
-    direction: Sequence[float] = (0, 0, 1),
+    direction: Vector = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
     unit_mm: Optional[float] = None,
+    weld_tolerance: Optional[float] = None,
+    drop_duplicates: bool = False,
+    orient: bool = False,
+    close_gaps: Optional[float] = None,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Verification:
@@ -72,6 +76,8 @@ def verify(
     tolerance: additional tolerance of points, ends of lines and cuts, in millimetres, besides the rounding of the
         format: for layers that were rounded before, such as those of a CLI file converted to JSON.
     fill: the rule by which the layers were filled, as for `slice`; the sections of the mesh are filled by it, too.
+    weld_tolerance, drop_duplicates, orient, close_gaps: the repairs with which the mesh was sliced, as for `slice`. A
+        mesh from `mend` is repaired already.
     threads: number of threads; 0 means one for each processor.
     progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
@@ -84,9 +90,11 @@ def verify(
     if rule is not None and mesh is None:
         raise UsageError("fill goes with a mesh, and none is given")
     stack = as_stack("layers", layers, threads=threads, progress=progress)
-    sliced = _mesh_as_sliced(mesh, placing(direction, transform), transform is not None, unit_mm, threads, progress)
+    repairs = mending(weld_tolerance, drop_duplicates, orient)
+    gap = check.optional(check.positive, "close_gaps", close_gaps)
+    sliced = _mesh_as_sliced(mesh, direction, transform, unit_mm, repairs, gap, threads, progress)
     return Verification(**_lamella.verify(
-        stack, sliced, place or "", snap, tolerance, rule or "none", threads, progress
+        stack, sliced, place or "", snap, tolerance, gap, rule or "none", threads, progress
     ))  # fmt: skip
 
 
@@ -129,9 +137,13 @@ def verify_vectors(
     at: Optional[CutAt] = None,
     snap: float = 0,
     tolerance: float = 0,
-    direction: Sequence[float] = (0, 0, 1),
+    direction: Vector = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
     unit_mm: Optional[float] = None,
+    weld_tolerance: Optional[float] = None,
+    drop_duplicates: bool = False,
+    orient: bool = False,
+    close_gaps: Optional[float] = None,
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> VectorVerification:
@@ -147,6 +159,7 @@ def verify_vectors(
     snap: as for `slice`.
     tolerance: additional tolerance of points, ends of lines and cuts, in millimetres, besides the rounding of the
         format: for layers that were rounded before, such as those of a CLI file converted to JSON.
+    weld_tolerance, drop_duplicates, orient, close_gaps: as for `verify`.
     threads: number of threads; 0 means one for each processor.
     progress: called as progress(stage, done, total) from time to time, on the calling thread.
 
@@ -156,27 +169,40 @@ def verify_vectors(
     place = check.optional(check.choice, "at", at, PLACES)
     snap, tolerance = check.distance("snap", snap), check.distance("tolerance", tolerance)
     known = None if strategy is None else as_strategy("strategy", strategy)
-    sliced = _mesh_as_sliced(mesh, placing(direction, transform), transform is not None, unit_mm, threads, progress)
+    repairs = mending(weld_tolerance, drop_duplicates, orient)
+    gap = check.optional(check.positive, "close_gaps", close_gaps)
+    sliced = _mesh_as_sliced(mesh, direction, transform, unit_mm, repairs, gap, threads, progress)
     source = check.source("file", file)
     path = os.fsdecode(source[0] if isinstance(source, tuple) else source)
-    found, warnings = _lamella.verify_vectors(source, sliced, known, place or "", snap, tolerance, threads, progress)
+    found, warnings = _lamella.verify_vectors(source, sliced, known, place or "", snap, tolerance, gap, threads, progress)
     warn(f"{path}: {warning}" for warning in warnings)
     return VectorVerification(**found)
 
 
 def _mesh_as_sliced(
     mesh: Optional[Sliceable],
-    where: Placing,
-    transformed: bool,
+    direction: Vector,
+    transform: Optional[npt.ArrayLike],
     unit_mm: Optional[float],
+    repairs: Mending,
+    close_gaps: Optional[float],
     threads: int,
     progress: Optional[Progress],
 ) -> Optional[_lamella.Plate]:
+    where = placing(direction, transform)
     if mesh is not None:
-        return plate_of("mesh", mesh, unit_mm, where, threads=threads, progress=progress)
-    ways = {"direction": where[0] != UPWARDS, "transform": transformed, "unit_mm": unit_mm is not None}
-    for name, given in ways.items():
-        if given:
+        return plate_of("mesh", mesh, unit_mm, where, repairs, threads=threads, progress=progress)
+    given = {
+        "direction": where[0] != UPWARDS,
+        "transform": transform is not None,
+        "unit_mm": unit_mm is not None,
+        "weld_tolerance": repairs[0] is not None,
+        "drop_duplicates": repairs[1],
+        "orient": repairs[2],
+        "close_gaps": close_gaps is not None,
+    }
+    for name in given:
+        if given[name]:
             raise UsageError(f"{name} goes with a mesh, and none is given")
     return None
 

@@ -4,7 +4,7 @@ import errno
 import functools
 import os
 import re
-from typing import Match, Tuple, Type
+from typing import Iterable, Match, Tuple, Type, Union
 
 #: What terminals and editors do not show as a character: controls, line ends of Unicode, and marks that reverse text.
 _UNFIT = re.compile("[\x00-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
@@ -81,7 +81,7 @@ class CancelledError(Error):
     __module__ = "lamella"
 
 
-def error_of(kind: str, text: str, cause: int = 0) -> Error:
+def error_of(kind: str, text: str, cause: int = 0, filename: Union[None, str, bytes] = None) -> Error:
     """Returns an error of the class of this name. If an error of the system (an errno) is the cause, it is also what
     Python raises for that, such as a FileNotFoundError; without memory, a MemoryError."""
     plain: Type[Error] = globals()[kind]
@@ -90,7 +90,18 @@ def error_of(kind: str, text: str, cause: int = 0) -> Error:
     error = _also(kind, MemoryError if cause == errno.ENOMEM else type(OSError(cause, "")))(text)
     setattr(error, "errno", cause)
     setattr(error, "strerror", os.strerror(cause))
+    if isinstance(error, OSError):
+        error.filename = filename
     return error
+
+
+def name_the_file(error: OSError, values: Iterable[object]) -> None:
+    """Sets the `filename` of an error: the path among the arguments of a function that its text names."""
+    for value in values:
+        if error.filename is None and isinstance(value, (str, os.PathLike)):
+            path = os.fspath(value)
+            if os.fsdecode(path) in str(error):
+                error.filename = path
 
 
 @functools.lru_cache(maxsize=None)
@@ -101,7 +112,7 @@ def _also(kind: str, other: type) -> Type[Error]:
     plain: Type[Error] = globals()[kind]
 
     def reduce(self: Error) -> Tuple[object, ...]:
-        return error_of, (kind, str(self), getattr(self, "errno"))
+        return error_of, (kind, str(self), getattr(self, "errno"), getattr(self, "filename", None))
 
     members = {"__module__": "lamella", "__doc__": plain.__doc__, "__str__": Exception.__str__, "__reduce__": reduce}
     return type(kind, (plain, other), members)

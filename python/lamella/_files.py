@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import decimal
-import numbers
 import os
 from typing import Any, Iterable, Iterator, List, Optional, Sequence, Tuple, Union
 
@@ -16,9 +14,8 @@ from ._arguments import FILL_RULES, BinaryWriter, FillRule, Mirror, Orientation,
 from ._errors import CancelledError, DefectError, InputError, UsageError
 from ._lamella import Exposure, Layer, LayerStream, Mesh, Stack
 from ._meshes import MeshLike, as_mesh, is_mesh
-from ._methods import parts_lost
 from ._scanning import ScanLayer, ScanStream
-from ._warning import warn, with_arguments
+from ._warning import parts_lost, warn, with_arguments
 
 MESH_FORMATS = ("stl", "ply", "obj")
 
@@ -205,9 +202,9 @@ def write(
     options = {
         "units_mm": check.optional(check.positive, "units_mm", units_mm),
         "short_form": check.flag("short_form", short_form) or None,
-        "pixel_mm": check.optional(_lengths, "pixel_mm", pixel_mm),
+        "pixel_mm": check.optional(check.lengths, "pixel_mm", pixel_mm),
         "pixels": check.optional(_columns_and_rows, "pixels", pixels),
-        "display_mm": check.optional(_lengths, "display_mm", display_mm),
+        "display_mm": check.optional(check.lengths, "display_mm", display_mm),
         "orientation": check.optional(check.choice, "orientation", orientation, ("landscape", "portrait")),
         "mirror": check.optional(check.choice, "mirror", mirror, ("none", "x", "y", "xy")),
         "antialias": check.optional(check.whole, "antialias", antialias, 1, MOST_ANTIALIAS),
@@ -253,12 +250,6 @@ def _with_thickness(name: str, planes: Iterable[List[Layer]]) -> Iterator[List[L
                 "bottom= and top="
             )
         yield plane
-
-
-def _lengths(name: str, value: Any) -> Tuple[float, float]:
-    if isinstance(value, (numbers.Real, decimal.Decimal)) or check.is_array_of_one(value):
-        return (check.positive(name, value),) * 2
-    return check.pair(name, value, "one length, or two (x, y)", check.positive)
 
 
 def _columns_and_rows(name: str, value: Any) -> Tuple[int, int]:

@@ -1,14 +1,20 @@
 """Interface of the extension. The classes are public; functions are wrapped by the package."""
 
-from typing import Any, ClassVar, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, Union, overload
+from typing import Any, ClassVar, Dict, Iterable, Iterator, List, Literal, Optional, Sequence, Tuple, Union, overload
 
 import numpy as np
 import numpy.typing as npt
 
-from ._arguments import Corners, FillRule, Progress, Source
+from ._arguments import Corners, FillRule, Progress, Readable, Rule, Source
 from ._methods import ContourDefect
 
 _Bounds = npt.NDArray[np.float64]
+_Number = Union[int, "np.integer[Any]"]
+_Pattern = Literal["lines", "meander", "stripes", "chessboard", "hexagons"]
+_IslandOrder = Literal["rows", "random"]
+_ContourOrder = Literal["inside-out", "outside-in"]
+_Start = Literal["aligned", "sharpest", "random"]
+_ThinWalls = Literal["line", "leave out"]
 
 __version__: str
 
@@ -34,6 +40,11 @@ class Mesh:
     def unit_mm(self) -> float: ...
     @property
     def warnings(self) -> List[str]: ...
+    @property
+    def repairs(self) -> Dict[str, Dict[str, Union[int, float]]]: ...
+    def _mended(
+        self, mending: Tuple[Optional[float], bool, bool], threads: int, progress: Optional[Progress], /
+    ) -> Mesh: ...
     def _defects(self, threads: int, progress: Optional[Progress], /) -> str: ...
     def _diagnosed(
         self, self_intersections: bool, keep: int, threads: int, progress: Optional[Progress], /
@@ -79,6 +90,10 @@ class Layer:
     @property
     def perimeter(self) -> float: ...
     @property
+    def bounds(self) -> _Bounds: ...
+    @property
+    def areas(self) -> npt.NDArray[np.float64]: ...
+    @property
     def hash(self) -> str: ...
     @property
     def hatches(self) -> npt.NDArray[np.float64]: ...
@@ -96,7 +111,26 @@ class Layer:
     def diagnose(self, *, resolution: float = 0, crossings: int = 100) -> List[ContourDefect]: ...
     def to_shapely(self) -> Any: ...
     def filled(self, rule: FillRule = "nonzero") -> Layer: ...
-    def offset(self, distance: float, corners: Corners = "mitre") -> Layer: ...
+    @overload
+    def offset(
+        self, distance: float, corners: Corners = "mitre", *, mitre_limit: float = 2, arc_tolerance: float = 0.001
+    ) -> Layer: ...
+    @overload
+    def offset(
+        self,
+        distance: Union[Sequence[float], npt.NDArray[Any]],
+        corners: Corners = "mitre",
+        *,
+        mitre_limit: float = 2,
+        arc_tolerance: float = 0.001,
+    ) -> List[Layer]: ...
+    def image(
+        self,
+        pixel_mm: Union[float, Tuple[float, float]],
+        *,
+        bounds: Optional[npt.ArrayLike] = None,
+        antialias: int = 8,
+    ) -> npt.NDArray[np.uint8]: ...
     def union(self, other: Layer) -> Layer: ...
     def intersection(self, other: Layer) -> Layer: ...
     def difference(self, other: Layer) -> Layer: ...
@@ -107,14 +141,27 @@ class Layer:
     def _polygons(self) -> List[Tuple[int, List[int]]]: ...
     def _diagnosed(self, resolution: float, keep: int, /) -> Tuple[List[Any], int, bool]: ...
     def _filled(self, rule: str, /) -> Layer: ...
-    def _offset(self, distance: float, corners: str, /) -> Layer: ...
+    def _offsets(
+        self, distances: Sequence[float], corners: str, mitre_limit: float, arc_tolerance: float, /
+    ) -> List[Layer]: ...
+    def _image(
+        self,
+        pixel_x: float,
+        pixel_y: float,
+        left: float,
+        top: float,
+        columns: int,
+        rows: int,
+        antialias: int,
+        /,
+    ) -> npt.NDArray[np.uint8]: ...
     def _union(self, other: Layer, /) -> Layer: ...
     def _intersection(self, other: Layer, /) -> Layer: ...
     def _difference(self, other: Layer, /) -> Layer: ...
     def _symmetric_difference(self, other: Layer, /) -> Layer: ...
     def _simplified(self, tolerance: float, /) -> Layer: ...
     def __len__(self) -> int: ...
-    def __getitem__(self, contour: int) -> npt.NDArray[np.float64]: ...
+    def __getitem__(self, contour: _Number) -> npt.NDArray[np.float64]: ...
     def __iter__(self) -> Iterator[npt.NDArray[np.float64]]: ...
     def __eq__(self, other: object) -> bool: ...
     def __hash__(self) -> int: ...
@@ -166,12 +213,12 @@ class Stack:
     @property
     def resolution(self) -> float: ...
     @property
-    def rule(self) -> str: ...
+    def rule(self) -> Rule: ...
     @property
     def repairs(self) -> Dict[str, Dict[str, Union[int, float]]]: ...
     def __len__(self) -> int: ...
     @overload
-    def __getitem__(self, index: int) -> Layer: ...
+    def __getitem__(self, index: _Number) -> Layer: ...
     @overload
     def __getitem__(self, index: Union[slice, Sequence[int], Sequence[bool], npt.NDArray[Any]]) -> Stack: ...
     def _chosen(self, positions: npt.NDArray[np.int64], /) -> Stack: ...
@@ -191,7 +238,7 @@ class LayerStream:
     @property
     def labels(self) -> List[str]: ...
     @property
-    def rule(self) -> str: ...
+    def rule(self) -> Rule: ...
     @property
     def repairs(self) -> Dict[str, Dict[str, Union[int, float]]]: ...
     @property
@@ -208,7 +255,19 @@ class LayerStream:
     def __exit__(self, *error: object) -> None: ...
 
 class ParameterSet:
-    def __init__(self, other: Optional[ParameterSet] = None) -> None: ...
+    def __init__(
+        self,
+        other: Optional[ParameterSet] = None,
+        *,
+        name: str = ...,
+        power_w: float = ...,
+        speed_mm_s: float = ...,
+        jump_speed_mm_s: float = ...,
+        focus_mm: float = ...,
+        spot_mm: float = ...,
+        mark_delay_us: float = ...,
+        jump_delay_us: float = ...,
+    ) -> None: ...
     name: str
     power_w: float
     speed_mm_s: float
@@ -221,8 +280,21 @@ class ParameterSet:
     __hash__: ClassVar[None]  # type: ignore[assignment]
 
 class HatchRule:
-    def __init__(self) -> None: ...
-    pattern: str
+    def __init__(
+        self,
+        *,
+        pattern: _Pattern = ...,
+        distance: float = ...,
+        angle_degrees: float = ...,
+        turn_degrees: float = ...,
+        border: float = ...,
+        shortest: float = ...,
+        cell: float = ...,
+        overlap: float = ...,
+        order: _IslandOrder = ...,
+        parameters: ParameterSet = ...,
+    ) -> None: ...
+    pattern: _Pattern
     distance: float
     angle_degrees: float
     turn_degrees: float
@@ -230,28 +302,48 @@ class HatchRule:
     shortest: float
     cell: float
     overlap: float
-    order: str
+    order: _IslandOrder
     parameters: ParameterSet
     def __eq__(self, other: object) -> bool: ...
     __hash__: ClassVar[None]  # type: ignore[assignment]
 
 class ContourRule:
-    def __init__(self) -> None: ...
+    def __init__(
+        self,
+        *,
+        count: int = ...,
+        beam_offset: float = ...,
+        distance: float = ...,
+        order: _ContourOrder = ...,
+        before_hatch: bool = ...,
+        start: _Start = ...,
+        start_direction_degrees: float = ...,
+        thin_walls: _ThinWalls = ...,
+        thinnest: float = ...,
+        parameters: ParameterSet = ...,
+    ) -> None: ...
     count: int
     beam_offset: float
     distance: float
-    order: str
+    order: _ContourOrder
     before_hatch: bool
-    start: str
+    start: _Start
     start_direction_degrees: float
-    thin_walls: str
+    thin_walls: _ThinWalls
     thinnest: float
     parameters: ParameterSet
     def __eq__(self, other: object) -> bool: ...
     __hash__: ClassVar[None]  # type: ignore[assignment]
 
 class SkinRule:
-    def __init__(self) -> None: ...
+    def __init__(
+        self,
+        *,
+        layers: int = ...,
+        narrowest: float = ...,
+        overlap: float = ...,
+        hatch: HatchRule = ...,
+    ) -> None: ...
     layers: int
     narrowest: float
     overlap: float
@@ -260,14 +352,29 @@ class SkinRule:
     __hash__: ClassVar[None]  # type: ignore[assignment]
 
 class SupportRule:
-    def __init__(self) -> None: ...
+    def __init__(
+        self,
+        *,
+        contours: ContourRule = ...,
+        hatch: HatchRule = ...,
+    ) -> None: ...
     contours: ContourRule
     hatch: HatchRule
     def __eq__(self, other: object) -> bool: ...
     __hash__: ClassVar[None]  # type: ignore[assignment]
 
 class ScanStrategy:
-    def __init__(self) -> None: ...
+    def __init__(
+        self,
+        *,
+        contours: ContourRule = ...,
+        hatch: HatchRule = ...,
+        upskin: SkinRule = ...,
+        downskin: SkinRule = ...,
+        support: SupportRule = ...,
+        seed: int = ...,
+        accepted_mm2: float = ...,
+    ) -> None: ...
     contours: ContourRule
     hatch: HatchRule
     upskin: SkinRule
@@ -275,6 +382,8 @@ class ScanStrategy:
     support: SupportRule
     seed: int
     accepted_mm2: float
+    @classmethod
+    def from_toml(cls, source: Readable) -> ScanStrategy: ...
     def to_toml(self) -> str: ...
     def __eq__(self, other: object) -> bool: ...
     __hash__: ClassVar[None]  # type: ignore[assignment]
@@ -283,9 +392,9 @@ class Exposure:
     @property
     def part(self) -> str: ...
     @property
-    def region(self) -> str: ...
+    def region(self) -> Literal["core", "upskin", "downskin", "support"]: ...
     @property
-    def kind(self) -> str: ...
+    def kind(self) -> Literal["contour", "hatch"]: ...
     @property
     def contour(self) -> int: ...
     @property
@@ -430,6 +539,7 @@ def verify(
     at: str,
     snap: float,
     tolerance: float,
+    close_gaps: Optional[float],
     fill: str,
     threads: int,
     progress: Optional[Progress],
@@ -443,6 +553,7 @@ def verify_vectors(
     at: str,
     snap: float,
     tolerance: float,
+    close_gaps: Optional[float],
     threads: int,
     progress: Optional[Progress],
     /,

@@ -3,16 +3,12 @@
 from __future__ import annotations
 
 import html
-import tempfile
-import webbrowser
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, List, Optional, Tuple
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments as check
-from ._warning import warn
 
 if TYPE_CHECKING:
     from ._lamella import Layer, Stack
@@ -51,16 +47,6 @@ def stack_html(stack: Stack) -> str:
         for layer in chosen
     )
     return f"<div><p>{text}</p>{pictures}</div>"
-
-
-def show(stack: Stack) -> str:
-    from ._files import write  # which needs this module
-
-    path = Path(tempfile.mkdtemp(prefix="lamella-"), "layers.html")
-    write(path, stack)
-    if not webbrowser.open(path.as_uri()):
-        warn([f"no browser was found to open {path}"], RuntimeWarning)
-    return str(path)
 
 
 def _svg(layer: Layer, window: Optional[Window], pixels: int) -> str:

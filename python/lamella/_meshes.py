@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Dict, Iterable, List, Literal, NamedTuple, Optional, Protocol, Sequence, Tuple, Union
+from typing import Any, Iterable, List, Literal, NamedTuple, Optional, Protocol, Tuple, TypedDict, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import Progress, Readable
+from ._arguments import Progress, Readable, Vector
 from ._errors import InputError, UsageError
 from ._lamella import Mesh
 from ._warning import warn
@@ -100,6 +100,18 @@ class SelfIntersections(NamedTuple):
         return self.crossing + self.overlapping + self.touching > 0
 
 
+class DefectPlaces(TypedDict):
+    """Where the first defects of each kind are, in millimetres."""
+
+    boundary_loops: List[npt.NDArray[np.float64]]  #: the rims of holes, the longest first, each (n, 3)
+    nonmanifold_edges: npt.NDArray[np.float64]  #: (n, 2, 3)
+    orientation_conflicts: npt.NDArray[np.float64]  #: (n, 2, 3): edges
+    nonmanifold_vertices: npt.NDArray[np.float64]  #: (n, 3): where parts of the surface touch
+    inverted_shells: npt.NDArray[np.float64]  #: (n, 2, 3): their bounds
+    duplicate_triangles: List[int]  #: rows of Mesh.faces
+    degenerate_triangles: List[int]  #: rows of Mesh.faces
+
+
 @dataclass(frozen=True, eq=False)
 class Inspection:
     """Findings of `inspect` about a mesh. Lengths are in millimetres. Defects are counted, not repaired."""
@@ -121,11 +133,7 @@ class Inspection:
     duplicate_triangles: int  #: further triangles with the same three vertices
     degenerate_triangles: int  #: with two equal corners
     inverted_shells: int  #: closed shells that are inside out
-    #: Where the first defects of each kind are: "boundary_loops", the rims of holes, the longest first, each (n, 3);
-    #: "nonmanifold_edges" and "orientation_conflicts", (n, 2, 3); "nonmanifold_vertices", (n, 3), where parts of the
-    #: surface touch; "inverted_shells", (n, 2, 3), their bounds; "duplicate_triangles" and "degenerate_triangles", lists of
-    #: rows of Mesh.faces.
-    places: Dict[str, Any]
+    places: DefectPlaces  #: where the first defects of each kind are
     self_intersections: Optional[SelfIntersections]  #: None if they were not searched for
 
     @property
@@ -308,7 +316,7 @@ def as_mesh(
 Placing = Tuple[Tuple[float, ...], Optional[npt.NDArray[np.float64]]]
 
 
-def placing(direction: Sequence[float], transform: Optional[npt.ArrayLike]) -> Placing:
+def placing(direction: Vector, transform: Optional[npt.ArrayLike]) -> Placing:
     rows = None
     if transform is not None:
         rows = check.finite("transform", check.shaped("transform", transform, (4, 4), "a matrix of the shape (4, 4)"))
@@ -321,6 +329,48 @@ def placed(mesh: Mesh, where: Placing, threads: int) -> Mesh:
     if transform is not None:
         mesh = mesh._transformed(transform, threads)
     return mesh if direction == UPWARDS else mesh._rotated(direction, threads)
+
+
+# The weld tolerance, whether duplicates are dropped, and whether triangles are oriented.
+Mending = Tuple[Optional[float], bool, bool]
+
+
+def mending(weld_tolerance: Optional[float], drop_duplicates: bool, orient: bool) -> Mending:
+    return (
+        check.optional(check.positive, "weld_tolerance", weld_tolerance),
+        check.flag("drop_duplicates", drop_duplicates),
+        check.flag("orient", orient),
+    )
+
+
+@check.suggesting
+def mend(
+    part: MeshLike,
+    *,
+    weld_tolerance: Optional[float] = None,
+    drop_duplicates: bool = False,
+    orient: bool = False,
+    unit_mm: Optional[float] = None,
+    threads: int = 0,
+    progress: Optional[Progress] = None,
+) -> Mesh:
+    """Returns a repaired mesh, whose `repairs` has the counts. Slicing it gives the layers that `slice` gives with the
+    same repairs. The bodies of a 3MF or AMF file are repaired one by one.
+
+    part: a path, bytes, a file object, or another mesh, as for `slice`.
+    weld_tolerance, drop_duplicates, orient: as for `slice`, in this order. At least one is required.
+    unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default.
+    threads: number of threads; 0 means one for each processor.
+    progress: called as progress(stage, done, total) from time to time, on the calling thread.
+
+    Raises UsageError, InputError if nothing is left of the mesh, LimitError.
+    """
+    wanted = mending(weld_tolerance, drop_duplicates, orient)
+    if not any(wanted):
+        raise UsageError("mend: expected weld_tolerance, drop_duplicates or orient")
+    threads, progress = check.thread_count(threads), check.listener(progress)
+    mesh = as_mesh("part", part, unit_mm=unit_mm, threads=threads, progress=progress)
+    return mesh._mended(wanted, threads, progress)
 
 
 @check.suggesting

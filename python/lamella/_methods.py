@@ -3,7 +3,13 @@ Python, and then passed to the extension's method whose name begins with an unde
 
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, Iterable, List, Literal, NamedTuple, Optional, Tuple, TypeVar
+import decimal
+import inspect
+import numbers
+import tempfile
+import webbrowser
+from pathlib import Path
+from typing import Any, Callable, Dict, Iterable, List, Literal, NamedTuple, Optional, Tuple, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -11,10 +17,12 @@ import numpy.typing as npt
 from . import _arguments as check
 from . import _lamella
 from ._errors import UsageError
-from ._looking import layer_svg, plot_layer, show, stack_html
+from ._files import MOST_ANTIALIAS, MOST_PIXELS, write
+from ._looking import layer_svg, plot_layer, stack_html
 from ._meshes import arrays_of_mesh
 from ._shapely import contours_of, multi_polygon
-from ._warning import warn
+from ._strategies import as_strategy
+from ._warning import parts_lost, warn
 
 T = TypeVar("T")
 
@@ -51,8 +59,19 @@ def _methods_of(cls: type) -> Callable[[T], T]:
 _make_mesh: Callable[..., None] = _lamella.Mesh.__init__
 _make_layer: Callable[..., None] = _lamella.Layer.__init__
 _make_stack: Callable[..., None] = _lamella.Stack.__init__
-_make_parameters: Callable[..., None] = _lamella.ParameterSet.__init__
 _item: Callable[..., Any] = _lamella.Stack.__getitem__
+
+
+def _window(name: str, bounds: npt.ArrayLike) -> npt.NDArray[np.float64]:
+    """Returns the smallest and the largest x and y: (2, 2)."""
+    expected = "the smallest and the largest x and y, an array of the shape (2, 2) or (2, 3)"
+    found = check.array(name, bounds, expected)
+    if found.shape not in ((2, 2), (2, 3)):
+        raise UsageError(f"{name}: expected {expected}, found {check.described(found)}")
+    window = check.finite(name, found[:, :2].astype(np.float64))
+    if (window[0] > window[1]).any():
+        raise UsageError(f"{name}: expected {expected}; the smallest comes first")
+    return window
 
 
 @_methods_of(_lamella.Mesh)
@@ -73,15 +92,6 @@ def _contours(name: str, contours: Any) -> Tuple[npt.NDArray[np.float64], ...]:
         return check.finite(name, check.shaped(name, points, (None, 2), expected))
 
     return check.several(name, contours, None, "contours, each an array of the shape (n, 2)", contour)
-
-
-def parts_lost(layers: Iterable[_lamella.Layer]) -> Optional[str]:
-    """Returns what a warning says of layers of plates that are taken alone, None if there are none."""
-    count = sum(len(layer.parts) > 1 for layer in layers)
-    if count == 0:
-        return None
-    of_plates = f"{count} layers of plates lose" if count > 1 else "a layer of a plate loses"
-    return f"{of_plates} the labels and roles of the parts, which become one; take each of `parts` of the stack instead"
 
 
 def _made_of(made: _lamella.Layer, *layers: _lamella.Layer) -> _lamella.Layer:
@@ -168,11 +178,58 @@ class Layer(_lamella.Layer):
         "nonzero", "evenodd" or "positive". Rings that do not overlap others keep their points."""
         return _made_of(self._filled(check.choice("rule", rule, check.FILL_RULES)), self)
 
-    def offset(self, distance: float, corners: check.Corners = "mitre") -> _lamella.Layer:
-        """Returns the layer with its material grown by `distance` millimetres, or shrunk if that is negative. `corners`
-        is the join of moved edges that separate at a corner: "mitre", "bevel" or "round"."""
+    def offset(
+        self,
+        distance: Any,
+        corners: check.Corners = "mitre",
+        *,
+        mitre_limit: float = 2,
+        arc_tolerance: float = 0.001,
+    ) -> Any:
+        """Returns the layer with its material grown by `distance` millimetres, or shrunk if that is negative. For several
+        distances returns a list with a layer for each, which takes less time than one after the other.
+
+        corners: the join of moved edges that separate at a corner: "mitre", "bevel" or "round".
+        mitre_limit: a mitre whose tip would be farther than this many distances from its corner is cut off, 1 or more.
+        arc_tolerance: largest distance of the chords of round corners from their arc, in millimetres.
+        """
         corner = check.choice("corners", corners, ("mitre", "bevel", "round"))
-        return _made_of(self._offset(check.number("distance", distance), corner), self)
+        limit = check.number("mitre_limit", mitre_limit, least=1, expected="a number, 1 or more")
+        chord = check.positive("arc_tolerance", arc_tolerance)
+        if isinstance(distance, (numbers.Real, decimal.Decimal)) or check.is_array_of_one(distance):
+            return _made_of(self._offsets([check.number("distance", distance)], corner, limit, chord)[0], self)
+        several = check.several("distance", distance, None, "a number or several", check.number)
+        return [_made_of(made, self) for made in self._offsets(several, corner, limit, chord)]
+
+    def image(
+        self,
+        pixel_mm: Union[float, Tuple[float, float]],
+        *,
+        bounds: Optional[npt.ArrayLike] = None,
+        antialias: int = 8,
+    ) -> npt.NDArray[np.uint8]:
+        """Returns the material as an image: (rows, columns) uint8, the row with the largest y first. The value of a pixel
+        is 255 times the fraction of it that is material, rounded.
+
+        pixel_mm: the size of a pixel in millimetres, or two numbers, along x and y.
+        bounds: the smallest and the largest x and y of the image, (2, 2) or, as those of a stack, (2, 3); by default
+            those of the layer. The first pixel is at the smallest x and the largest y; the last ones may reach beyond.
+        antialias: 1 for black and white, by the centres of pixels; 2 to 64 for grey values, as for `write`.
+
+        Raises UsageError, also for more than 65,535 rows or columns.
+        """
+        size = check.lengths("pixel_mm", pixel_mm)
+        levels = check.whole("antialias", antialias, 1, MOST_ANTIALIAS)
+        box = self.bounds if bounds is None else _window("bounds", bounds)
+        if not len(self.points) and bounds is None:
+            return np.zeros((0, 0), dtype=np.uint8)
+        with np.errstate(over="ignore"):
+            count = np.maximum(1, np.ceil((box[1] - box[0]) / size * (1 - 1e-12)))  # quotients are rounded
+        if not (count <= MOST_PIXELS).all():
+            raise UsageError(
+                f"pixel_mm: {count[0]:g} x {count[1]:g} pixels are too many; an image has at most {MOST_PIXELS} each way"
+            )
+        return self._image(*size, box[0, 0], box[1, 1], int(count[0]), int(count[1]), levels)
 
     def union(self, other: _lamella.Layer) -> _lamella.Layer:
         """Returns the union of the material of this layer and `other`. Material is where the winding number is
@@ -234,7 +291,11 @@ class Stack(_lamella.Stack):
     def show(self) -> str:
         """Writes a page with all layers, as `write` does for a name that ends in .html, to a new folder for temporary
         files, and opens it in the browser. Returns the path of the page, which stays there."""
-        return show(self)
+        path = Path(tempfile.mkdtemp(prefix="lamella-"), "layers.html")
+        write(path, self)
+        if not webbrowser.open(path.as_uri()):
+            warn([f"no browser was found to open {path}"], RuntimeWarning)
+        return str(path)
 
     def __getitem__(self, index: Any) -> Any:
         if isinstance(index, list) or getattr(index, "ndim", 0) > 0:
@@ -265,22 +326,27 @@ class LayerStream(_lamella.LayerStream):
         self._close()
 
 
-@_methods_of(_lamella.ParameterSet)
-class ParameterSet(_lamella.ParameterSet):
-    def __init__(self, other: Optional[_lamella.ParameterSet] = None) -> None:
-        if other is None:
-            _make_parameters(self)
-            return
-        if not isinstance(other, _lamella.ParameterSet):
-            check.refuse_type("other", "a lamella.ParameterSet", other)
-        _make_parameters(self, other)
-
-
 @_methods_of(_lamella.ScanStrategy)
 class ScanStrategy(_lamella.ScanStrategy):
+    @classmethod
+    def from_toml(cls, source: check.Readable) -> _lamella.ScanStrategy:
+        """Returns the strategy of a TOML file (needs Python 3.11): a path, bytes, a file object, or the text itself, as
+        `to_toml` returns it. A str with an equals sign or a line end is a text. Fields that are absent have their
+        defaults.
+
+        Raises InputError for a file that cannot be read, UsageError for anything that a strategy does not have."""
+        if isinstance(source, str) and any(sign in source for sign in "=\n\r"):
+            source = source.encode()
+        if not check.is_file(source):
+            check.refuse_type("source", "a path, bytes, a binary file, or the text of a TOML file", source)
+        return as_strategy("source", source)
+
     def to_toml(self) -> str:
         """Returns the whole strategy as the text of a TOML file, with comments, which `scan` and the program read."""
         _lamella.check_strategy(self)
+        return _lamella.strategy_text(self)
+
+    def __str__(self) -> str:
         return _lamella.strategy_text(self)
 
 
@@ -320,22 +386,42 @@ def _shows_its_attributes(cls: type) -> None:
     setattr(cls, "__repr__", __repr__)
 
 
-def _is_made_of_nothing(cls: type) -> None:
+def _is_made_of_its_attributes(cls: type) -> None:
+    """Makes a class of strategies take its attributes as keywords. A ParameterSet also takes another one to copy."""
     make: Callable[..., None] = getattr(cls, "__init__")
+    defaults = getattr(cls, "__new__")(cls)
+    make(defaults)
+    copies = cls is _lamella.ParameterSet
+    self_of_init = inspect.Parameter("self", inspect.Parameter.POSITIONAL_ONLY)
+    parameters = [self_of_init]
+    if copies:
+        parameters.append(inspect.Parameter("other", inspect.Parameter.POSITIONAL_OR_KEYWORD, default=None))
+    for name, value in _attributes(cls, defaults).items():
+        parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=value))
+    known = [parameter.name for parameter in parameters]
 
-    def __init__(self: Any) -> None:
-        make(self)
+    def __init__(self: Any, *others: Any, **attributes: Any) -> None:
+        if len(others) > copies:
+            raise TypeError(f"{cls.__name__}() takes its attributes as keywords only")
+        other = others[0] if others else attributes.pop("other", None) if copies else None
+        if other is not None and not isinstance(other, cls):
+            check.refuse_type("other", f"a lamella.{cls.__name__}", other)
+        make(self, *(() if other is None else (other,)))
+        for name, value in attributes.items():
+            if name not in known[1:]:
+                raise TypeError(f"{cls.__name__}() got an unexpected keyword argument {name!r}")
+            setattr(self, name, value)
 
     __init__.__qualname__ = f"{cls.__name__}.__init__"  # the name in its errors
-    setattr(cls, "__init__", __init__)
+    setattr(__init__, "__signature__", inspect.Signature(parameters))
+    setattr(cls, "__init__", check.suggesting(__init__))
 
 
 _rules: Tuple[type, ...] = (
     _lamella.ContourRule, _lamella.HatchRule, _lamella.SkinRule, _lamella.SupportRule, _lamella.ScanStrategy,
 )  # fmt: skip
-for _rule in _rules:
-    _is_made_of_nothing(_rule)
-for _rule in (*_rules, _lamella.ParameterSet):
+for _rule in (_lamella.ParameterSet, *_rules):
+    _is_made_of_its_attributes(_rule)
     _is_its_attributes(_rule)
 for _rule in (*_rules, _lamella.ParameterSet, _lamella.ScanFigures):
     _shows_its_attributes(_rule)

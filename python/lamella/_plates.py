@@ -12,15 +12,12 @@ import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import Progress
+from ._arguments import Progress, Vector
 from ._errors import DefectError, UsageError
 from ._lamella import Mesh
-from ._meshes import UPWARDS, MeshLike, Placing, as_mesh, placed
+from ._meshes import UPWARDS, Mending, MeshLike, Placing, as_mesh, placed
 
 COORDINATES = "three numbers (x, y, z)"
-
-# The weld tolerance, whether duplicates are dropped, and whether triangles are oriented.
-Mending = Tuple[Optional[float], bool, bool]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +39,9 @@ class Part:
 
     mesh: MeshLike
     matrix: Optional[npt.ArrayLike] = None
-    scale: Union[float, Sequence[float]] = 1
-    rotation: Sequence[float] = (0, 0, 0)
-    position: Sequence[float] = (0, 0, 0)
+    scale: Union[float, Vector] = 1
+    rotation: Vector = (0, 0, 0)
+    position: Vector = (0, 0, 0)
     copies: int = 1
     spacing: float = 5
     label: str = ""

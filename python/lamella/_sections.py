@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Optional, Sequence, Union, overload
+from typing import List, Optional, Union, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import Progress
+from ._arguments import Progress, Rule, Vector
 from ._errors import UsageError
 from ._lamella import Layer, Mesh
 from ._meshes import MeshLike, as_mesh
@@ -56,27 +56,26 @@ class Slicer:
         self,
         part: MeshLike,
         *,
-        rule: str = "section_above",
+        rule: Rule = "section_above",
         unit_mm: Optional[float] = None,
         threads: int = 0,
         progress: Optional[Progress] = None,
     ) -> None:
         threads, progress = check.thread_count(threads), check.listener(progress)
-        rule = check.choice("rule", rule, RULES)
         self.mesh: Mesh = as_mesh("part", part, unit_mm=unit_mm, threads=threads, progress=progress)
-        self._prepared = _lamella.PreparedMesh(self.mesh, rule, threads, progress)
+        self._prepared = _lamella.PreparedMesh(self.mesh, check.choice("rule", rule, RULES), threads, progress)
 
     @overload
     def section(self, z: float) -> Layer: ...
     @overload
-    def section(self, *, origin: Sequence[float], normal: Sequence[float]) -> Section: ...
+    def section(self, *, origin: Vector, normal: Vector) -> Section: ...
     @check.suggesting
     def section(
         self,
         z: Optional[float] = None,
         *,
-        origin: Optional[Sequence[float]] = None,
-        normal: Optional[Sequence[float]] = None,
+        origin: Optional[Vector] = None,
+        normal: Optional[Vector] = None,
     ) -> Union[Layer, Section]:
         """Returns the section with one plane.
 
@@ -95,12 +94,11 @@ class Slicer:
         if origin is None or normal is None:
             raise UsageError("section: expected z, or origin and normal")
         expected = "three numbers (x, y, z)"
-        return Section(
-            *self._prepared.tilted(
-                check.several("origin", origin, 3, expected, check.number),
-                check.several("normal", normal, 3, expected, check.number),
-            )
-        )
+        point = check.several("origin", origin, 3, expected, check.number)
+        upwards = check.several("normal", normal, 3, expected, check.number)
+        if not any(upwards):
+            raise UsageError("normal: (0, 0, 0) has no direction; expected three numbers (x, y, z), not all 0")
+        return Section(*self._prepared.tilted(point, upwards))
 
     def __repr__(self) -> str:
         return f"<lamella.Slicer: {len(self.mesh)} triangles>"

@@ -9,10 +9,10 @@ import numpy.typing as npt
 
 from . import _arguments as check
 from . import _lamella
-from ._arguments import FILL_RULES, CutAt, FillRule, Progress
+from ._arguments import FILL_RULES, CutAt, FillRule, Progress, Vector
 from ._errors import DefectError, UsageError
 from ._lamella import LayerStream, Stack
-from ._meshes import placing
+from ._meshes import mending, placing
 from ._plates import Sliceable, plate_of
 from ._warning import warn, with_arguments
 
@@ -46,7 +46,7 @@ def slice(
     *,
     z: Optional[npt.ArrayLike] = None,
     offsets: Optional[npt.ArrayLike] = None,
-    heights: Optional[Sequence[Tuple[float, float, float]]] = None,
+    heights: Union[None, Sequence[Tuple[float, float, float]], npt.NDArray[Any]] = None,
     adaptive: Optional[Tuple[float, float]] = None,
     cusp: Optional[float] = None,
     first_layer_height: Optional[float] = None,
@@ -54,7 +54,7 @@ def slice(
     z_range: Optional[Tuple[float, float]] = None,
     layers: Optional[Tuple[int, Optional[int]]] = None,
     snap: float = 0,
-    direction: Sequence[float] = (0, 0, 1),
+    direction: Vector = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
     unit_mm: Optional[float] = None,
     weld_tolerance: Optional[float] = None,
@@ -140,7 +140,7 @@ def iter_layers(
     *,
     z: Optional[npt.ArrayLike] = None,
     offsets: Optional[npt.ArrayLike] = None,
-    heights: Optional[Sequence[Tuple[float, float, float]]] = None,
+    heights: Union[None, Sequence[Tuple[float, float, float]], npt.NDArray[Any]] = None,
     adaptive: Optional[Tuple[float, float]] = None,
     cusp: Optional[float] = None,
     first_layer_height: Optional[float] = None,
@@ -148,7 +148,7 @@ def iter_layers(
     z_range: Optional[Tuple[float, float]] = None,
     layers: Optional[Tuple[int, Optional[int]]] = None,
     snap: float = 0,
-    direction: Sequence[float] = (0, 0, 1),
+    direction: Vector = (0, 0, 1),
     transform: Optional[npt.ArrayLike] = None,
     unit_mm: Optional[float] = None,
     weld_tolerance: Optional[float] = None,
@@ -187,7 +187,7 @@ def _prepared(
     layer_height: Optional[float],
     z: Optional[npt.ArrayLike],
     offsets: Optional[npt.ArrayLike],
-    heights: Optional[Sequence[Tuple[float, float, float]]],
+    heights: Union[None, Sequence[Tuple[float, float, float]], npt.NDArray[Any]],
     adaptive: Optional[Tuple[float, float]],
     cusp: Optional[float],
     first_layer_height: Optional[float],
@@ -195,7 +195,7 @@ def _prepared(
     z_range: Optional[Tuple[float, float]],
     layers: Optional[Tuple[int, Optional[int]]],
     snap: float,
-    direction: Sequence[float],
+    direction: Vector,
     transform: Optional[npt.ArrayLike],
     unit_mm: Optional[float],
     weld_tolerance: Optional[float],
@@ -229,15 +229,11 @@ def _prepared(
     z_limits = None if z_range is None else check.pair("z_range", z_range, "two numbers (from, to)", check.number)
     numbers = check.optional(_index_range, "layers", layers)
     near = check.distance("snap", snap)
-    mending = (
-        check.optional(check.positive, "weld_tolerance", weld_tolerance),
-        check.flag("drop_duplicates", drop_duplicates),
-        check.flag("orient", orient),
-    )
+    repairs = mending(weld_tolerance, drop_duplicates, orient)
     close_gaps = check.optional(check.positive, "close_gaps", close_gaps)
     fill = check.optional(check.choice, "fill", fill, FILL_RULES)
     plate = plate_of(
-        "part", part, unit_mm, whole, mending, strict=strict, max_memory=max_memory, threads=threads, progress=progress
+        "part", part, unit_mm, whole, repairs, strict=strict, max_memory=max_memory, threads=threads, progress=progress
     )
     if above_bottom is not None:
         cuts = above_bottom + plate.bottom

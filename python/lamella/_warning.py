@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import sys
 import warnings
-from typing import Iterable, Type
+from typing import TYPE_CHECKING, Iterable, Optional, Type
 
 from ._errors import DefectWarning, one_line
+
+if TYPE_CHECKING:
+    from ._lamella import Layer
 
 
 #: Names in Python for fields that texts of the library mention.
@@ -18,6 +21,15 @@ ARGUMENTS = {
     "`offset_mm`, `min_area_mm2` or `fill`": "fill",
     "converting them with `fill` nonzero": 'filled("nonzero")',
 }
+
+
+def parts_lost(layers: Iterable[Layer]) -> Optional[str]:
+    """Returns what a warning says of layers of plates that are taken alone, None if there are none."""
+    count = sum(len(layer.parts) > 1 for layer in layers)
+    if count == 0:
+        return None
+    of_plates = f"{count} layers of plates lose" if count > 1 else "a layer of a plate loses"
+    return f"{of_plates} the labels and roles of the parts, which become one; take each of `parts` of the stack instead"
 
 
 def with_arguments(text: str) -> str:

@@ -334,19 +334,23 @@ std::pair<std::vector<std::string>, py::bytes> write_mesh(const std::string& pat
 }
 
 void set_reference(VerifyOptions& options, const SourcePlate& plate, const Execution& execution) {
-    options.mesh = joined(plate.placed, execution);
-    if (!plate.placed.negatives.empty())
-        options.plate = plate.placed;
+    options.mesh = joined(plate.mended, execution);
+    if (plate.apart || !plate.mended.negatives.empty())
+        options.plate = plate.mended;
 }
 
 py::dict verified(const Stack& stack, const PlatePointer& plate, const std::string& at, double snap_mm,
-                  double tolerance, const std::string& fill, unsigned threads, const py::object& progress) {
+                  double tolerance, std::optional<double> close_gaps_mm, const std::string& fill,
+                  unsigned threads, const py::object& progress) {
     if (holds_scan_vectors(stack))
         throw Error(ErrorKind::usage,
                     stack.path + " holds scan vectors, which lamella.verify_vectors checks");
     const Verification found = result_of(threads, progress, [&](const Execution& execution) {
-        VerifyOptions options{
-            .rule = stack.rule, .snap_mm = snap_mm, .rounding = stack.rounding, .tolerance_mm = tolerance};
+        VerifyOptions options{.rule = stack.rule,
+                              .snap_mm = snap_mm,
+                              .close_gaps_mm = close_gaps_mm,
+                              .rounding = stack.rounding,
+                              .tolerance_mm = tolerance};
         options.steps.fill = fill_rule(fill);
         if (plate)
             set_reference(options, *plate, execution);
@@ -380,7 +384,8 @@ py::dict verified(const Stack& stack, const PlatePointer& plate, const std::stri
 std::pair<py::dict, py::list> vectors_verified(const py::object& source, const PlatePointer& plate,
                                                const std::optional<ScanStrategy>& strategy,
                                                const std::string& at, double snap_mm, double tolerance,
-                                               unsigned threads, const py::object& progress) {
+                                               std::optional<double> close_gaps_mm, unsigned threads,
+                                               const py::object& progress) {
     const Input input(source);
     std::vector<std::string> warnings;
     const VectorVerification found = result_of(threads, progress, [&](const Execution& execution) {
@@ -389,8 +394,11 @@ std::pair<py::dict, py::list> vectors_verified(const py::object& source, const P
         if (!holds_scan_vectors(file))
             throw Error(ErrorKind::usage,
                         input.name() + " holds no scan vectors; lamella.verify checks layers");
-        VerifyOptions options{
-            .rule = file.rule, .snap_mm = snap_mm, .rounding = file.rounding, .tolerance_mm = tolerance};
+        VerifyOptions options{.rule = file.rule,
+                              .snap_mm = snap_mm,
+                              .close_gaps_mm = close_gaps_mm,
+                              .rounding = file.rounding,
+                              .tolerance_mm = tolerance};
         if (plate)
             set_reference(options, *plate, execution);
         options.strategy = strategy;

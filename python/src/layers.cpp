@@ -1,5 +1,6 @@
 #include "layers.hpp"
 
+#include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/core/error.hpp"
 #include "lamella/core/layer_limits.hpp"
@@ -9,6 +10,8 @@
 #include "lamella/polygon/contour_defects.hpp"
 #include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/layer_steps.hpp"
+#include "lamella/polygon/offset.hpp"
+#include "lamella/raster/image.hpp"
 
 #include "arrays.hpp"
 #include "gil_release.hpp"
@@ -27,6 +30,7 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -218,13 +222,65 @@ std::string layer_text(const SharedLayer& layer) {
     return text.data();
 }
 
-/// Returns the layer after the steps. Its hatch lines remain only if the contours that they fill do.
+/// Returns what was made of a layer. Its hatch lines remain only if the contours that they fill do.
+LayerPointer made_of(const SharedLayer& layer, Layer made) {
+    PointArray hatches = same_contours(layer.get(), made) ? layer.hatches() : PointArray();
+    return std::make_shared<SharedLayer>(std::move(made), layer.rule(), std::move(hatches));
+}
+
 LayerPointer after(const LayerPointer& layer, const LayerSteps& steps) {
     return result_of_points(layer->get().points.size(), [layer, steps](const Execution& execution) {
-        Layer made = take_steps(steps, layer->get(), layer_limits(execution)).layer;
-        PointArray hatches = same_contours(layer->get(), made) ? layer->hatches() : PointArray();
-        return std::make_shared<SharedLayer>(std::move(made), layer->rule(), std::move(hatches));
+        return made_of(*layer, take_steps(steps, layer->get(), layer_limits(execution)).layer);
     });
+}
+
+std::vector<LayerPointer> offsets_by(const LayerPointer& layer, const std::vector<double>& distances,
+                                     const std::string& corners, double mitre_limit,
+                                     double arc_tolerance_mm) {
+    const OffsetCorners joins{offset_corner(corners), mitre_limit, arc_tolerance_mm};
+    return result_of_points(layer->get().points.size(), [=](const Execution& execution) {
+        std::vector<LayerPointer> made;
+        for (Layer& one :
+             offsets(layer->get(), distances, {.corners = joins, .limits = layer_limits(execution)}))
+            made.push_back(made_of(*layer, std::move(one)));
+        return made;
+    });
+}
+
+/// Returns the image whose first pixel is at the left and the top.
+py::array_t<std::uint8_t> image_of(const LayerPointer& layer, double pixel_x, double pixel_y, double left,
+                                   double top, std::uint32_t columns, std::uint32_t rows,
+                                   unsigned antialias) {
+    const PixelGrid grid{.width = columns,
+                         .height = rows,
+                         .ux = 1 / pixel_x,
+                         .u0 = -left / pixel_x,
+                         .vy = -1 / pixel_y,
+                         .v0 = top / pixel_y};
+    const GreyImage image = result_of_points(
+        layer->get().points.size() + std::size_t{rows} * columns, [=](const Execution& /*execution*/) {
+            return paint(std::span(&layer->get(), 1), grid, {.antialias = antialias});
+        });
+    return py::array_t<std::uint8_t>({image.height, image.width}, image.values.data());
+}
+
+/// Returns the smallest and the largest x and y; nan without points.
+py::array_t<double> layer_bounds(const SharedLayer& layer) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    std::array bounds{none, none, none, none};
+    for (const Point2& p : layer.get().points)
+        bounds = {std::fmin(bounds[0], p.x), std::fmin(bounds[1], p.y), std::fmax(bounds[2], p.x),
+                  std::fmax(bounds[3], p.y)};
+    return py::array_t<double>({2, 2}, bounds.data());
+}
+
+/// Returns the area of each contour; 0 for open chains.
+py::array_t<double> contour_areas(const SharedLayer& layer) {
+    const Layer& it = layer.get();
+    py::array_t<double> areas(static_cast<py::ssize_t>(it.contours()));
+    for (std::size_t i = 0; i < it.contours(); ++i)
+        areas.mutable_at(static_cast<py::ssize_t>(i)) = it.closed(i) ? ring_area(it.contour(i)) : 0;
+    return areas;
 }
 
 /// Returns the result of the operation for a layer and another one.
@@ -500,6 +556,12 @@ void bind_layer(py::module_& module) {
         .def_property_readonly(
             "perimeter", [](const SharedLayer& self) { return measure_of(self).perimeter_mm; },
             "The length of all contours in millimetres.")
+        .def_property_readonly("bounds", &layer_bounds,
+                               "The smallest and the largest x and y of the contours in millimetres: (2, 2) "
+                               "float64;\nnan without contours.")
+        .def_property_readonly("areas", &contour_areas,
+                               "The area of each contour in square millimetres, negative for holes and 0 for "
+                               "open chains:\n(contours,) float64.")
         .def_property_readonly("hash", &hash_text,
                                "A hash of the contours, 16 hexadecimal digits: the same for the same "
                                "contours on every machine.\n"
@@ -524,11 +586,8 @@ void bind_layer(py::module_& module) {
         .def("_diagnosed", &diagnosed)
         .def("_filled", [](const LayerPointer& self,
                            const std::string& rule) { return after(self, {.fill = fill_rule(rule)}); })
-        .def("_offset",
-             [](const LayerPointer& self, double distance, const std::string& corners) {
-                 return after(self,
-                              {.offset_mm = distance, .offset_corners = {.shape = offset_corner(corners)}});
-             })
+        .def("_offsets", &offsets_by)
+        .def("_image", &image_of)
         .def("_union", &combined<BooleanOperation::unite>)
         .def("_intersection", &combined<BooleanOperation::intersect>)
         .def("_difference", &combined<BooleanOperation::subtract>)

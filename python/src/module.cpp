@@ -21,6 +21,8 @@ PYBIND11_MODULE(_lamella, module) {
     options.disable_function_signatures();
 
     module.attr("__version__") = lamella::version();
+    // Classes are named after the package, where users find them; so are they in pickles.
+    module.attr("__module__") = "lamella";
     lamella::python::register_errors();
     lamella::python::bind_meshes(module);
     lamella::python::bind_plates(module);
@@ -29,4 +31,5 @@ PYBIND11_MODULE(_lamella, module) {
     lamella::python::bind_sections(module);
     lamella::python::bind_scanning(module);
     lamella::python::bind_files(module);
+    py::delattr(module, "__module__");
 }

@@ -1,6 +1,7 @@
 #include "repairs.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace lamella::python {
 namespace {
@@ -26,6 +27,17 @@ class Figures {
 };
 
 } // namespace
+
+RepairPolicies policies_of(const Mending& mending) {
+    return {std::get<0>(mending), std::get<1>(mending), std::get<2>(mending), {}};
+}
+
+Plate mended(const Plate& plate, const RepairPolicies& policies, Repairs& sum, const Execution& execution) {
+    RepairedPlate whole = repaired(plate, policies, execution);
+    for (const MeshRepairs& found : whole.repairs)
+        add(sum, found);
+    return std::move(whole.plate);
+}
 
 void add(Repairs& sum, const MeshRepairs& found) {
     if (const auto& welded = found.welded) {

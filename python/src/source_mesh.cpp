@@ -4,6 +4,7 @@
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/inspect.hpp"
 #include "lamella/pipeline/plate.hpp"
+#include "lamella/pipeline/repair_policies.hpp"
 #include "lamella/slicing/slice.hpp"
 
 #include "arrays.hpp"
@@ -140,6 +141,22 @@ MeshPointer transformed(const SourceMesh& source, const Transform& map, const ch
     });
 }
 
+MeshPointer mended_mesh(const SourceMesh& source, const Mending& mending, unsigned threads,
+                        const py::object& progress) {
+    return result_of(threads, progress, [&](const Execution& execution) {
+        MeshOrigin origin = source.origin();
+        RepairedFile whole = repaired(*source.source().file, source.source().unit_mm,
+                                      source.source().placement, policies_of(mending), execution);
+        for (const MeshRepairs& found : whole.repairs)
+            add(origin.repairs, found);
+        MeshSource made{.file = std::make_shared<const MeshFile>(std::move(whole.file))};
+        const Plate plate = made.plate(execution);
+        origin.stored_triangles = made.file->stored_triangles;
+        return std::make_shared<SourceMesh>(std::move(made), joined(plate, execution), std::move(origin),
+                                            execution);
+    });
+}
+
 /// Adds the figures and counts of an inspection.
 void add_counts(py::dict& fields, const Inspection& found) {
     fields["vertices"] = found.vertices;
@@ -226,7 +243,7 @@ py::tuple mesh_state(const py::object& self) {
     const MeshOrigin& origin = self.cast<const SourceMesh&>().origin();
     return py::make_tuple(self.attr("vertices"), self.attr("faces"), py::bytes(origin.path), origin.format,
                           origin.name, origin.label, origin.unit_mm, origin.stored_triangles, origin.warnings,
-                          matrix_of(origin.matrix));
+                          origin.repairs, matrix_of(origin.matrix));
 }
 
 MeshPointer mesh_of_state(const py::tuple& state) {
@@ -238,7 +255,8 @@ MeshPointer mesh_of_state(const py::tuple& state) {
                       .unit_mm = state[6].cast<double>(),
                       .stored_triangles = state[7].cast<std::uint64_t>(),
                       .warnings = state[8].cast<std::vector<std::string>>(),
-                      .matrix = transform_of(state[9].cast<Matrix>())};
+                      .repairs = state[9].cast<Repairs>(),
+                      .matrix = transform_of(state[10].cast<Matrix>())};
     if (!finite(origin.matrix) || !std::isfinite(origin.unit_mm))
         throw Error(ErrorKind::input, "the matrix and the unit of a pickled mesh must be finite");
     return std::make_shared<SourceMesh>(mesh->source(), mesh->mesh(), std::move(origin), Execution{});
@@ -348,7 +366,11 @@ void bind_meshes(py::module_& module) {
         .def_property_readonly(
             "warnings", [](const SourceMesh& self) { return message_texts(self.origin().warnings); },
             "What was odd about the file, and what was made of it: a line each.")
+        .def_property_readonly(
+            "repairs", [](const SourceMesh& self) { return self.origin().repairs; },
+            "Counts of what `mend` changed, as Stack.repairs; empty for a mesh that was not mended.")
         .def("_defects", &defects_of)
+        .def("_mended", &mended_mesh)
         .def("_diagnosed", &diagnosed)
         .def("_transformed",
              [](const SourceMesh& self, const Matrix& rows, unsigned threads) {
@@ -360,7 +382,7 @@ void bind_meshes(py::module_& module) {
              })
         .def("__len__", [](const SourceMesh& self) { return self.mesh().size(); })
         .def("__repr__", &mesh_text);
-    bind_pickle(cls, "mesh", 10, &mesh_state, &mesh_of_state);
+    bind_pickle(cls, "mesh", 11, &mesh_state, &mesh_of_state);
 
     module.def("defect_kinds", [] {
         std::vector<std::array<std::string_view, 3>> kinds;

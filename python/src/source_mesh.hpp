@@ -9,6 +9,7 @@
 #include "lamella/read/mesh_file.hpp"
 
 #include "made.hpp"
+#include "repairs.hpp"
 
 #include <pybind11/pybind11.h>
 
@@ -30,6 +31,7 @@ struct MeshOrigin {
     double unit_mm = 1; ///< millimetres per unit of the file
     std::uint64_t stored_triangles = 0;
     std::vector<std::string> warnings = {};
+    Repairs repairs = {};  ///< counts of `mended`; empty for a mesh that was not mended
     Transform matrix = {}; ///< transform from the original coordinates to the present ones
 };
 

@@ -20,9 +20,6 @@ namespace py = pybind11;
 namespace lamella::python {
 namespace {
 
-/// The weld tolerance, whether duplicates are dropped, and whether triangles are oriented.
-using Mending = std::tuple<std::optional<double>, bool, bool>;
-
 /// Scale factors, degrees about x, y and z, and a translation.
 using Pose = std::array<std::array<double, 3>, 3>;
 
@@ -40,22 +37,6 @@ Transform placement_of(const Part& part) {
     return compose(translation(position[0], position[1], position[2]), map);
 }
 
-RepairPolicies policies_of(const Mending& mending) {
-    return {std::get<0>(mending), std::get<1>(mending), std::get<2>(mending), {}};
-}
-
-/// Mends each mesh of the plate, as the program does.
-void mend(Plate& plate, const RepairPolicies& policies, Repairs& repairs, const Execution& execution) {
-    for (PlateShape& shape : plate.shapes) {
-        RepairedMesh whole = repaired(shape.mesh, policies, execution);
-        if (whole.mesh.empty())
-            throw Error(ErrorKind::input,
-                        plate.files[shape.input].path + ": nothing of the mesh is left after its repair");
-        shape.mesh = std::move(whole.mesh);
-        add(repairs, whole.repairs);
-    }
-}
-
 /// Returns the plate of a mesh, of which all parts are one.
 PlatePointer plate_of_mesh(const MeshPointer& mesh, const Mending& mending, unsigned threads,
                            const py::object& progress) {
@@ -69,8 +50,7 @@ PlatePointer plate_of_mesh(const MeshPointer& mesh, const Mending& mending, unsi
         plate->mended = plate->placed;
         if (!policies.change_the_mesh())
             return plate;
-        Plate bodies = mesh->source().plate(execution);
-        mend(bodies, policies, plate->repairs, execution);
+        Plate bodies = mended(mesh->source().plate(execution), policies, plate->repairs, execution);
         if (together)
             plate->mended.shapes.front().mesh = joined(bodies, execution);
         else
@@ -138,7 +118,7 @@ PlatePointer plate_of_parts(const std::vector<Part>& parts, const std::optional<
         plate->matrices = matrices_of(plate->placed, inputs, of_inputs);
         plate->mended = plate->placed;
         if (const RepairPolicies policies = policies_of(mending); policies.change_the_mesh())
-            mend(plate->mended, policies, plate->repairs, execution);
+            plate->mended = mended(plate->placed, policies, plate->repairs, execution);
         if (!plate->several()) {
             plate->label = plate->placed.parts.front().label;
             plate->matrix = plate->matrices.front();

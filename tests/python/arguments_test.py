@@ -74,6 +74,7 @@ CALLS = {
     "write": (lamella.write, {"file": "out.zip", "content": stack(), "format": "png-zip"}),
     "convert": (lamella.convert, {"source": "box.json", "target": "out.cli"}),
     "inspect": (lamella.inspect, {"part": box_arrays()}),
+    "mend": (lamella.mend, {"part": box_arrays(), "orient": True}),
     "verify": (lamella.verify, {"layers": stack(), "mesh": box_arrays()}),
     "verify_vectors": (lamella.verify_vectors, {"file": "job.cli", "mesh": box_arrays()}),
     "compare": (lamella.compare, {"first": stack(), "second": stack()}),
@@ -93,6 +94,7 @@ CALLS = {
     "Slicer.section": (lamella.Slicer(box_arrays()).section, {"z": 1}),
     "Slicer.section of any plane": (lamella.Slicer(box_arrays()).section, {"origin": (1, 1, 1), "normal": (1, 1, 0)}),
     "Layer.diagnose": (stack()[0].diagnose, {}),
+    "Layer.image": (stack()[0].image, {"pixel_mm": 1}),
     "Stack.at": (stack().at, {"z": 1}),
     "Layer.from_shapely": (lamella.Layer.from_shapely, {"geometry": Square(), "z": 1}),
     "Layer.filled": (stack()[0].filled, {}),
@@ -281,12 +283,12 @@ TEXTS = [
     (lambda: lamella.Layer([np.ma.array(SQUARE, mask=np.eye(4, 2))], 1), ValueError,
      "rings: expected contours, each an array of numbers of the shape (n, 2), found one with masked entries"),
     (lambda: setattr(lamella.ScanStrategy(), "hatch", "x"), TypeError, "hatch: expected a lamella.HatchRule, found 'x'"),
-    (lambda: lamella.ScanStrategy(3), TypeError, "ScanStrategy.__init__() takes 1 positional argument but 2 were given"),
+    (lambda: lamella.ScanStrategy(3), TypeError, "ScanStrategy() takes its attributes as keywords only"),
     (lambda: lamella.ParameterSet(3), TypeError, "other: expected a lamella.ParameterSet, found 3"),
     (lambda: lamella.Layer([], 1, bottom=2), ValueError,
      "z: 1 is not possible; a layer is cut between its bottom, 2.0, and its top, 1.0"),
     (lambda: lamella.Stack([1]), TypeError, "layers: expected layers, found 1"),
-    (lambda: stack()[0].offset("far"), TypeError, "distance: expected a finite number, found 'far'"),
+    (lambda: stack()[0].offset("far"), TypeError, "distance: expected a number or several, found 'far'"),
     (lambda: stack()[0].union(5), TypeError, "other: expected a layer, found 5"),
     (lambda: stack()[0]["a"], TypeError, "the number of a contour: expected a whole number, found str"),
 ]  # fmt: skip
@@ -436,7 +438,7 @@ def test_errors_are_one_short_line_that_a_terminal_shows_as_it_is(folder, call):
 
 
 def test_a_text_of_a_strategy_is_no_path(folder):
-    with pytest.raises(lamella.UsageError, match="found a text of several lines; give a text in TOML as bytes"):
+    with pytest.raises(lamella.UsageError, match="found a text of several lines; ScanStrategy.from_toml takes it"):
         lamella.scan(stack(), lamella.ScanStrategy().to_toml())
 
 

@@ -4,6 +4,7 @@ import errno
 import gzip
 import os
 import pickle
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -255,3 +256,26 @@ def test_findings_are_true_or_false():
     box = lamella.slice(box_arrays(), 1)
     assert lamella.verify(box, box_arrays()) and not lamella.verify(box, box_arrays(x=25))
     assert not lamella.inspect(box_arrays(), self_intersections=True).self_intersections
+
+
+def test_errors_of_files_have_their_name(tmp_path):
+    missing = tmp_path / "missing.stl"
+    nowhere = tmp_path / "no" / "part.cli"
+    for call, path in [
+        (lambda: lamella.slice(missing), missing),
+        (lambda: lamella.read_mesh(str(missing)), str(missing)),
+        (lambda: lamella.verify(missing, box_arrays()), missing),
+        (lambda: lamella.write(nowhere, lamella.slice(box_arrays(), 1)), nowhere),
+        (lambda: lamella.Slicer(missing), missing),
+    ]:
+        with pytest.raises(OSError) as caught:
+            call()
+        assert caught.value.filename == os.fspath(path) and caught.value.strerror == os.strerror(errno.ENOENT)
+        again = pickle.loads(pickle.dumps(caught.value))
+        assert (again.filename, str(again)) == (os.fspath(path), str(caught.value))
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="needs Linux")
+def test_a_folder_that_takes_no_files_is_told_from_a_missing_one():
+    with pytest.raises(lamella.OutputError, match="the folder '/proc' takes no new files; choose another place"):
+        lamella.write("/proc/part.cli", lamella.slice(box_arrays(), 1))

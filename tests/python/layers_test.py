@@ -3,6 +3,7 @@
 import copy
 import copyreg
 import gc
+import inspect
 import mmap
 import multiprocessing
 import pickle
@@ -349,7 +350,8 @@ def test_pickles_of_something_else_are_refused(layer):
         (stack, 10, [5]),
         (mesh, 0, [mesh.vertices[:, :2], mesh.vertices.ravel(), mesh.vertices * np.nan]),
         (mesh, 1, [mesh.faces + 99, mesh.faces[:, :2], mesh.faces.astype(float), mesh.faces.astype(np.int64) - 1]),
-        (mesh, 9, [np.diag([1, 1, np.inf, 1])]),
+        (mesh, 9, [5, {"orient": 5}]),
+        (mesh, 10, [np.diag([1, 1, np.inf, 1])]),
     ]:  # fmt: skip
         for value in values:
             with pytest.raises(lamella.Error):
@@ -383,3 +385,87 @@ def test_layers_of_files_that_round_heights_are_pickled(tmp_path):
     read = lamella.read(tmp_path / "a.svg")
     assert all(layer.bottom <= layer.z <= layer.top for layer in read)
     assert pickle.loads(pickle.dumps(read)) == read
+
+
+def ring_with_a_hole():
+    square = np.array([(0, 0), (8, 0), (8, 6), (0, 6)], dtype=float)
+    return lamella.Layer([square, (square[::-1] / 4) + (2, 2)], z=1, bottom=0.5, top=1.5)
+
+
+def test_bounds_and_areas_are_those_of_the_contours():
+    layer = ring_with_a_hole()
+    assert layer.bounds.tolist() == [[0, 0], [8, 6]]
+    assert layer.areas.tolist() == [48, -3] and layer.areas.sum() == layer.area
+    chain = lamella.Layer([], 1, chains=[[(1, 2), (3, 4)]])
+    assert chain.bounds.tolist() == [[1, 2], [3, 4]] and chain.areas.tolist() == [0]
+    assert np.isnan(lamella.Layer([], 1).bounds).all() and lamella.Layer([], 1).areas.shape == (0,)
+    stack = lamella.slice(nested_boxes(), 1)
+    assert np.array_equal(np.max([layer.bounds for layer in stack], axis=0)[1], stack.bounds[1, :2])
+
+
+def test_offsets_by_several_distances_are_those_one_by_one():
+    layer = ring_with_a_hole()
+    distances = [-0.5, 0, 0.25, -9]
+    for corners in ("mitre", "bevel", "round"):
+        several = layer.offset(np.array(distances), corners, arc_tolerance=0.01)
+        assert several == [layer.offset(distance, corners, arc_tolerance=0.01) for distance in distances]
+    assert layer.offset([]) == [] and layer.offset(0) == layer
+
+
+def test_corners_of_offsets_have_limits():
+    layer = lamella.Layer([[(0, 0), (8, 0), (0, 8)]], 1)  # corners of 90 and of 45 degrees
+    sharp = layer.offset(1, mitre_limit=4)
+    assert layer.offset(1).area < sharp.area
+    assert layer.offset(1, mitre_limit=1).area < layer.offset(1).area
+    assert len(layer.offset(1, "round", arc_tolerance=0.1).points) < len(layer.offset(1, "round").points)
+    with pytest.raises(lamella.UsageError, match="^mitre_limit: 0.5 is not possible; expected a number, 1 or more$"):
+        layer.offset(1, mitre_limit=0.5)
+    with pytest.raises(lamella.UsageError, match="^arc_tolerance: 0 is not possible; expected a number above 0$"):
+        layer.offset(1, arc_tolerance=0)
+
+
+def test_images_have_the_area_of_the_material():
+    layer = ring_with_a_hole()
+    pixels = layer.image(0.5)
+    assert pixels.shape == (12, 16) and pixels.dtype == np.uint8
+    assert pixels.sum() == 255 * layer.area / 0.25
+    assert pixels[-1, 0] == 255 and pixels[-5, 5] == 0  # y = 0.25 and x = 2.75, y = 2.25
+    tilted = lamella.Layer([[(0, 0), (8, 0), (0, 6)]], 1)
+    assert tilted.image((0.1, 0.2)).shape == (30, 80)
+    assert tilted.image((0.1, 0.2)).sum() * 0.02 / 255 == pytest.approx(24, rel=1e-3)
+    assert set(np.unique(tilted.image(0.1, antialias=1))) == {0, 255}
+
+
+def test_images_of_the_same_bounds_have_the_same_pixels():
+    layer = ring_with_a_hole()
+    shifted = layer.image(0.5, bounds=[(-1, -1), (9, 8)])
+    assert shifted.shape == (18, 20)
+    assert np.array_equal(shifted[4:16, 2:18], layer.image(0.5)) and shifted.sum() == layer.image(0.5).sum()
+    stack = lamella.slice(nested_boxes(), 1)
+    assert {layer.image(0.3, bounds=stack.bounds).shape for layer in stack} == {(34, 34)}
+    assert lamella.Layer([], 1).image(1).shape == (0, 0)
+    assert lamella.Layer([], 1).image(1, bounds=[(0, 0), (3, 2)]).tolist() == [[0] * 3] * 2
+    for wrong in ([(0, 0)], [(9, 0), (0, 9)], [(0, 0), (1, np.inf)]):
+        with pytest.raises(lamella.UsageError, match="^bounds: "):
+            layer.image(1, bounds=wrong)
+    with pytest.raises(lamella.UsageError, match="^pixel_mm: 8e.06 x 6e.06 pixels are too many"):
+        layer.image(1e-6)
+    with pytest.raises(lamella.UsageError, match="^pixel_mm: "):
+        layer.image(5e-324)
+
+
+def test_classes_are_named_as_users_find_them():
+    for name in ("Layer", "Stack", "Mesh", "LayerStream", "ScanStrategy", "HatchRule", "ParameterSet", "Exposure"):
+        cls = getattr(lamella, name)
+        assert (cls.__module__, cls.__qualname__) == ("lamella", name)
+    layer = ring_with_a_hole()
+    assert b"_lamella" not in pickle.dumps(layer)
+    assert list(inspect.signature(lamella.Layer).parameters) == ["rings", "z", "bottom", "top", "index", "chains"]
+    assert list(inspect.signature(lamella.Mesh).parameters) == ["vertices", "faces"]
+    assert inspect.signature(lamella.HatchRule).parameters["pattern"].default == "stripes"
+
+
+def test_numbers_of_numpy_are_indices():
+    stack = lamella.slice(nested_boxes(), 1)
+    assert stack[stack.area.argmax()] == stack[0] and stack[np.int32(2)] == stack[2]
+    assert stack[0][np.int64(1)].tolist() == stack[0][1].tolist()

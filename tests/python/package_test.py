@@ -14,7 +14,7 @@ import lamella
 PUBLIC = [name for name in lamella.__all__ if not name.startswith("__")]
 FUNCTIONS = [name for name in PUBLIC if inspect.isfunction(getattr(lamella, name))]
 CLASSES = [name for name in PUBLIC if inspect.isclass(getattr(lamella, name))]
-EXTENSION = [name for name in CLASSES if getattr(lamella, name).__module__ == "lamella._lamella"]
+EXTENSION = [name for name in CLASSES if name in vars(lamella._lamella)]
 
 
 def members(name):

@@ -454,3 +454,57 @@ def test_strategies_show_their_values():
     for make in (changed_strategy, lamella.ScanStrategy):
         assert make() == make() and make().hatch == make().hatch and make().upskin.hatch == make().upskin.hatch
     assert changed_strategy() != lamella.ScanStrategy()
+
+
+RULES = [lamella.ContourRule, lamella.HatchRule, lamella.SkinRule, lamella.SupportRule, lamella.ScanStrategy, lamella.ParameterSet]
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_rules_are_made_by_keywords_and_their_text_makes_them_again(rule):
+    default = rule()
+    assert rule(**{name: getattr(default, name) for name in vars(rule) if isinstance(vars(rule)[name], property)}) == default
+    assert eval(repr(default), vars(lamella)) == default
+    strategy = changed_strategy()
+    assert eval(repr(strategy), vars(lamella)) == strategy
+    with pytest.raises(TypeError, match=f"{rule.__name__}\\(\\) got an unexpected keyword argument 'colour'"):
+        rule(colour=1)
+
+
+def test_keywords_of_rules_are_their_attributes():
+    strategy = lamella.ScanStrategy(
+        hatch=lamella.HatchRule(pattern="chessboard", distance=0.08, parameters=lamella.ParameterSet(name="mild", power_w=90)),
+        seed=7,
+    )
+    assert strategy.hatch.pattern == "chessboard" and strategy.hatch.cell == lamella.HatchRule().cell
+    assert strategy.hatch.parameters.power_w == 90 and strategy.contours == lamella.ContourRule()
+    other = lamella.ParameterSet(strategy.hatch.parameters, power_w=95)
+    assert (other.name, other.power_w, strategy.hatch.parameters.power_w) == ("mild", 95, 90)
+    with pytest.raises(lamella.UsageError, match='^pattern: "hexagon" is none of .*; did you mean "hexagons"'):
+        lamella.HatchRule(pattern="hexagon")
+    with pytest.raises(TypeError, match="did you mean 'distance'"):
+        lamella.HatchRule(distanc=1)
+
+
+def test_strategies_are_made_of_toml(tmp_path):
+    strategy = changed_strategy()
+    text = strategy.to_toml()
+    assert str(strategy) == text
+    path = tmp_path / "strategy.toml"
+    path.write_bytes(text.encode(errors="surrogateescape"))
+    for source in (text, path, str(path), path.read_bytes(), io.BytesIO(path.read_bytes())):
+        assert lamella.ScanStrategy.from_toml(source) == strategy
+    assert lamella.ScanStrategy.from_toml("seed = 9") == lamella.ScanStrategy(seed=9)
+    with pytest.raises(lamella.InputError, match="there is no such file"):
+        lamella.ScanStrategy.from_toml(tmp_path / "missing.toml")
+    with pytest.raises(lamella.UsageError, match="there is no sead; did you mean seed"):
+        lamella.ScanStrategy.from_toml("sead = 9")
+    with pytest.raises(TypeError, match="^source: expected a path, bytes, a binary file, or the text of a TOML file, found 5$"):
+        lamella.ScanStrategy.from_toml(5)
+
+
+def test_scanned_layers_are_counted():
+    stack = lamella.slice(box_arrays(), 2)
+    scanned = lamella.scan(stack)
+    assert isinstance(scanned, lamella.ScanStream) and len(scanned) == len(stack)
+    next(scanned)
+    assert len(scanned) == len(stack) - 1 and len(list(scanned)) == len(stack) - 1 and len(scanned) == 0

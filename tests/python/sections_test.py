@@ -107,3 +107,11 @@ def test_what_is_no_plane_is_named(slicer):
     with pytest.raises(lamella.InputError):
         lamella.Slicer("missing.stl")
     assert repr(slicer).startswith("<lamella.Slicer: ")
+
+
+def test_a_normal_has_a_direction():
+    slicer = lamella.Slicer(box_arrays())
+    for normal in ((0, 0, 0), np.zeros(3)):
+        with pytest.raises(lamella.UsageError, match=r"^normal: \(0, 0, 0\) has no direction; expected three numbers"):
+            slicer.section(origin=(0, 0, 0), normal=normal)
+    assert slicer.section(origin=np.array([0, 0, 5]), normal=np.array([0, 0, 1])).layer.area == 600

@@ -64,6 +64,19 @@ points: npt.NDArray[np.float64] = layer.points
 area: float = max(layer.area for layer in stack)
 for streamed in lamella.iter_layers("part.stl"):
     height: float = streamed.z
+up = np.array([0.0, 0.0, 1.0])
+lamella.slice("part.stl", direction=up)
+lamella.Slicer("part.stl", rule="section_below").section(origin=up * 3, normal=up)
+lamella.Part("part.stl", rotation=np.zeros(3), position=up, scale=np.ones(3))
+fullest: lamella.Layer = stack[stack.area.argmax()]
+left: int = len(lamella.scan(stack))
+grown: lamella.Layer = layer.offset(1, "round", arc_tolerance=0.01)
+several: list[lamella.Layer] = layer.offset([1, 2])
+pixels: npt.NDArray[np.uint8] = layer.image(0.1, bounds=stack.bounds)
+rule = lamella.HatchRule(pattern="stripes", distance=0.1)
+mended: lamella.Mesh = lamella.mend("part.stl", orient=True)
+rims: list[npt.NDArray[np.float64]] = lamella.inspect(mended).places["boundary_loops"]
+strategy: lamella.ScanStrategy = lamella.ScanStrategy.from_toml("seed = 1")
 """
 
 def test_the_samples_of_the_page_are_typed(tmp_path):
@@ -81,11 +94,16 @@ BAD = {
     "text: str = lamella.slice('part.stl')[0].area": "assignment",
     "key: Hashable = lamella.slice('part.stl')": "assignment",
     "lamella.slice('part.stl', at='centre')": "arg-type",
-    "lamella.slice('part.stl')[0].offset(1, 'sharp')": "arg-type",
+    "lamella.slice('part.stl')[0].offset(1, 'sharp')": "call-overload",
     "stack: lamella.Stack = lamella.read_mesh('part.stl')": "assignment",
     "lamella.read(io.StringIO())": "arg-type",
     "lamella.write(open('part.cli', 'w'), lamella.read_layers('part.cli'))": "arg-type",
     "text: str = lamella.slice('part.stl')[[1, 2]]": "assignment",
+    "lamella.HatchRule(pattern='stripe')": "arg-type",
+    "lamella.HatchRule().order = 'row'": "assignment",
+    "lamella.Slicer('part.stl', rule='above')": "arg-type",
+    "lamella.inspect('part.stl').places['loops']": "typeddict-item",
+    "lamella.mend('part.stl', close_gaps=1)": "call-arg",
 }
 
 
