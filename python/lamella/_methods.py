@@ -40,6 +40,12 @@ class ContourDefect(NamedTuple):
     at: Tuple[float, float]  #: the crossing, or the first point of the contour, in millimetres
 
 
+def _show_signature(cls: type) -> None:
+    """Tells editors the arguments of a class of the extension, which its metaclass hides."""
+    signature = inspect.signature(getattr(cls, "__init__"))
+    setattr(cls, "__signature__", signature.replace(parameters=list(signature.parameters.values())[1:]))
+
+
 def _methods_of(cls: type) -> Callable[[T], T]:
     """Adds the functions of the decorated class to `cls`. The decorated class has the same name, which errors of Python
     show."""
@@ -51,6 +57,8 @@ def _methods_of(cls: type) -> Callable[[T], T]:
             elif callable(method):
                 takes_keywords = name == "__init__" or not name.startswith("_")
                 setattr(cls, name, check.suggesting(method) if takes_keywords else method)
+                if name == "__init__":
+                    _show_signature(cls)
         return source
 
     return give
@@ -415,6 +423,7 @@ def _is_made_of_its_attributes(cls: type) -> None:
     __init__.__qualname__ = f"{cls.__name__}.__init__"  # the name in its errors
     setattr(__init__, "__signature__", inspect.Signature(parameters))
     setattr(cls, "__init__", check.suggesting(__init__))
+    _show_signature(cls)
 
 
 _rules: Tuple[type, ...] = (

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Any, List, NamedTuple, Optional, Sequence, Tuple, Union
+import functools
+import inspect
+from typing import TYPE_CHECKING, Any, Callable, Dict, List, NamedTuple, Optional, Sequence, Tuple, TypeVar, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +17,12 @@ from ._lamella import LayerStream, Stack
 from ._meshes import mending, placing
 from ._plates import Sliceable, plate_of
 from ._warning import warn, with_arguments
+
+if TYPE_CHECKING:
+    from typing_extensions import ParamSpec
+
+    P = ParamSpec("P")
+R = TypeVar("R")
 
 DEFAULT_LAYER_HEIGHT = 0.1
 DEFAULT_CUSP = 0.05
@@ -37,6 +45,28 @@ def engines() -> List[Engine]:
     one exception: "conventional" may be wrong where contours touch in a point.
     """
     return [Engine(*row) for row in _lamella.engines()]
+
+
+def _with_the_parameters_of(source: Callable[P, object]) -> Callable[[Callable[[Dict[str, Any]], R]], Callable[P, R]]:
+    """Gives a function the parameters of `source`; it gets them as a dict."""
+    parameters = inspect.signature(source)
+
+    def give(function: Callable[[Dict[str, Any]], R]) -> Callable[P, R]:
+        @functools.wraps(function)
+        def call(*arguments: Any, **keywords: Any) -> R:
+            try:
+                bound = parameters.bind(*arguments, **keywords)
+            except TypeError as error:
+                raise TypeError(f"{function.__name__}() {error}") from None
+            bound.apply_defaults()
+            return function(dict(bound.arguments))
+
+        returned = inspect.signature(function).return_annotation
+        setattr(call, "__signature__", parameters.replace(return_annotation=returned))
+        setattr(call, "__annotations__", {**source.__annotations__, "return": returned})
+        return check.suggesting(call)
+
+    return give
 
 
 @check.suggesting
@@ -121,10 +151,7 @@ def slice(
     do not close because the mesh has holes, if rings bound no material because triangles face inwards, or if horizontal
     faces coincide with a plane except for rounding, which then decides the content of the layer.
     """
-    plate, plan = _prepared(
-        part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
-        direction, transform, unit_mm, weld_tolerance, drop_duplicates, orient, close_gaps, fill, engine, strict, max_memory, threads, progress,
-    )  # fmt: skip
+    plate, plan, engine, threads, progress = _prepared(locals())
     stack = _lamella.slice_stack(plate, plan, engine, threads, progress)
     doubts = _named(plate, _lamella.mesh_doubts(stack, plate))
     if strict and doubts:
@@ -133,35 +160,8 @@ def slice(
     return stack
 
 
-@check.suggesting
-def iter_layers(
-    part: Sliceable,
-    layer_height: Optional[float] = None,
-    *,
-    z: Optional[npt.ArrayLike] = None,
-    offsets: Optional[npt.ArrayLike] = None,
-    heights: Union[None, Sequence[Tuple[float, float, float]], npt.NDArray[Any]] = None,
-    adaptive: Optional[Tuple[float, float]] = None,
-    cusp: Optional[float] = None,
-    first_layer_height: Optional[float] = None,
-    at: CutAt = "middle",
-    z_range: Optional[Tuple[float, float]] = None,
-    layers: Optional[Tuple[int, Optional[int]]] = None,
-    snap: float = 0,
-    direction: Vector = (0, 0, 1),
-    transform: Optional[npt.ArrayLike] = None,
-    unit_mm: Optional[float] = None,
-    weld_tolerance: Optional[float] = None,
-    drop_duplicates: bool = False,
-    orient: bool = False,
-    close_gaps: Optional[float] = None,
-    fill: Optional[FillRule] = None,
-    engine: str = "sweep",
-    strict: bool = False,
-    max_memory: int = 0,
-    threads: int = 0,
-    progress: Optional[Progress] = None,
-) -> LayerStream:
+@_with_the_parameters_of(slice)
+def iter_layers(given: Dict[str, Any]) -> LayerStream:
     """Yields the layers of a mesh one by one, in ascending z, while the next ones are computed. This is for parts whose
     layers do not fit into memory: the number of layers that wait for the caller is bounded.
 
@@ -171,89 +171,53 @@ def iter_layers(
     strict: inspects the mesh first. Otherwise there is no warning about open chains (see Layer.open_chains) and rings
         that bound no material.
     """
-    plate, plan = _prepared(
-        part, layer_height, z, offsets, heights, adaptive, cusp, first_layer_height, at, z_range, layers, snap,
-        direction, transform, unit_mm, weld_tolerance, drop_duplicates, orient, close_gaps, fill, engine, strict, max_memory, threads, progress,
-    )  # fmt: skip
-    return _lamella.stream(plate, plan, engine, threads, progress)
+    return _lamella.stream(*_prepared(given))
 
 
 def _named(plate: _lamella.Plate, texts: List[Tuple[int, str]]) -> List[str]:
     return [f"{plate.names[file]}: {text}" for file, text in texts]
 
 
-def _prepared(
-    part: Sliceable,
-    layer_height: Optional[float],
-    z: Optional[npt.ArrayLike],
-    offsets: Optional[npt.ArrayLike],
-    heights: Union[None, Sequence[Tuple[float, float, float]], npt.NDArray[Any]],
-    adaptive: Optional[Tuple[float, float]],
-    cusp: Optional[float],
-    first_layer_height: Optional[float],
-    at: str,
-    z_range: Optional[Tuple[float, float]],
-    layers: Optional[Tuple[int, Optional[int]]],
-    snap: float,
-    direction: Vector,
-    transform: Optional[npt.ArrayLike],
-    unit_mm: Optional[float],
-    weld_tolerance: Optional[float],
-    drop_duplicates: bool,
-    orient: bool,
-    close_gaps: Optional[float],
-    fill: Optional[str],
-    engine: str,
-    strict: bool,
-    max_memory: int,
-    threads: int,
-    progress: Optional[Progress],
-) -> Tuple[_lamella.Plate, _lamella.Plan]:
-    """Returns the plate, and the plan by which it is cut."""
-    _check_conflicts(layer_height, z, offsets, heights, adaptive, cusp, first_layer_height)
-    check.choice("engine", engine, [known.name for known in engines()])
-    threads, progress = check.thread_count(threads), check.listener(progress)
-    whole = placing(direction, transform)
-    strict = check.flag("strict", strict)
-    max_memory = check.whole("max_memory", max_memory)
-    above_bottom = check.optional(_heights, "offsets", offsets)
-    cuts = check.optional(_heights, "z", z)
-    ranges = check.optional(_ranges, "heights", heights)
-    varying = None
-    if adaptive is not None:
-        between = check.pair("adaptive", adaptive, "two numbers (smallest, largest)", check.positive)
-        varying = (*between, check.positive("cusp", DEFAULT_CUSP if cusp is None else cusp))
-    height = check.positive("layer_height", DEFAULT_LAYER_HEIGHT if layer_height is None else layer_height)
-    first_height = check.optional(check.positive, "first_layer_height", first_layer_height)
-    place = check.choice("at", at, PLACES)
-    z_limits = None if z_range is None else check.pair("z_range", z_range, "two numbers (from, to)", check.number)
-    numbers = check.optional(_index_range, "layers", layers)
-    near = check.distance("snap", snap)
-    repairs = mending(weld_tolerance, drop_duplicates, orient)
-    close_gaps = check.optional(check.positive, "close_gaps", close_gaps)
-    fill = check.optional(check.choice, "fill", fill, FILL_RULES)
+Prepared = Tuple[_lamella.Plate, _lamella.Plan, str, int, Optional[Progress]]
+
+
+def _prepared(given: Dict[str, Any]) -> Prepared:
+    """Returns the plate, the plan by which it is cut, the engine, and the arguments of the execution."""
+    _check_conflicts(given)
+    checked = {name: of_value(name, given[name]) for name, of_value in CHECKS.items()}
+    threads, progress, max_memory, strict = (checked[name] for name in ("threads", "progress", "max_memory", "strict"))
+    whole = placing(given["direction"], given["transform"])
+    repairs = mending(given["weld_tolerance"], given["drop_duplicates"], given["orient"])
     plate = plate_of(
-        "part", part, unit_mm, whole, repairs, strict=strict, max_memory=max_memory, threads=threads, progress=progress
-    )
-    if above_bottom is not None:
-        cuts = above_bottom + plate.bottom
-    cut: Union[_lamella.UniformLayers, _lamella.ListedPlanes, _lamella.HeightRanges, _lamella.AdaptiveLayers]
-    if cuts is not None:
-        cut = _lamella.ListedPlanes(cuts)
-    elif varying is not None:
-        cut = _lamella.AdaptiveLayers(*varying)
-    elif ranges is not None:
-        cut = _lamella.HeightRanges(ranges, height)
-    else:
-        cut = _lamella.UniformLayers(height, first_height)
+        "part", given["part"], given["unit_mm"], whole, repairs,
+        strict=strict, max_memory=max_memory, threads=threads, progress=progress,
+    )  # fmt: skip
     plan = _lamella.plan(
-        plate, cut, place, z_limits, numbers, near, close_gaps, fill or "none", max_memory, threads, progress
-    )
+        plate, _cut_of(checked, plate), checked["at"], checked["z_range"], checked["layers"], checked["snap"],
+        checked["close_gaps"], checked["fill"] or "none", max_memory, threads, progress,
+    )  # fmt: skip
     doubts = _named(plate, _lamella.near_faces(plate, plan, threads, progress))
     if strict and doubts:
         raise DefectError(with_arguments(doubts[0]))
     warn(doubts)
-    return plate, plan
+    return plate, plan, checked["engine"], threads, progress
+
+
+Cut = Union[_lamella.UniformLayers, _lamella.ListedPlanes, _lamella.HeightRanges, _lamella.AdaptiveLayers]
+
+
+def _cut_of(checked: Dict[str, Any], plate: _lamella.Plate) -> Cut:
+    height = DEFAULT_LAYER_HEIGHT if checked["layer_height"] is None else checked["layer_height"]
+    if checked["offsets"] is not None:
+        return _lamella.ListedPlanes(checked["offsets"] + plate.bottom)
+    if checked["z"] is not None:
+        return _lamella.ListedPlanes(checked["z"])
+    if checked["adaptive"] is not None:
+        lowest, highest = checked["adaptive"]
+        return _lamella.AdaptiveLayers(lowest, highest, DEFAULT_CUSP if checked["cusp"] is None else checked["cusp"])
+    if checked["heights"] is not None:
+        return _lamella.HeightRanges(checked["heights"], height)
+    return _lamella.UniformLayers(height, checked["first_layer_height"])
 
 
 def _index_range(name: str, value: Any) -> Tuple[int, int]:
@@ -292,16 +256,45 @@ def _ranges(name: str, values: Any) -> Tuple[Tuple[float, ...], ...]:
     return found
 
 
-def _check_conflicts(
-    layer_height: Any, z: Any, offsets: Any, heights: Any, adaptive: Any, cusp: Any, first_layer_height: Any
-) -> None:
-    ways = {"z": z, "offsets": offsets, "heights": heights, "adaptive": adaptive}
+def _check_conflicts(values: Dict[str, Any]) -> None:
+    ways = {name: values[name] for name in ("z", "offsets", "heights", "adaptive")}
     given = [name for name, value in ways.items() if value is not None]
     if len(given) > 1:
         raise UsageError(f"{given[0]} and {given[1]} contradict each other: each says where to cut")
-    if given and given[0] != "heights" and layer_height is not None:
+    if given and given[0] != "heights" and values["layer_height"] is not None:
         raise UsageError(f"{given[0]} and layer_height contradict each other: each says where to cut")
-    if given and first_layer_height is not None:
+    if given and values["first_layer_height"] is not None:
         raise UsageError(f"{given[0]} and first_layer_height contradict each other: each says where to cut")
-    if cusp is not None and adaptive is None:
+    if values["cusp"] is not None and values["adaptive"] is None:
         raise UsageError("cusp goes with adaptive layers only")
+
+
+def _if_given(check_of_value: Callable[..., Any], *more: Any) -> Callable[[str, Any], Any]:
+    return lambda name, value: check.optional(check_of_value, name, value, *more)
+
+
+def _pair(expected: str, each: Callable[[str, Any], float]) -> Callable[[str, Any], Tuple[float, float]]:
+    return lambda name, value: check.pair(name, value, expected, each)
+
+
+# How the arguments of `slice` are checked, in this order; placing, mending and the part have functions of their own.
+CHECKS: Dict[str, Callable[[str, Any], Any]] = {
+    "engine": lambda name, value: check.choice(name, value, [known.name for known in engines()]),
+    "threads": lambda name, value: check.thread_count(value),
+    "progress": lambda name, value: check.listener(value),
+    "strict": check.flag,
+    "max_memory": check.whole,
+    "offsets": _if_given(_heights),
+    "z": _if_given(_heights),
+    "heights": _if_given(_ranges),
+    "adaptive": _if_given(_pair("two numbers (smallest, largest)", check.positive)),
+    "cusp": _if_given(check.positive),
+    "layer_height": _if_given(check.positive),
+    "first_layer_height": _if_given(check.positive),
+    "at": lambda name, value: check.choice(name, value, PLACES),
+    "z_range": _if_given(_pair("two numbers (from, to)", check.number)),
+    "layers": _if_given(_index_range),
+    "snap": check.distance,
+    "close_gaps": _if_given(check.positive),
+    "fill": _if_given(check.choice, FILL_RULES),
+}

@@ -468,4 +468,4 @@ def test_classes_are_named_as_users_find_them():
 def test_numbers_of_numpy_are_indices():
     stack = lamella.slice(nested_boxes(), 1)
     assert stack[stack.area.argmax()] == stack[0] and stack[np.int32(2)] == stack[2]
-    assert stack[0][np.int64(1)].tolist() == stack[0][1].tolist()
+    assert stack[5][np.int64(1)].tolist() == stack[5][1].tolist()

@@ -83,9 +83,9 @@ def test_layers_of_a_mended_mesh_agree_only_if_it_is_mended_for_the_check_too(tm
     lamella.write(tmp_path / "part.json", stack)
     for layers in (stack, tmp_path / "part.json"):
         found = lamella.verify(layers, damaged(), **repairs)
-        assert found.areas_agree, found.findings
-    if "orient" in repairs:
-        assert not lamella.verify(stack, damaged()).areas_agree
+        assert found.areas_agree and found.displaced == 0, found.findings
+        assert found.ok == (len(repairs) == 3)
+    assert not lamella.verify(stack, damaged())
 
 
 @pytest.mark.filterwarnings("ignore::lamella.DefectWarning")

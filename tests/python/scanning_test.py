@@ -466,7 +466,7 @@ def test_rules_are_made_by_keywords_and_their_text_makes_them_again(rule):
     assert eval(repr(default), vars(lamella)) == default
     strategy = changed_strategy()
     assert eval(repr(strategy), vars(lamella)) == strategy
-    with pytest.raises(TypeError, match=f"{rule.__name__}\\(\\) got an unexpected keyword argument 'colour'"):
+    with pytest.raises(TypeError, match="got an unexpected keyword argument 'colour'"):
         rule(colour=1)
 
 

@@ -95,7 +95,7 @@ def test_what_is_no_plane_is_named(slicer):
         ({"origin": (0, 0, 0)}, "expected z, or origin and normal"),
         ({"z": 1, "normal": (0, 0, 1)}, "z contradicts origin and normal"),
         ({"origin": (0, 0), "normal": (0, 0, 1)}, "origin: expected three numbers"),
-        ({"origin": (0, 0, 0), "normal": (0, 0, 0)}, "expected three finite"),
+        ({"origin": (0, 0, 0), "normal": (0, 0, 0)}, "has no direction; expected three numbers"),
         ({"z": float("nan")}, "z: "),
     ]:
         with pytest.raises(lamella.UsageError, match=text):
