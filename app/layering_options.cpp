@@ -94,7 +94,7 @@ Option snap_option(std::optional<double>& target) {
     return length(
         "snap",
         "vertices no further from a plane than this count as on it, such as those of faces that are "
-        "level but for rounding",
+        "level but for rounding; less than half of the thinnest layer",
         target);
 }
 

@@ -122,7 +122,7 @@ def slice(
     layers: keeps only the layers with indices from the first of these numbers to the one before the second; (2, None) keeps
         all from 2 on.
     snap: vertices at most this far from a plane, in millimetres, count as on it. It is meant for faces that are
-        horizontal except for rounding.
+        horizontal except for rounding, and must be less than half of the thinnest layer.
     direction: the direction of slicing, (x, y, z) of any length; the mesh is rotated so that this points along z.
     transform: a (4, 4) matrix in millimetres that is applied to the mesh, or to the whole plate, before this rotation.
     unit_mm: millimetres per unit, for a file that does not specify its unit; 1 by default. A Part has its own.

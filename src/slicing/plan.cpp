@@ -52,6 +52,19 @@ void require_ranges_that_hold_something(const PlaneSelection& only) {
                                 text_of(*range)));
 }
 
+/// A larger distance counts the top of a layer as on its plane, so that the layer is lost.
+void require_snapping_below_half_a_layer(const Plan& plan) {
+    for (std::size_t i = 0; plan.snap_mm > 0 && i < plan.layers.size(); ++i) {
+        const double half = (plan.layers[i].top - plan.layers[i].bottom) / 2;
+        if (half > 0 && plan.snap_mm >= half)
+            throw Error(ErrorKind::usage,
+                        fmt::format("the snap distance is {} mm, half of the layer height or more: layer {} "
+                                    "is {:.6g} mm high, and parts of it would be lost; choose a distance "
+                                    "below {:.6g} mm, a little above the rounding of the mesh",
+                                    plan.snap_mm, plan.layers[i].index, 2 * half, half));
+    }
+}
+
 } // namespace
 
 SliceAt slice_at_named(std::string_view name) {
@@ -192,6 +205,7 @@ void check(const Plan& plan) {
                                     "bottom, {}, and its top, {}",
                                     i, layer.z, layer.bottom, layer.top));
     }
+    require_snapping_below_half_a_layer(plan);
 }
 
 void check_list(const std::vector<double>& z) {

@@ -83,6 +83,8 @@ TEST(Ranks, CountHeightsWithinTheSnapDistanceOfAPlaneAsOnIt) {
             plane = random.real(-8, 8);
         for (const PlaneRule rule : {PlaneRule::section_above, PlaneRule::section_below}) {
             Plan plan = plan_of(z, rule);
+            for (PlannedLayer& layer : plan.layers) // without a height, so that any distance is permitted
+                layer.bottom = layer.top = layer.z;
             plan.snap_mm = random.real(0, 1); // often more than what lies between planes
             const Ranks ranks(plan);
             EXPECT_EQ(ranks.snap_mm(), plan.snap_mm);
@@ -131,6 +133,11 @@ TEST(Ranks, RefuseWhatIsNoPlan) {
                    [](Plan& plan) { plan.layers[2].top = infinity; });
     expect_refused("the snap distance is -1 mm", [](Plan& plan) { plan.snap_mm = -1; });
     expect_refused("the snap distance is nan mm", [](Plan& plan) { plan.snap_mm = std::nan(""); });
+    expect_refused("the snap distance is 0.25 mm, half of the layer height or more: layer 1 is 0.5 mm high",
+                   [](Plan& plan) {
+                       plan.layers[1] = {.index = 1, .z = 2, .bottom = 1.75, .top = 2.25};
+                       plan.snap_mm = 0.25;
+                   });
 }
 
 TEST(Ranks, CountRandomPlanes) {

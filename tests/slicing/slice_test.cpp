@@ -98,6 +98,8 @@ TEST(Slice, ClosesAllContoursOfClosedMeshesWhateverTheSnapDistance) {
     for (const SliceAt at : {SliceAt::bottom, SliceAt::top})
         for (const double snap : {1e-9, 1e-3, 0.05, 0.2, 3.0}) {
             Plan plan = even_planes(-10, 10, 100, at); // 0.2 apart
+            for (PlannedLayer& layer : plan.layers)    // without a height, so that any distance is permitted
+                layer.bottom = layer.top = layer.z;
             plan.snap_mm = snap;
             const LayerStack layers = slice(drum, plan, {.execution = {.threads = 3}});
             expect_same(slice(test::soup(test::rugged_drum(200, 7)), plan, {.execution = {.threads = 1}}),

@@ -32,7 +32,7 @@ struct Plan {
     std::vector<PlannedLayer> layers;
     PlaneRule rule = PlaneRule::section_above;
     /// Snap distance, mm: vertices at most this far from a plane count as on it; see docs/conventions.md,
-    /// "Faces near a plane".
+    /// "Faces near a plane". Less than half of the height of every layer, except of layers without a height.
     double snap_mm = 0;
 };
 
@@ -40,8 +40,8 @@ struct Plan {
 inline constexpr std::uint64_t max_layers = (std::uint64_t{1} << 31) - 2;
 
 /// Throws Error{usage} that names the first layer whose heights are not finite, whose z is outside its bottom
-/// and top, or whose z is not above the previous z. Also throws it for a snap distance that is negative or
-/// not finite, and for more than `max_layers` layers. O(layers).
+/// and top, or whose z is not above the previous z. Also throws it for a snap distance that is negative, not
+/// finite, or half of the height of a layer or more, and for more than `max_layers` layers. O(layers).
 void check(const Plan& plan);
 
 /// The planes [begin, end) of a plan, by position.
