@@ -83,7 +83,8 @@ class Slicer:
             for this height, bit for bit; without contours if the plane misses the mesh.
 
         origin, normal: a point (x, y, z) of a plane of any direction, and its normal (x, y, z) of any length. The result
-            is a Section.
+            is a Section. The side of each vertex v is decided exactly, by the sign of (v - origin) · normal for these
+            numbers; the rule says what a plane through a face cuts, where above is the side that the normal points to.
 
         Raises UsageError.
         """

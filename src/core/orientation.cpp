@@ -79,6 +79,15 @@ bool integer_orientation(const Point2& a, const Point2& b, const Point2& c, int&
 
 } // namespace
 
+int side_of_plane(const Point3& origin, const Point3& normal, const Point3& p) noexcept {
+    return sign_of_sum(std::array<SignedProduct<2>, 6>{{{{p.x, normal.x}, false},
+                                                        {{origin.x, normal.x}, true},
+                                                        {{p.y, normal.y}, false},
+                                                        {{origin.y, normal.y}, true},
+                                                        {{p.z, normal.z}, false},
+                                                        {{origin.z, normal.z}, true}}});
+}
+
 int exact_orientation(const Point2& a, const Point2& b, const Point2& c) noexcept {
     int sign = 0;
     if (integer_orientation(a, b, c, sign))

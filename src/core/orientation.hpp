@@ -15,6 +15,11 @@ namespace lamella {
 [[nodiscard]] int exact_orientation(const Point3& a, const Point3& b, const Point3& c,
                                     const Point3& d) noexcept;
 
+/// Returns the sign of (p - origin) . normal: +1 if p lies on the side of a plane that its normal points to,
+/// -1 if on the other side, 0 if in the plane. Exact for all finite numbers. It is slow: for points that
+/// rounding cannot decide.
+[[nodiscard]] int side_of_plane(const Point3& origin, const Point3& normal, const Point3& p) noexcept;
+
 /// Returns +1 if c lies to the left of the line from a to b, -1 if to the right, 0 if on it: the sign of
 ///     D = (a.x - c.x) (b.y - c.y) - (a.y - c.y) (b.x - c.x) = L - R.
 /// Exact for all finite coordinates, including denormal and huge ones.

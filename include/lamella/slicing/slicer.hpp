@@ -51,11 +51,13 @@ class Slicer {
     /// there are not many more triangles of similar height near the plane; on the calling thread.
     [[nodiscard]] Layer section(double z) const;
 
-    /// Returns the section with the plane through `origin` at right angles to `normal`, of any length. Only
-    /// the triangles near the plane are rotated. The contours are those that `slice` finds at z = 0 in the
-    /// mesh that is moved by -origin and rotated so that the normal points upwards. The first call prepares
-    /// the mesh for this. Throws Error{usage} unless all numbers are finite and the normal is not 0.
-    /// O(log n + k log k) on the calling thread for k triangles near the plane.
+    /// Returns the section with the plane through `origin` at right angles to `normal`, of any length. The
+    /// rule of the plane applies with "above" on the side that the normal points to: the side of each vertex
+    /// v is decided exactly, by the sign of (v - origin) . normal for the given numbers, before anything is
+    /// rotated or rounded. Under section_above, a plane through a face gives the face if the material is on
+    /// the side of the normal, and nothing if it is on the other side. Only the triangles near the plane are
+    /// rotated. The first call prepares the mesh for this. Throws Error{usage} unless all numbers are finite
+    /// and the normal is not 0. O(log n + k log k) on the calling thread for k triangles near the plane.
     [[nodiscard]] PlaneSection section(const Point3& origin, const Point3& normal) const;
 
   private:

@@ -16,9 +16,9 @@
 #include "slicing/sweep/plane_index.hpp"
 #include "slicing/sweep/visit_marks.hpp"
 #include "slicing/sweep/walk.hpp"
+#include "slicing/tilted_plane.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstddef>
@@ -199,30 +199,32 @@ std::unique_ptr<const LevelPlanes> prepare(const Mesh& mesh, PlaneRule rule, con
     return planes;
 }
 
-/// Returns these triangles of a mesh.
-Mesh some_of(const Mesh& mesh, std::span<const std::uint32_t> triangles) {
-    if (const TriangleSoup* const soup = mesh.soup()) {
-        std::vector<Triangle3f> some;
-        some.reserve(triangles.size());
-        for (const std::uint32_t i : triangles)
-            some.push_back(soup->stored(i));
-        return TriangleSoup(std::move(some)).transformed(soup->placement());
-    }
-    IndexedMesh some;
-    some.triangles.reserve(triangles.size());
+/// Returns these triangles of a mesh in the frame of a plane.
+Mesh in_frame(const TiltedPlane& plane, const Mesh& mesh, std::span<const std::uint32_t> triangles) {
+    IndexedMesh framed;
+    framed.triangles.reserve(triangles.size());
+    const auto add = [&](const Point3& corner) {
+        framed.vertices.push_back(plane(corner));
+        return static_cast<std::uint32_t>(framed.vertices.size() - 1);
+    };
     std::unordered_map<std::uint32_t, std::uint32_t> numbers;
     for (const std::uint32_t i : triangles) {
+        if (mesh.indexed() == nullptr) {
+            const Triangle3 corners = mesh.triangle(i);
+            framed.triangles.push_back({add(corners[0]), add(corners[1]), add(corners[2])});
+            continue;
+        }
         auto corners = mesh.indexed()->triangles[i];
         for (std::uint32_t& corner : corners) {
             const auto [number, is_new] =
-                numbers.try_emplace(corner, static_cast<std::uint32_t>(some.vertices.size()));
+                numbers.try_emplace(corner, static_cast<std::uint32_t>(framed.vertices.size()));
             if (is_new)
-                some.vertices.push_back(mesh.indexed()->vertices[corner]);
+                add(mesh.indexed()->vertices[corner]);
             corner = number->second;
         }
-        some.triangles.push_back(corners);
+        framed.triangles.push_back(corners);
     }
-    return some;
+    return framed;
 }
 
 } // namespace
@@ -271,24 +273,15 @@ Layer Slicer::section(double z) const {
 }
 
 PlaneSection Slicer::section(const Point3& origin, const Point3& normal) const {
-    for (const double number : {origin.x, origin.y, origin.z})
-        if (!std::isfinite(number))
-            throw Error(ErrorKind::usage, "the origin of a section must have finite coordinates");
-    const Transform rotated = upright(normal);
-    const Transform to_plane = compose(rotated, translation(-origin.x, -origin.y, -origin.z));
-    // The inverse of a rotation is its transpose.
-    Transform back;
-    for (std::size_t r = 0; r < 3; ++r)
-        for (std::size_t c = 0; c < 3; ++c)
-            back.linear[r][c] = rotated.linear[c][r];
-    PlaneSection section{.layer = {}, .to_mesh = compose(translation(origin.x, origin.y, origin.z), back)};
+    const TiltedPlane plane(origin, normal);
+    PlaneSection section{.layer = {}, .to_mesh = plane.from_frame()};
     std::vector<std::uint32_t> near;
     prepared_->tree().near_plane(origin, normal, [&](std::uint32_t triangle) { near.push_back(triangle); });
     if (near.empty())
         return section;
     std::sort(near.begin(), near.end());
     constexpr double at = 0;
-    section.layer = std::move(slice(some_of(prepared_->mesh, near).transformed(to_plane),
+    section.layer = std::move(slice(in_frame(plane, prepared_->mesh, near),
                                     plan_of({&at, 1}, prepared_->rule), {.execution = {.threads = 1}})
                                   .front());
     return section;

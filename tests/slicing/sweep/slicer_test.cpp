@@ -19,8 +19,12 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <thread>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -124,7 +128,9 @@ TEST(Slicer, CutsWithPlanesOfAnyDirectionAsSlicingDoesAlongThem) {
                 normal.z = 1e-200;
             const Transform map = compose(upright(normal), translation(-origin.x, -origin.y, -origin.z));
             const PlaneSection section = slicer.section(origin, normal);
-            EXPECT_TRUE(same_contours(section.layer, sliced(mesh.transformed(map), 0)));
+            const Layer along = sliced(mesh.transformed(map), 0); // whose heights are rounded
+            EXPECT_EQ(section.layer.contours(), along.contours());
+            EXPECT_NEAR(measure(section.layer).area_mm2, measure(along).area_mm2, 1e-9);
             EXPECT_TRUE(same_contours(indexed.section(origin, normal).layer, section.layer));
             test::expect_sound(section.layer);
             const std::array<double, 3> unit = upright(normal).linear[2];
@@ -138,6 +144,122 @@ TEST(Slicer, CutsWithPlanesOfAnyDirectionAsSlicingDoesAlongThem) {
             }
         }
     }
+}
+
+/// A vector of integers, so that planes through corners of a solid are given exactly.
+struct Whole {
+    std::int64_t x, y, z;
+
+    friend Whole operator+(const Whole& a, const Whole& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+    friend Whole operator*(std::int64_t k, const Whole& a) { return {k * a.x, k * a.y, k * a.z}; }
+    [[nodiscard]] Point3 point() const {
+        return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+    }
+};
+
+Whole cross(const Whole& a, const Whole& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+std::int64_t dot(const Whole& a, const Whole& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// A flat face of a solid: all of its corners, its outward normal and its area.
+struct Face {
+    std::vector<Point3> corners;
+    Whole normal{};
+    double area = 0;
+};
+
+struct WholeSolid {
+    std::vector<std::array<Point3, 3>> triangles;
+    std::vector<Face> faces;
+
+    /// Adds the face o + [0, m] a + [0, m] b in m * m quads, or the half of it below the diagonal.
+    void add(const Whole& o, const Whole& a, const Whole& b, std::int64_t m, bool half = false) {
+        const Whole normal = cross(a, b);
+        const double area = std::sqrt(static_cast<double>(dot(normal, normal))) * static_cast<double>(m * m);
+        Face& face = faces.emplace_back(Face{{}, normal, half ? area / 2 : area});
+        const auto at = [&](std::int64_t i, std::int64_t j) {
+            return (o + i * a + j * b).point();
+        };
+        const auto add_triangle = [&](const Point3& p, const Point3& q, const Point3& r) {
+            triangles.push_back({p, q, r});
+            face.corners.insert(face.corners.end(), {p, q, r});
+        };
+        for (std::int64_t i = 0; i < m; ++i)
+            for (std::int64_t j = 0; j < (half ? m - i : m); ++j) {
+                add_triangle(at(i, j), at(i + 1, j), at(i, j + 1));
+                if (!half || i + j + 1 < m)
+                    add_triangle(at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
+            }
+    }
+    [[nodiscard]] Mesh mesh() const {
+        IndexedMesh mesh;
+        for (const auto& corners : triangles) {
+            const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+            mesh.vertices.insert(mesh.vertices.end(), corners.begin(), corners.end());
+            mesh.triangles.push_back({first, first + 1, first + 2});
+        }
+        return mesh;
+    }
+};
+
+/// A box with slanting sides, or a roof: half of it, cut along a diagonal.
+WholeSolid random_whole_solid(test::Random& random, bool roof) {
+    const auto vector = [&] {
+        return Whole{random.integer(-9, 9), random.integer(-9, 9), random.integer(-9, 9)};
+    };
+    Whole a{};
+    Whole b{};
+    Whole c{};
+    while (dot(cross(a, b), c) <= 0) {
+        a = vector();
+        b = vector();
+        c = vector();
+    }
+    const Whole o = random.integer(0, 1) == 0 ? vector() : 100'000 * vector();
+    const std::int64_t m = random.integer(1, 4);
+    WholeSolid solid;
+    solid.add(o, b, a, m, roof);
+    solid.add(o + m * c, a, b, m, roof);
+    solid.add(o, a, c, m);
+    solid.add(o, c, b, m);
+    if (roof) {
+        solid.add(o + m * a, b + -1 * a, c, m);
+    } else {
+        solid.add(o + m * b, c, a, m);
+        solid.add(o + m * a, b, c, m);
+    }
+    return solid;
+}
+
+TEST(Slicer, DecidesExactlyOnWhichSideOfAFaceAPlaneIs) {
+    test::Random random(520);
+    int faces = 0;
+    for (int round = 0; round < 300; ++round) {
+        const WholeSolid solid = random_whole_solid(random, round % 2 == 0);
+        const Slicer above(solid.mesh());
+        const Slicer below(solid.mesh(), PlaneRule::section_below);
+        for (const Face& face : solid.faces) {
+            const auto corner = static_cast<std::size_t>(
+                random.integer(0, static_cast<std::int64_t>(face.corners.size()) - 1));
+            const Point3 origin = face.corners[corner];
+            const Point3 out = (random.integer(1, 3) * face.normal).point();
+            const Point3 in = (-1 * face.normal).point();
+            const double tolerance = 1e-9 * (face.area + 1e6);
+            for (const auto& [slicer, gives, misses] : {std::tuple{&above, in, out}, {&below, out, in}}) {
+                const Layer layer = slicer->section(origin, gives).layer;
+                ASSERT_EQ(layer.contours(), 1U) << "round " << round;
+                ASSERT_EQ(layer.open_chains(), 0U);
+                ASSERT_NEAR(measure(layer).area_mm2, face.area, tolerance);
+                ASSERT_EQ(slicer->section(origin, misses).layer.contours(), 0U) << "round " << round;
+            }
+            ++faces;
+        }
+    }
+    EXPECT_EQ(faces, 150 * 6 + 150 * 5);
 }
 
 TEST(Slicer, SeesMaterialOnTheLeftAgainstTheNormal) {
@@ -184,7 +306,7 @@ TEST(Slicer, NamesWhatIsNoPlane) {
         static_cast<void>(slicer.section({0, none, 0}, {0, 0, 1}));
     });
     for (const double x : {0.0, none})
-        expect_error(ErrorKind::usage, {"direction"}, [&] {
+        expect_error(ErrorKind::usage, {"normal of a section"}, [&] {
             static_cast<void>(slicer.section({0, 0, 0}, {x, 0, 0}));
         });
 }
