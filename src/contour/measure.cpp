@@ -32,11 +32,15 @@ double contour_length(std::span<const Point2> contour, bool closed) noexcept {
     return (sums[0] + sums[1]) + (sums[2] + sums[3]);
 }
 
-bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) noexcept {
+double area_of_lost_orientation(std::span<const Point2> ring, const Rounding& rounding) noexcept {
     const double largest = largest_coordinate(ring);
     const double moved =
         std::sqrt(0.5) * rounding.step_at(largest) + 4 * std::numeric_limits<double>::epsilon() * largest;
-    return std::abs(ring_area(ring)) <= contour_length(ring, true) * moved;
+    return contour_length(ring, true) * moved;
+}
+
+bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) noexcept {
+    return std::abs(ring_area(ring)) <= area_of_lost_orientation(ring, rounding);
 }
 
 void LayerMeasure::add(const LayerMeasure& other) noexcept {

@@ -1,4 +1,5 @@
 #include "lamella/contour/measure.hpp"
+#include "lamella/polygon/fill.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 
 #include "fixtures/layers.hpp"
@@ -41,6 +42,26 @@ TEST(InvertedRings, AreNoneOfBodiesWithHolesAndBodiesInThese) {
     EXPECT_TRUE(holes_lie_in_material(layer, {}));
     EXPECT_EQ(inverted_rings(layer), InvertedRings{});
     EXPECT_EQ(inverted_rings(layer, {}, InversionSearch::full), InvertedRings{});
+}
+
+TEST(InvertedRings, AreNoneOfRingsThatCancel) {
+    const Contour ring = rectangle(0, 0, 10, 10);
+    const Contour more = rectangle(20, 0, 30, 10);
+    Contour near = reversed(ring); // but for the last digits
+    for (Point2& p : near)
+        p = {p.x * (1 - 0x1p-52), p.y * (1 - 0x1p-52)};
+    for (const InversionSearch search : {InversionSearch::quick, InversionSearch::full}) {
+        EXPECT_EQ(inverted_rings(normal_layer({ring, reversed(ring)}), {}, search), InvertedRings{});
+        EXPECT_EQ(inverted_rings(normal_layer({ring, near}), {}, search), InvertedRings{});
+        EXPECT_EQ(inverted_rings(normal_layer({reversed(near), reversed(ring)}), {}, search),
+                  InvertedRings{});
+        EXPECT_EQ(inverted_rings(normal_layer({ring, reversed(ring), more, reversed(more)}), {}, search),
+                  InvertedRings{});
+        const Layer two = normal_layer({ring, reversed(ring), reversed(ring)});
+        EXPECT_EQ(inverted_rings(two, {}, search).rings, 1U);
+        EXPECT_EQ(inverted_rings(two, {}, search).area_mm2, 100);
+    }
+    EXPECT_EQ(fill(normal_layer({ring, reversed(ring)}), FillRule::positive).layer.rings, 0U);
 }
 
 TEST(InvertedRings, AreCountedWhereverTheyStand) {

@@ -15,6 +15,12 @@ namespace lamella {
 /// the ring's first point, so that a ring far from the origin loses no precision. O(n).
 [[nodiscard]] double ring_area(std::span<const Point2> ring) noexcept;
 
+/// Returns the area up to which a ring is so thin that `rounding` of its points, or the rounding of double
+/// precision, may have reversed its orientation: its length times the distance by which a point may have
+/// moved. O(n).
+[[nodiscard]] double area_of_lost_orientation(std::span<const Point2> ring,
+                                              const Rounding& rounding) noexcept;
+
 /// Returns whether a ring is so thin that `rounding` of its points, or the rounding of double precision, may
 /// have reversed its orientation. O(n).
 [[nodiscard]] bool orientation_is_lost(std::span<const Point2> ring, const Rounding& rounding) noexcept;
