@@ -3,6 +3,7 @@
 // Pairs of crossing sides, for code that cuts them.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/polygon/crossings.hpp"
 
 #include "core/layer_budget.hpp"
 #include "polygon/orientation.hpp"
@@ -20,6 +21,11 @@ namespace lamella {
 /// `find_crossings`.
 [[nodiscard]] std::vector<std::pair<std::uint32_t, std::uint32_t>>
 crossing_pairs(std::span<const Segment> segments, std::uint64_t most, const LayerBudget& budget);
+
+/// Finds crossings like `find_crossings`, but a pair of segments counts only if each end is farther than
+/// `clear_mm` from the line of the other segment.
+[[nodiscard]] Crossings find_clear_crossings(const Layer& layer, std::size_t keep, std::uint64_t enough,
+                                             double clear_mm);
 
 /// A limit to the number of crossings between contours of a layer, by the number of sides.
 struct CrossingLimit {

@@ -312,7 +312,8 @@ class CrossingSearch {
 
 /// Searches the contours c for which chosen(c) is true. The index of a segment is that of its first point.
 template <class Chosen>
-Crossings search(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough) {
+Crossings search(const Layer& layer, const Chosen& chosen, std::size_t keep, std::uint64_t enough,
+                 const LayerBudget& budget, double clear) {
     std::vector<Segment> segments(layer.points.size()); // by index; entries without a segment are unused
     std::vector<SegmentId> ids;                         // indices in use
     ids.reserve(layer.points.size());
@@ -331,8 +332,7 @@ Crossings search(const Layer& layer, const Chosen& chosen, std::size_t keep, std
                 ids.push_back(static_cast<SegmentId>(i));
         }
     }
-    const LayerBudget unlimited;
-    CrossingSearch found(segments, ids, box_of(layer.points.span()), keep, enough, unlimited);
+    CrossingSearch found(segments, ids, box_of(layer.points.span()), keep, enough, budget, clear);
     std::sort(found.pairs().begin(), found.pairs().end());
     Crossings result;
     result.count = found.count();
@@ -351,9 +351,11 @@ Crossings search(const Layer& layer, const Chosen& chosen, std::size_t keep, std
     return result;
 }
 
-Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
+Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough, const LayerLimits& limits = {},
+                   double clear = 0) {
     if (layer.points.empty())
         return {};
+    const LayerBudget budget(limits, layer.index, layer.z);
     if (layer.points.size() > std::numeric_limits<SegmentId>::max())
         throw Error(ErrorKind::limit,
                     "a layer has more than 4294967295 points; crossings are found in smaller ones");
@@ -361,25 +363,30 @@ Crossings found_in(const Layer& layer, std::size_t keep, std::uint64_t enough) {
     if (layer.open_chains() == 0) {
         const MonotoneChains chains(layer);
         if (const std::optional<ChainGrid> grid = ChainGrid::of(chains)) {
-            const Contacts contacts = find_contacts(layer, chains, grid);
+            const Contacts contacts = find_contacts(layer, chains, grid, budget);
             if (contacts.groups == 0)
                 return {};
             const auto in_contact = [&contacts](std::size_t ring) {
                 return contacts.group[ring] != Contacts::none;
             };
-            return search(layer, in_contact, keep, enough);
+            return search(layer, in_contact, keep, enough, budget, clear);
         }
     }
     const auto all = [](std::size_t) {
         return true;
     };
-    return search(layer, all, keep, enough);
+    return search(layer, all, keep, enough, budget, clear);
 }
 
 } // namespace
 
-Crossings find_crossings(const Layer& layer, std::size_t keep, std::uint64_t enough) {
-    return found_in(layer, keep, enough);
+Crossings find_crossings(const Layer& layer, std::size_t keep, std::uint64_t enough,
+                         const LayerLimits& limits) {
+    return found_in(layer, keep, enough, limits);
+}
+
+Crossings find_clear_crossings(const Layer& layer, std::size_t keep, std::uint64_t enough, double clear_mm) {
+    return found_in(layer, keep, enough, {}, clear_mm);
 }
 
 bool has_crossings(const Layer& layer) {

@@ -81,7 +81,7 @@ ChangedLayer take_steps(const LayerSteps& steps, Layer layer, const LayerLimits&
     if (steps.min_area_mm2 != 0)
         select(without_small_rings(layer, steps.min_area_mm2));
     if (steps.simplify_mm != 0) {
-        Layer simplified = simplify(layer, steps.simplify_mm);
+        Layer simplified = simplify(layer, steps.simplify_mm, limits);
         changes.points_dropped = layer.points.size() - simplified.points.size();
         changed = changed || changes.points_dropped > 0;
         layer = std::move(simplified);

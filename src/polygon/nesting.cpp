@@ -177,12 +177,13 @@ void check_size(const Layer& layer) {
 
 } // namespace
 
-Nesting nesting(const Layer& layer) {
+Nesting nesting(const Layer& layer, const LayerLimits& limits) {
     check_size(layer);
+    const LayerBudget budget(limits, layer.index, layer.z);
     const MonotoneChains chains(layer);
     const std::optional<ChainGrid> grid = ChainGrid::of(chains);
     const std::vector<Windings> turns(layer.rings, Windings{1, 0});
-    return nesting(layer, chains, grid, find_contacts(layer, chains, grid), turns).nesting;
+    return nesting(layer, chains, grid, find_contacts(layer, chains, grid, budget), turns, budget).nesting;
 }
 
 NestingWithWindings nesting(const Layer& layer, const MonotoneChains& chains,

@@ -7,6 +7,7 @@
 #include "lamella/polygon/nesting.hpp"
 
 #include "contour/distance.hpp"
+#include "core/layer_budget.hpp"
 #include "polygon/orientation.hpp"
 
 #include <algorithm>
@@ -168,7 +169,7 @@ class Thinned {
 };
 
 /// Restores points where segments cross. Returns false if only segments cross that crossed before.
-bool refine_crossings(Thinned& thinned, const Layer& layer) {
+bool refine_crossings(Thinned& thinned, const Layer& layer, const LayerLimits& limits) {
     const auto refine = [&](const Crossings& crossings) {
         bool any = false;
         for (const Crossing& crossing : crossings.first) {
@@ -178,16 +179,23 @@ bool refine_crossings(Thinned& thinned, const Layer& layer) {
         return any;
     };
     constexpr std::size_t at_once = 4096;
-    const Crossings some = find_crossings(layer, at_once);
+    constexpr std::uint64_t bytes =
+        sizeof(Crossing) + 4 * sizeof(std::uint32_t); // and pairs during the search
+    const LayerBudget budget(limits, layer.index, layer.z);
+    // The search ends at the first crossing that does not fit.
+    const std::uint64_t room = budget.room(bytes);
+    const Crossings some = find_crossings(layer, at_once, std::max(room, room + 1), limits);
     if (refine(some))
         return true;
-    return some.count > at_once &&
-           refine(find_crossings(layer, some.count)); // the first crossings may all be old ones
+    if (some.count <= at_once)
+        return false;
+    budget.need(some.count, bytes, "crossings of contours");
+    return refine(find_crossings(layer, some.count, some.count, limits)); // the first may all be old ones
 }
 
 /// Restores points of rings that were inverted, vanished or moved past others, and of the rings around them.
-bool refine_nesting(Thinned& thinned, const Layer& layer, const Nesting& before) {
-    const Nesting after = nesting(layer);
+bool refine_nesting(Thinned& thinned, const Layer& layer, const Nesting& before, const LayerLimits& limits) {
+    const Nesting after = nesting(layer, limits);
     std::vector<bool> moved(layer.rings, false);
     const auto mark = [&](std::uint32_t ring) {
         if (ring != Nesting::none)
@@ -233,15 +241,15 @@ Layer simplify_each(const Layer& layer, double tolerance) {
     return result;
 }
 
-Layer simplify(const Layer& layer, double tolerance) {
+Layer simplify(const Layer& layer, double tolerance, const LayerLimits& limits) {
     check_tolerance(tolerance);
     Thinned thinned(layer, tolerance);
     Layer result = thinned.layer();
     if (result.points.size() == layer.points.size())
         return layer;
-    const Nesting before = nesting(layer);
+    const Nesting before = nesting(layer, limits);
     // Every pass restores at least one point, so the loop ends, in the worst case with the original layer.
-    while (refine_crossings(thinned, result) || refine_nesting(thinned, result, before))
+    while (refine_crossings(thinned, result, limits) || refine_nesting(thinned, result, before, limits))
         result = thinned.layer();
     return normal_form(std::move(result));
 }

@@ -1,7 +1,12 @@
+#include "lamella/contour/normal_form.hpp"
 #include "lamella/polygon/contour_defects.hpp"
+#include "lamella/polygon/crossings.hpp"
+#include "lamella/polygon/nesting.hpp"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdint>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -41,6 +46,43 @@ std::vector<Point2> clockwise(std::vector<Point2> ring) {
 TEST(ContourDefects, ASoundLayerHasNone) {
     EXPECT_TRUE(contour_defects({}).found.empty());
     EXPECT_TRUE(contour_defects(layer_of({square(0, 0, 10), clockwise(square(2, 2, 3))})).found.empty());
+}
+
+Layer turned(std::vector<Point2> ring, double radians) {
+    for (Point2& p : ring)
+        p = {std::cos(radians) * p.x - std::sin(radians) * p.y,
+             std::sin(radians) * p.x + std::cos(radians) * p.y};
+    return normal_form(layer_of({ring}));
+}
+
+TEST(ContourDefects, AreNoneOfRingsThatCrossThemselvesByRoundingOnly) {
+    std::uint64_t crossed = 0;
+    for (int i = 0; i < 500; ++i) {
+        // A square whose left side runs up and down over itself.
+        const auto zigzag = [&](double g) {
+            return turned({{0, 0}, {9, 0}, {9, 9}, {0, 9}, {g, 3}, {-g, 7}, {0, 5}, {0, 8}, {0, 1}},
+                          0.0123 * i);
+        };
+        crossed += has_crossings(zigzag(0)) ? 1 : 0;
+        EXPECT_TRUE(contour_defects(zigzag(0)).found.empty()) << i;
+        EXPECT_GT(contour_defects(zigzag(1e-9)).crossings, 0U) << i;
+    }
+    EXPECT_GT(crossed, 100U);
+}
+
+TEST(ContourDefects, AreNoneOfRingsThatRoundingTurnsAtTheirLeftEnds) {
+    std::uint64_t loops = 0;
+    for (int i = 0; i < 500; ++i) {
+        // A square with a spike of no width to the left.
+        const Layer layer = turned(
+            {{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 5}, {-1, 5}, {-3, 5}, {-2, 5}, {0, 5}}, 0.001 * (i - 250));
+        loops += nesting(layer).kind[0] == RingKind::misoriented ? 1 : 0;
+        EXPECT_TRUE(contour_defects(layer).found.empty()) << i;
+    }
+    EXPECT_GT(loops, 50U);
+    // A loop that is larger than the rounding is a defect.
+    const Layer layer = turned({{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 5}, {-3, 4}, {-3, 6}, {0, 5}}, 0);
+    EXPECT_EQ(contour_defects(layer).found.size(), 1U);
 }
 
 TEST(ContourDefects, NamesTheContourAndThePositionOfEachKind) {

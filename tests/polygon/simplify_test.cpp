@@ -6,6 +6,7 @@
 #include "lamella/polygon/nesting.hpp"
 #include "lamella/polygon/simplify.hpp"
 
+#include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
 #include "fixtures/skip_if_slowed.hpp"
 #include "polygon/segment_distance.hpp"
@@ -52,6 +53,23 @@ Contour wobbly_circle(Random& random, double x, double y, double radius, int n, 
         ring.push_back({x + r * std::cos(angle), y + r * std::sin(angle)});
     }
     return ring;
+}
+
+TEST(Simplify, CountsCrossingsBeforeItTakesMemoryForThem) {
+    std::vector<Contour> rings; // walls across one another, each with a point to leave out
+    for (int i = 0; i < 70; ++i) {
+        const double at = 0.02 * i;
+        rings.push_back({{-1, at}, {1, at + 1e-4}, {3, at}, {3, at + 0.01}, {-1, at + 0.01}});
+        rings.push_back({{at, -1}, {at + 0.01, -1}, {at + 0.01, 3}, {at + 1e-4, 1}, {at, 3}});
+    }
+    const Layer layer = normal_layer(rings);
+    EXPECT_EQ(simplify(layer, 1e-3).rings, layer.rings); // points between crossings stay
+    test::expect_error(ErrorKind::limit, {"layer 0", "crossings of contours", "`max_memory`"},
+                       [&] { static_cast<void>(simplify(layer, 1e-3, {.memory = 1 << 17})); });
+    CancelFlag flag;
+    flag.request();
+    test::expect_error(ErrorKind::cancelled, {"cancelled"},
+                       [&] { static_cast<void>(simplify(layer, 1e-3, {.cancel = &flag})); });
 }
 
 TEST(Simplify, LeavesOutPointsOnALine) {

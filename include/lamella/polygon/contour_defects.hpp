@@ -43,8 +43,10 @@ struct ContourDefects {
     bool or_more = false;
 };
 
-/// Finds the defects of a layer. Lists `keep` crossings at most. Rings so thin that `rounding` can invert
-/// them may have either orientation (see orientation_is_lost). Costs as much as find_crossings and nesting.
+/// Finds the defects of a layer. Lists `keep` crossings at most. Segments that cross by no more than 2^-46 of
+/// the largest coordinate do not count as crossing: the rounding of cut points to doubles can cause that.
+/// Rings so thin that `rounding` can invert them may have either orientation (see orientation_is_lost). Costs
+/// as much as find_crossings and nesting.
 [[nodiscard]] ContourDefects contour_defects(const Layer& layer, const Rounding& rounding = {},
                                              std::size_t keep = 16);
 

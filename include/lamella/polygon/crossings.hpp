@@ -3,6 +3,7 @@
 // Finds contours of a layer that cross one another or themselves.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/layer_limits.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -38,8 +39,11 @@ struct Crossings {
 ///
 /// The search ends early once it has found `enough` crossings. Then `count` is `enough` or a little more, and
 /// `first` contains some of the crossings found, the same ones in every call.
+///
+/// Stops if `limits` say so; their memory limit does not apply: the caller chooses `keep`.
 [[nodiscard]] Crossings find_crossings(const Layer& layer, std::size_t keep = 16,
-                                       std::uint64_t enough = std::numeric_limits<std::uint64_t>::max());
+                                       std::uint64_t enough = std::numeric_limits<std::uint64_t>::max(),
+                                       const LayerLimits& limits = {});
 
 /// Returns whether there are crossings; stops at the first one found.
 [[nodiscard]] bool has_crossings(const Layer& layer);

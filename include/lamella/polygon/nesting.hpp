@@ -3,6 +3,7 @@
 // Finds the nesting of the rings of a layer and the bodies that they bound.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/layer_limits.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -62,8 +63,8 @@ struct Nesting {
 /// Throws Error{limit} for a layer of more than 2^32 - 2 rings, and for a layer whose rings cross more than 4
 /// million times plus 64 times the number of their edges, because it would take too long. O(n log c) for n
 /// points in c rings, in practice little more than reading the points; each edge that crosses others can cost
-/// O(c) more.
-[[nodiscard]] Nesting nesting(const Layer& layer);
+/// O(c) more. The memory limit applies to crossings.
+[[nodiscard]] Nesting nesting(const Layer& layer, const LayerLimits& limits = {});
 
 /// A connected area of material, as GeoJSON, 3MF and polygon libraries define it.
 struct Polygon {

@@ -3,6 +3,7 @@
 // Reduces the number of points of contours.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/core/layer_limits.hpp"
 
 LAMELLA_API_BEGIN
 namespace lamella {
@@ -17,8 +18,8 @@ namespace lamella {
 /// Follows Douglas and Peucker: the farthest points are kept first. If the farthest points repeatedly split a
 /// contour very unevenly, as along spikes and spirals, middle points are kept instead. The time is therefore
 /// O(n log n). Points are restored in passes, usually few, each of which searches for crossings again. Throws
-/// Error{usage} for a tolerance that is negative or NaN.
-[[nodiscard]] Layer simplify(const Layer& layer, double tolerance);
+/// Error{usage} for a tolerance that is negative or NaN. The limits apply to crossings of contours.
+[[nodiscard]] Layer simplify(const Layer& layer, double tolerance, const LayerLimits& limits = {});
 
 /// Simplifies each contour independently, which is much faster and serves for display. No ring vanishes or is
 /// inverted, but contours closer to one another than twice the tolerance may cross afterwards. Contours keep
