@@ -92,7 +92,7 @@ void Executor::run_as_tasks(const std::function<void(unsigned)>& body) {
         ++done;
     });
     body_ = nullptr;
-    if (done != workers_)
+    if (done != workers_ && !error_) // after an error, a pool may well skip the other tasks
         throw Error(ErrorKind::usage,
                     fmt::format("run_tasks of an Execution ran {} of {} tasks", done.load(), workers_));
 }

@@ -4,10 +4,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace lamella {
 
 LayerLimits layer_limits(const Execution& execution, std::uint64_t max_memory, unsigned layers) {
-    return {execution.cancel, max_memory / 4 / layers};
+    // A limit of 0 would mean none.
+    const std::uint64_t memory =
+        max_memory == 0 ? 0 : std::max<std::uint64_t>(1, max_memory / 4 / std::max(1U, layers));
+    return {execution.cancel, memory};
 }
 
 void LayerBudget::stop() {

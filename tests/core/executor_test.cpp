@@ -86,6 +86,16 @@ TEST(Executor, NoticesThatTasksWereLeftOut) {
                        [&] { executor.run([](unsigned) {}); });
 }
 
+TEST(Executor, ReportsTheErrorOfATaskAlthoughThePoolSkipsTheOthers) {
+    const auto until_an_error = [](unsigned, const std::function<void(unsigned)>& task) {
+        task(0);
+    };
+    Executor executor({.threads = 3, .run_tasks = until_an_error});
+    for (int round = 0; round < 2; ++round)
+        EXPECT_THROW(executor.run([](unsigned) { throw std::out_of_range(""); }), std::out_of_range);
+    test::expect_error(ErrorKind::usage, {"ran 1 of 3 tasks"}, [&] { executor.run([](unsigned) {}); });
+}
+
 TEST(Executor, ARangeOfOneChunkStaysOnTheCallingThread) {
     Executor executor({.threads = 3});
     const auto caller = std::this_thread::get_id();

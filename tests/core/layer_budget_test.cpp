@@ -22,6 +22,13 @@ TEST(LayerBudget, AllowsWhatFitsAndNothingMore) {
     EXPECT_EQ(budget.room(10), 100U);
 }
 
+TEST(LayerBudget, ALimitStaysALimitHoweverManyLayersShareIt) {
+    EXPECT_EQ(layer_limits({}, 4000, 10).memory, 100U);
+    EXPECT_EQ(layer_limits({}, 200, 64).memory, 1U);
+    EXPECT_EQ(layer_limits({}, 400, 0).memory, 100U);
+    EXPECT_EQ(layer_limits({}, 0, 64).memory, 0U);
+}
+
 TEST(LayerBudget, SetsNoLimitsByDefault) {
     const LayerBudget budget;
     constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
