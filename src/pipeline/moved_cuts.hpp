@@ -10,20 +10,38 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
+#include "slicing/plane_ranges.hpp"
+
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
 
 namespace lamella {
 
+/// Returns the planes at which layers in any order were cut.
+inline Plan plan_of(std::span<const Layer> layers, PlaneRule rule, double snap_mm) {
+    Plan plan{.layers = {}, .rule = rule, .snap_mm = snap_mm};
+    for (const Layer& layer : layers)
+        plan.layers.push_back({layer.index, layer.z, std::min(layer.bottom, layer.z),
+                               std::max(layer.top, layer.z)}); // a file may round z out of its layer
+    std::sort(plan.layers.begin(), plan.layers.end(),
+              [](const PlannedLayer& a, const PlannedLayer& b) { return a.z < b.z; });
+    const auto same = std::unique(plan.layers.begin(), plan.layers.end(),
+                                  [](const PlannedLayer& a, const PlannedLayer& b) { return a.z == b.z; });
+    plan.layers.erase(same, plan.layers.end());
+    return plan;
+}
+
 /// Returns the results of cut(plan) for the plane of each layer. The first result is at the height of the
 /// layer. If the format rounds, the next results are at the lowest and the highest height that it may have
-/// rounded to this one.
+/// rounded to this one. Throws the errors of `check` for the plan of the layers.
 template <class Cut>
 auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, PlaneRule rule, double snap_mm,
                    const Cut& cut) {
+    check(plan_of(layers, rule, snap_mm));
     using OfPlane = typename decltype(cut(Plan{}))::value_type;
     std::vector<std::vector<OfPlane>> of_layer(layers.size());
     for (const double direction : {0.0, -1.0, 1.0}) {
@@ -45,6 +63,33 @@ auto at_moved_cuts(std::span<const Layer> layers, const Rounding& rounding, Plan
         }
     }
     return of_layer;
+}
+
+/// Returns consecutive ranges of layers whose sections at all moved cuts take 32 MB together, or that have a
+/// single layer: the sections of all layers may take more memory than the layers. The mesh is cut once for
+/// each range.
+inline std::vector<PlaneRange> ranges_of_sections(std::span<const Layer> layers, const VerifyOptions& options,
+                                                  const Execution& execution) {
+    constexpr std::uint64_t most_points = (std::uint64_t{32} << 20) / (3 * sizeof(Point2));
+    const Plan plan = plan_of(layers, options.rule, options.snap_mm);
+    const RangeSurvey survey(count_planes(*options.mesh, plan, execution));
+    const auto points_of = [&](const Layer& layer) {
+        const auto plane = std::lower_bound(plan.layers.begin(), plan.layers.end(), layer.z,
+                                            [](const PlannedLayer& a, double z) { return a.z < z; });
+        return survey.points(static_cast<std::uint32_t>(plane - plan.layers.begin()));
+    };
+    std::vector<PlaneRange> ranges;
+    std::uint64_t points = 0;
+    for (std::uint32_t i = 0; i < layers.size(); ++i) {
+        const std::uint64_t more = points_of(layers[i]);
+        if (ranges.empty() || points + more > most_points) {
+            ranges.push_back({i, i});
+            points = 0;
+        }
+        ranges.back().end = i + 1;
+        points += more;
+    }
+    return ranges;
 }
 
 /// Returns all steps except `simplify`. The last digits of coordinates decide which points `simplify`

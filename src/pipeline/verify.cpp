@@ -17,6 +17,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -104,19 +105,28 @@ void compare_areas(std::span<const Layer> layers, std::span<const CheckedLayer> 
     const bool has_mitres = steps.offset_mm != 0 && steps.offset_corners.shape == OffsetCorner::mitre;
     const std::vector<double> limits =
         has_mitres ? limits_of_mitres(limit, options.granted()) : std::vector{limit};
+    const bool cuts = steps.any() || options.subtracts() || options.close_gaps_mm;
+    const std::vector<PlaneRange> ranges =
+        cuts ? ranges_of_sections(layers, options, execution)
+             : std::vector{PlaneRange{0, static_cast<std::uint32_t>(layers.size())}};
+    const auto moments_of = [&](const Plan& plan) {
+        if (!cuts)
+            return section_moments(*options.mesh, plan, origin, execution);
+        std::vector<AreaMoments> made;
+        for (const Layer& layer : layers_of(options, plan, steps, execution))
+            made.push_back(area_moments(layer, origin));
+        return made;
+    };
     for (const double tried : limits) {
         steps.offset_corners.mitre_limit = tried;
-        const auto found =
-            at_moved_cuts(layers, options.granted(), options.rule, options.snap_mm, [&](const Plan& plan) {
-                if (!steps.any() && !options.subtracts() && !options.close_gaps_mm)
-                    return section_moments(*options.mesh, plan, origin, execution);
-                std::vector<AreaMoments> made;
-                for (const Layer& layer : layers_of(options, plan, steps, execution))
-                    made.push_back(area_moments(layer, origin));
-                return made;
-            });
-        for (std::size_t i = 0; i < layers.size(); ++i)
-            sections[i].insert(sections[i].end(), found[i].begin(), found[i].end());
+        for (const PlaneRange range : ranges) {
+            const auto found = at_moved_cuts(layers.subspan(range.begin, range.size()), options.granted(),
+                                             options.rule, options.snap_mm, moments_of);
+            for (std::size_t i = 0; i < found.size(); ++i) {
+                std::vector<AreaMoments>& all = sections[range.begin + i];
+                all.insert(all.end(), found[i].begin(), found[i].end());
+            }
+        }
     }
     double largest_error = 0;
     std::uint64_t compared = 0;
@@ -184,20 +194,6 @@ void compare_areas(std::span<const Layer> layers, std::span<const CheckedLayer> 
             counted(result.displaced, "layer lies", "layers lie"), where(layers[first_displaced]),
             centre(checks[first_displaced].own.moments), centre(sections[first_displaced].front())));
     }
-}
-
-/// Returns the planes at which layers in any order were cut.
-Plan plan_of(std::span<const Layer> layers, const VerifyOptions& options) {
-    Plan plan{.layers = {}, .rule = options.rule, .snap_mm = options.snap_mm};
-    for (const Layer& layer : layers)
-        plan.layers.push_back({layer.index, layer.z, std::min(layer.bottom, layer.z),
-                               std::max(layer.top, layer.z)}); // a file may round z out of its layer
-    std::sort(plan.layers.begin(), plan.layers.end(),
-              [](const PlannedLayer& a, const PlannedLayer& b) { return a.z < b.z; });
-    const auto same = std::unique(plan.layers.begin(), plan.layers.end(),
-                                  [](const PlannedLayer& a, const PlannedLayer& b) { return a.z == b.z; });
-    plan.layers.erase(same, plan.layers.end());
-    return plan;
 }
 
 } // namespace
@@ -306,7 +302,8 @@ Verification verify_planes(std::span<const Layer> layers, const LayerAt& layer_a
                     "hatch lines were not checked: no contour bounds the area that they fill"));
     if (options.mesh) {
         compare_areas(layers, checks, frame.origin, options, execution, result);
-        for (const std::string& text : near_faces(*options.mesh, plan_of(layers, options), execution).texts())
+        const Plan plan = plan_of(layers, options.rule, options.snap_mm);
+        for (const std::string& text : near_faces(*options.mesh, plan, execution).texts())
             result.findings.push_back(text);
         result.heights =
             covered_heights(layers, *options.mesh, options.granted(), execution, result.findings);

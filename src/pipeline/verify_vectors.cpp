@@ -25,6 +25,7 @@
 #include <cstddef>
 #include <limits>
 #include <map>
+#include <span>
 
 namespace lamella {
 
@@ -303,13 +304,6 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
     }
     const LayerStack& planes = file.planes();
     result.layers = planes.size();
-    std::vector<std::vector<Layer>> sections;
-    if (options.mesh)
-        sections =
-            at_moved_cuts(planes, options.granted(), options.rule, options.snap_mm, [&](const Plan& plan) {
-                return layers_of(options, plan, steps_to_repeat(options.steps), execution);
-            });
-
     double largest = 0;
     if (file.stream)
         largest = std::max(file.stream->largest_coordinate, file.stream->largest_hatch_coordinate);
@@ -326,12 +320,14 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
         options.strategy ? layers_below(file, groups, *options.strategy, rounding, executor) : 0);
     std::vector<PlaneFindings> checks(planes.size());
     ProgressMeter progress(execution, Stage::polygon, planes.size());
-    executor.for_chunks(planes.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
+    std::vector<std::vector<Layer>> sections; // of a range of planes, with a mesh
+    std::uint64_t first = 0;                  // of the range
+    const auto check_plane = [&](std::uint64_t i) {
         const ScanVectors vectors = file.plane(i);
         const auto bounds_of = [&](const ExposureGroup& group, bool by_mesh) {
             MaterialBounds bounds;
             if (by_mesh)
-                bounds.sections = sections[i];
+                bounds.sections = sections[i - first];
             else if (group.outermost)
                 bounds = {{vectors.polylines[*group.outermost]},
                           options.strategy
@@ -344,7 +340,7 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
                           checks[i]);
         if (options.mesh) {
             const InvertedRings inverted =
-                inverted_rings(sections[i].front(), options.granted(), InversionSearch::full);
+                inverted_rings(sections[i - first].front(), options.granted(), InversionSearch::full);
             if (inverted.rings > 0)
                 checks[i].inverted.add(planes[i], inverted.at, inverted.rings);
             checks[i].inverted_mm3 = inverted.area_mm2 * planes[i].thickness();
@@ -353,7 +349,22 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
             checked.check_rows(on_plane(group, file, vectors),
                                bounds_of(group, options.mesh && of_parts.size() == 1), checks[i]);
         progress.add(1);
-    });
+    };
+    std::vector<PlaneRange> ranges{{0, static_cast<std::uint32_t>(planes.size())}};
+    if (options.mesh)
+        ranges = ranges_of_sections(planes, options, execution);
+    for (const PlaneRange range : ranges) {
+        first = range.begin;
+        sections.clear();
+        if (options.mesh)
+            sections =
+                at_moved_cuts(std::span(planes).subspan(range.begin, range.size()), options.granted(),
+                              options.rule, options.snap_mm, [&](const Plan& plan) {
+                                  return layers_of(options, plan, steps_to_repeat(options.steps), execution);
+                              });
+        executor.for_chunks(range.size(), 1,
+                            [&](std::uint64_t i, std::uint64_t, unsigned) { check_plane(range.begin + i); });
+    }
     progress.finish();
 
     for (const KindOfFinding& kind : kinds_of_findings(options.strategy.has_value())) {
