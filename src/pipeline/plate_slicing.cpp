@@ -1,6 +1,5 @@
 #include "pipeline/plate_slicing.hpp"
 
-#include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/fill.hpp"
 
 #include "contour/box2.hpp"
@@ -8,6 +7,7 @@
 #include "core/ordered_stage.hpp"
 #include "core/progress.hpp"
 #include "core/stopwatch.hpp"
+#include "polygon/subtract.hpp"
 #include "slicing/layer_counter.hpp"
 #include "slicing/plane_ranges.hpp"
 #include "slicing/shrunken_contours.hpp"
@@ -313,7 +313,7 @@ std::vector<Layer> without_negatives(std::span<const Layer> layers, std::span<co
         const Box2& box = boxes[parts.size() + i];
         for (const std::size_t part : negatives[i].parts)
             if (parts[part].rings > 0 && boxes[part].meets(box))
-                parts[part] = combine(parts[part], negative, BooleanOperation::subtract, limits);
+                parts[part] = subtract_body(parts[part], negative, limits);
     }
     return parts;
 }

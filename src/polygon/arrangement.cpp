@@ -633,11 +633,13 @@ bool bounds(const Arrangement& arrangement, const Material& material, const Wind
 } // namespace
 
 Arrangement arranged(std::span<const RingWithWinding> rings, const Windings& around, const ClippingGrid& grid,
-                     const LayerBudget& budget, const CrossingLimit& most) {
+                     const LayerBudget& budget, const CrossingLimit& most, Bundles bundles) {
     std::optional<Uncut> uncut(std::in_place, rings, grid, reach_of_cuts);
-    CrossingPairs pairs = crossings_of(uncut->arrangement.sides, many(uncut->arrangement.sides), budget);
+    CrossingPairs pairs;
+    if (bundles == Bundles::when_many)
+        pairs = crossings_of(uncut->arrangement.sides, many(uncut->arrangement.sides), budget);
     const std::uint64_t room = budget.room(bytes_of_crossing);
-    if (pairs.size() > many(uncut->arrangement.sides)) {
+    if (bundles == Bundles::always || pairs.size() > many(uncut->arrangement.sides)) {
         uncut.emplace(rings, grid, reach_of_bundles);
         join_bundles(uncut->arrangement, budget);
         pairs = crossings_of(uncut->arrangement.sides, std::min(most(uncut->arrangement.sides.size()), room),

@@ -83,6 +83,12 @@ struct Arrangement {
     [[nodiscard]] bool bounded_by_rest(const Material& material) const;
 };
 
+/// Treatment of sides that lie on one line, except for the rounding to the grid.
+enum class Bundles : std::uint8_t {
+    when_many, ///< they are joined if they cross too often to be cut one by one
+    always,    ///< they are joined, so that films of material between them, and slits, vanish
+};
+
 /// Cuts the rings on the grid at their intersections. The rings may come in any order and start at any point.
 /// `around` holds the winding numbers outside of all rings. Throws Error{limit} for more than `most`
 /// crossings and for more crossings or pieces than the budget allows, and Error{cancelled}. O(n + (m + k) log
@@ -90,6 +96,7 @@ struct Arrangement {
 /// that time.
 [[nodiscard]] Arrangement arranged(std::span<const RingWithWinding> rings, const Windings& around,
                                    const ClippingGrid& grid, const LayerBudget& budget = {},
-                                   const CrossingLimit& most = most_crossings);
+                                   const CrossingLimit& most = most_crossings,
+                                   Bundles bundles = Bundles::when_many);
 
 } // namespace lamella

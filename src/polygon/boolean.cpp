@@ -6,7 +6,7 @@
 #include "contour/box2.hpp"
 #include "polygon/material.hpp"
 #include "polygon/overlay.hpp"
-#include "polygon/subtract_common.hpp"
+#include "polygon/subtract.hpp"
 #include "polygon/windings.hpp"
 
 #include <cassert>
@@ -83,7 +83,7 @@ Layer with_header_and_chains_of(const Layer& first, const Rings& rings) {
 
 /// `least`: see `Material`.
 Layer combined(const Layer& first, const Layer& second, BooleanOperation operation, std::int64_t least,
-               const LayerLimits& limits) {
+               const LayerLimits& limits, Closeness closeness = Closeness::contact) {
     const Layer a = normal_form(first);
     const Layer b = normal_form(second);
     Shares shares(a, b);
@@ -101,8 +101,9 @@ Layer combined(const Layer& first, const Layer& second, BooleanOperation operati
     rings.insert(rings.end(), shares.second.begin(), shares.second.end());
     turns.resize(rings.size(), {0, 1});
     const Layer layer = with_header_and_chains_of(a, rings);
-    return normal_form(
-        Overlay(layer, std::move(turns), limits).filled(Material(operation, least)).filled.layer);
+    return normal_form(Overlay(layer, std::move(turns), limits, most_crossings, closeness)
+                           .filled(Material(operation, least))
+                           .filled.layer);
 }
 
 } // namespace
@@ -110,6 +111,10 @@ Layer combined(const Layer& first, const Layer& second, BooleanOperation operati
 Layer combine(const Layer& first, const Layer& second, BooleanOperation operation,
               const LayerLimits& limits) {
     return combined(first, second, operation, 1, limits);
+}
+
+Layer subtract_body(const Layer& layer, const Layer& body, const LayerLimits& limits) {
+    return combined(layer, body, BooleanOperation::subtract, 1, limits, Closeness::rounding);
 }
 
 Layer subtract_common(const Layer& layer, std::span<const Layer> others, const LayerLimits& limits) {

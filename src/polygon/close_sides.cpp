@@ -25,11 +25,6 @@ bool beside(const Segment& s, const Segment& t, double reach) noexcept {
            std::min(std::abs(lo), std::abs(hi)) > reach * (std::abs(dx) + std::abs(dy));
 }
 
-bool close(const Segment& s, const Segment& t, double reach) noexcept {
-    return Box2::of(s.lo, s.hi).grown(reach).meets(Box2::of(t.lo, t.hi)) && !beside(s, t, reach) &&
-           !beside(t, s, reach);
-}
-
 class CloseSides {
   public:
     CloseSides(const Layer& layer, double reach)
@@ -53,7 +48,8 @@ class CloseSides {
             const Point2& a = layer_.points[i];
             const Point2& b = layer_.points[next];
             const Point2& c = layer_.points[next + 1 < end ? next + 1 : begin];
-            if (close(segment_between(a, b), {c, c}, reach_) || close(segment_between(b, c), {a, a}, reach_))
+            if (may_come_within(segment_between(a, b), {c, c}, reach_) ||
+                may_come_within(segment_between(b, c), {a, a}, reach_))
                 close_[i] = close_[next] = true;
         }
     }
@@ -105,8 +101,8 @@ class CloseSides {
             const std::uint64_t i = a.first + a0;
             const std::uint64_t j = b.first + b0;
             if (!(close_[i] && close_[j]) && following(a.ring, i) != j && following(b.ring, j) != i &&
-                close(segment_between(chains_.point(a, a0), chains_.point(a, a1)),
-                      segment_between(chains_.point(b, b0), chains_.point(b, b1)), reach_))
+                may_come_within(segment_between(chains_.point(a, a0), chains_.point(a, a1)),
+                                segment_between(chains_.point(b, b0), chains_.point(b, b1)), reach_))
                 close_[i] = close_[j] = true;
         } else if (a1 - a0 >= b1 - b0) {
             const std::uint32_t middle = a0 + (a1 - a0) / 2;
@@ -131,6 +127,11 @@ class CloseSides {
 };
 
 } // namespace
+
+bool may_come_within(const Segment& s, const Segment& t, double reach) noexcept {
+    return Box2::of(s.lo, s.hi).grown(reach).meets(Box2::of(t.lo, t.hi)) && !beside(s, t, reach) &&
+           !beside(t, s, reach);
+}
 
 std::vector<bool> close_sides(const Layer& rings, double reach) {
     return CloseSides(rings, reach).run();

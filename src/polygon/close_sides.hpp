@@ -4,9 +4,14 @@
 
 #include "lamella/contour/layer.hpp"
 
+#include "polygon/orientation.hpp"
+
 #include <vector>
 
 namespace lamella {
+
+/// Returns whether two segments may come within `reach` of one another. If it returns false, they do not.
+[[nodiscard]] bool may_come_within(const Segment& s, const Segment& t, double reach) noexcept;
 
 /// Returns for each point of a layer whether the side that begins there may come within `reach` of another
 /// side. For consecutive sides their common end does not count. Every close side is marked, but some others

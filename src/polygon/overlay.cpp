@@ -6,6 +6,7 @@
 #include "polygon/arrangement.hpp"
 #include "polygon/boundary.hpp"
 #include "polygon/clipping_grid.hpp"
+#include "polygon/close_rings.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -34,9 +35,9 @@ class Filler {
   public:
     Filler(const Layer& layer, std::span<const Windings> turns, const Material& material, Walls walls,
            const Contacts& contacts, const NestingWithWindings& nest, const LayerBudget& budget,
-           const CrossingLimit& most)
+           const CrossingLimit& most, Closeness closeness)
         : layer_(layer), turns_(turns), material_(material), walls_(walls), nest_(nest), budget_(budget),
-          most_(most), groups_(contacts.groups), fates_(layer.rings) {
+          most_(most), closeness_(closeness), groups_(contacts.groups), fates_(layer.rings) {
         assert(contacts.group.size() == layer.rings && nest.nesting.order.size() == layer.rings);
         for (const std::uint32_t ring : nest.nesting.order) {
             const std::uint32_t group = contacts.group[ring];
@@ -96,7 +97,15 @@ class Filler {
         }
         if (!grid_)
             grid_.emplace(layer_.points.span().first(layer_.offsets[layer_.rings]));
-        const Arrangement arrangement = arranged(wound(group), around, *grid_, budget_, most_);
+        const bool of_both = most.first > 0 && most.second > 0;
+        const Bundles bundles =
+            of_both && closeness_ == Closeness::rounding ? Bundles::always : Bundles::when_many;
+        const Arrangement arrangement = arranged(wound(group), around, *grid_, budget_, most_, bundles);
+        if (arrangement.sides.empty()) { // the rings cancel
+            for (const std::uint32_t ring : group)
+                fates_[ring] = Fate::dropped;
+            return;
+        }
         if (!arrangement.crossed && stay(group, arrangement, most))
             return;
         unite(group, arrangement);
@@ -172,6 +181,7 @@ class Filler {
     const NestingWithWindings& nest_;
     const LayerBudget& budget_;
     const CrossingLimit& most_;
+    Closeness closeness_;
     std::vector<std::vector<std::uint32_t>> groups_;
     std::vector<Fate> fates_;
     std::optional<ClippingGrid> grid_;
@@ -182,10 +192,14 @@ class Filler {
 } // namespace
 
 Overlay::Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits,
-                 const CrossingLimit& most)
-    : layer_(layer), budget_(limits, layer.index, layer.z), most_(most), turns_(std::move(turns)),
-      chains_(layer), grid_(ChainGrid::of(chains_)), contacts_(find_contacts(layer, chains_, grid_, budget_)),
-      nest_(nesting(layer, chains_, grid_, contacts_, turns_, budget_, most_)) {}
+                 const CrossingLimit& most, Closeness closeness)
+    : layer_(layer), budget_(limits, layer.index, layer.z), most_(most), closeness_(closeness),
+      turns_(std::move(turns)), chains_(layer), grid_(ChainGrid::of(chains_)),
+      contacts_(find_contacts(layer, chains_, grid_, budget_)),
+      nest_(nesting(layer, chains_, grid_, contacts_, turns_, budget_, most_)) {
+    if (closeness == Closeness::rounding)
+        contacts_ = with_close_rings(layer, turns_, contacts_);
+}
 
 bool Overlay::clean() const noexcept {
     if (contacts_.groups > 0)
@@ -205,7 +219,7 @@ Box2 Overlay::box() const noexcept {
 }
 
 Overlaid Overlay::filled(const Material& material, Walls walls) const {
-    return Filler(layer_, turns_, material, walls, contacts_, nest_, budget_, most_).run();
+    return Filler(layer_, turns_, material, walls, contacts_, nest_, budget_, most_, closeness_).run();
 }
 
 Layer united(const Layer& layer, const LayerLimits& limits) {

@@ -29,6 +29,12 @@ enum class Walls : std::uint8_t {
     dissolved, ///< no walls stay
 };
 
+/// Which rings are treated together, as a group in contact.
+enum class Closeness : std::uint8_t {
+    contact,  ///< rings with a common point
+    rounding, ///< also rings of both operands that are closer than coordinates are rounded
+};
+
 /// The boundary of the material, and the fates of the given rings.
 struct Overlaid {
     Filled filled;
@@ -45,7 +51,7 @@ class Overlay {
     /// `turns` is each ring's contribution to the winding numbers of its inside. The layer must outlive this
     /// object. This and `filled` throw Error{limit} for more than `most` crossings.
     Overlay(const Layer& layer, std::vector<Windings> turns, const LayerLimits& limits,
-            const CrossingLimit& most = most_crossings);
+            const CrossingLimit& most = most_crossings, Closeness closeness = Closeness::contact);
 
     /// Returns whether no rings are in contact and every ring bounds material, so that no winding number
     /// exceeds 1.
@@ -62,6 +68,7 @@ class Overlay {
     const Layer& layer_;
     LayerBudget budget_;
     CrossingLimit most_;
+    Closeness closeness_;
     std::vector<Windings> turns_;
     MonotoneChains chains_;
     std::optional<ChainGrid> grid_;

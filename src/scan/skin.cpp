@@ -6,7 +6,7 @@
 
 #include "contour/box2.hpp"
 #include "contour/same_height.hpp"
-#include "polygon/subtract_common.hpp"
+#include "polygon/subtract.hpp"
 #include "scan/alongside.hpp"
 #include "scan/occupied.hpp"
 

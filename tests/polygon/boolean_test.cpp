@@ -7,7 +7,7 @@
 
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
-#include "polygon/subtract_common.hpp"
+#include "polygon/subtract.hpp"
 #include "polygon/winding_areas.hpp"
 
 #include <gtest/gtest.h>
@@ -308,6 +308,71 @@ TEST(Combine, TakesHeaderAndChainsOfTheFirstLayer) {
             ASSERT_EQ(result.open_chains(), 1U);
             EXPECT_EQ(contours(result).back(), (Contour{{0, 9}, {5, 9}}));
         }
+}
+
+Layer turned_layer(const Contours& rings, double radians, const Point2& to) {
+    Contours turned;
+    for (const Contour& ring : rings) {
+        Contour& out = turned.emplace_back();
+        for (const Point2& p : ring)
+            out.push_back({std::cos(radians) * p.x - std::sin(radians) * p.y + to.x,
+                           std::sin(radians) * p.x + std::cos(radians) * p.y + to.y});
+    }
+    return normal_layer(turned);
+}
+
+TEST(SubtractBody, LeavesNotchesAndNoFilmsWhereItIsFlushWithWalls) {
+    struct Case {
+        Contour body;
+        std::size_t rings;
+        double area;
+    };
+    const Contour part = rectangle(0, 0, 20, 20);
+    const std::array cases{
+        Case{rectangle(8, 0, 12, 3), 1, 388},                // in the middle of a wall
+        Case{rectangle(0, 0, 3, 4), 1, 388},                 // in a corner
+        Case{rectangle(0, 0, 20, 5), 1, 300},                // along a whole wall
+        Case{rectangle(7, 0, 9, 20), 2, 360},                // from wall to wall
+        Case{rectangle(0, 0, 20, 20), 0, 0},                 // all of it
+        Case{rectangle(8, 2, 12, 5), 2, 388},                // inside
+        Case{rectangle(8, 1e-3, 12, 3), 2, 400 - 4 * 2.999}, // inside, near a wall
+    };
+    std::size_t films = 0; // that exact subtraction leaves
+    for (int i = 0; i < 400; ++i) {
+        const double angle = 0.0157 * i;
+        const Point2 to{i % 3 == 0 ? 0 : 137.3 * i, i % 2 == 0 ? 0 : -11.7};
+        const Layer layer = turned_layer({part}, angle, to);
+        for (const Case& one : cases) {
+            const Layer body = turned_layer({one.body}, angle, to);
+            const Layer result = subtract_body(layer, body);
+            ASSERT_EQ(result.rings, one.rings) << "turn " << i << ", area " << one.area;
+            ASSERT_NEAR(area(result), one.area, 1e-6);
+            ASSERT_FALSE(has_crossings(result));
+            films += combine(layer, body, subtract).rings != one.rings ? 1 : 0;
+        }
+    }
+    EXPECT_GT(films, 50U);
+}
+
+TEST(SubtractBody, GivesTheAreaOfTheDifferenceForRandomLayers) {
+    Random random(43);
+    for (int round = 0; round < test::rounds_within_reason(600); ++round) {
+        const bool integers = round % 2 == 0;
+        const double turn = round % 3 == 0 ? 0.7 : 0;
+        const Layer layer = turned_layer(random_rings(random, 8, 6, 8, integers), turn, {});
+        const Layer body = turned_layer(random_rings(random, 8, 6, 8, integers), turn, {});
+        const Layer found = subtract_body(layer, body);
+        EXPECT_NEAR(area(found), area(combine(layer, body, subtract)), 1e-6) << round;
+        EXPECT_LT(area(combine(found, combine(layer, body, subtract), exclude)), 1e-6) << round;
+        EXPECT_FALSE(has_crossings(found)) << round;
+    }
+}
+
+TEST(SubtractBody, LeavesBodiesApartThatOnlyTouchOneAnother) {
+    const Layer layer =
+        turned_layer({rectangle(0, 0, 5, 9), rectangle(5, 0, 9, 9), rectangle(20, 0, 29, 9)}, 0.3, {});
+    const Layer body = turned_layer({rectangle(22, 0, 25, 2)}, 0.3, {});
+    EXPECT_EQ(subtract_body(layer, body).rings, 3U);
 }
 
 TEST(SubtractCommon, LeavesWhatSomeOfTheOthersHaveNot) {
