@@ -9,7 +9,14 @@
 
 namespace lamella {
 
-ClippingGrid::ClippingGrid(std::span<const Point2> points, double margin) {
+ClippingGrid::ClippingGrid(std::span<const Point2> points, double margin)
+    : ClippingGrid(points, margin, -500) {}
+
+ClippingGrid ClippingGrid::of_integers(std::span<const Point2> points) {
+    return {points, 0, 0};
+}
+
+ClippingGrid::ClippingGrid(std::span<const Point2> points, double margin, int least_exponent) {
     if (points.empty())
         return;
     const Box2 box = box_of(points);
@@ -19,7 +26,7 @@ ClippingGrid::ClippingGrid(std::span<const Point2> points, double margin) {
         throw Error(ErrorKind::limit, "a layer has coordinates beyond 1e150 mm, too large to unite contours");
     if (extent == 0)
         return;
-    const int exponent = std::max({std::ilogb(extent) - 36, std::ilogb(largest) - 52, -500});
+    const int exponent = std::max({std::ilogb(extent) - 36, std::ilogb(largest) - 52, least_exponent});
     unit_ = std::ldexp(1, exponent);
     origin_ = {std::nearbyint((box.x0 + box.width() / 2) / unit_),
                std::nearbyint((box.y0 + box.height() / 2) / unit_)};

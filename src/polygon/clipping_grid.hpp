@@ -19,6 +19,10 @@ class ClippingGrid {
     /// too large.
     explicit ClippingGrid(std::span<const Point2> points, double margin = 0);
 
+    /// Returns a grid that contains these points, whose coordinates are integers below 2^36 in their distance
+    /// from one another; a coarser grid of integers if they are farther apart.
+    [[nodiscard]] static ClippingGrid of_integers(std::span<const Point2> points);
+
     [[nodiscard]] double unit() const noexcept { return unit_; }
     /// Returns the nearest grid position, as integers of at most about 2^37.
     [[nodiscard]] Point2 position(const Point2& p) const noexcept;
@@ -27,6 +31,8 @@ class ClippingGrid {
     }
 
   private:
+    ClippingGrid(std::span<const Point2> points, double margin, int least_exponent);
+
     double unit_ = 1;
     Point2 origin_; ///< in units
 };

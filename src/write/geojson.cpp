@@ -2,6 +2,8 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/polygon/nesting.hpp"
 
+#include "polygon/overlay.hpp"
+#include "polygon/simple_polygons.hpp"
 #include "write/decimal.hpp"
 #include "write/grid.hpp"
 #include "write/layer_writers.hpp"
@@ -11,6 +13,8 @@
 #include <fmt/format.h>
 
 #include <cassert>
+#include <cstdint>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -78,27 +82,49 @@ class GeoJsonWriter final : public SequentialWriter {
         put_lines(layer, part, nested, scratch, out);
     }
 
-    // Writes the rings that bound material: each outer ring, then its holes. Skips rings that vanish on the
-    // grid, and the holes of such outer rings.
+    /// Returns the rings that enclose an area, in units of the grid, without those that vanish on it.
+    Layer rounded_rings(const Layer& layer, const Nesting& nested, std::vector<GridPoint>& scratch) const {
+        LayerBuilder builder;
+        for (std::size_t i = 0; i < layer.rings; ++i) {
+            if (nested.kind[i] == RingKind::flat)
+                continue;
+            // The losses of rings that are written as lines, too, are counted there.
+            const WriterGrid& grid = nested.kind[i] == RingKind::misoriented ? uncounted_ : grid_;
+            const std::span<const Point2> ring = layer.contour(i);
+            for (const GridPoint& p : grid.snap(ring, true, ring_area(ring), layer.index, scratch))
+                builder.add_point({static_cast<double>(p.x), static_cast<double>(p.y)});
+            builder.end_contour(true);
+        }
+        return builder.finish_as_added(layer.index, layer.z, layer.bottom, layer.top);
+    }
+
+    // Polygons of the standard have at most points in common, and their rings do not touch themselves. Layers
+    // whose rings are in contact, on the grid, are united and divided to fit.
     void put_polygons(const Layer& layer, std::size_t part, const Nesting& nested,
                       std::vector<GridPoint>& scratch, ByteBuffer& out) const {
-        const auto put_ring = [&](std::size_t i, std::string_view before) {
-            const auto points =
-                grid_.snap(layer.contour(i), true, ring_area(layer.contour(i)), layer.index, scratch);
-            if (points.empty())
-                return false;
-            out.append(before);
-            put_positions(points, true, out);
-            return true;
-        };
         put_feature(layer, part, "MultiPolygon", out);
         bool any = false;
-        for (const Polygon& polygon : polygons(nested)) {
-            if (!put_ring(polygon.outer, any ? "],[" : "["))
-                continue;
+        const auto put_ring = [&](std::span<const Point2> ring, bool outer) {
+            scratch.clear();
+            for (const Point2& p : ring)
+                scratch.push_back({static_cast<std::int64_t>(p.x), static_cast<std::int64_t>(p.y)});
+            out.append(!outer ? "," : any ? "],[" : "[");
+            put_positions(scratch, true, out);
             any = true;
-            for (const std::uint32_t hole : polygon.holes)
-                put_ring(hole, ",");
+        };
+        const Layer rings = rounded_rings(layer, nested, scratch);
+        if (const Overlay overlay(rings); overlay.clean()) {
+            for (const Polygon& polygon : polygons(overlay.nest())) {
+                put_ring(rings.contour(polygon.outer), true);
+                for (const std::uint32_t hole : polygon.holes)
+                    put_ring(rings.contour(hole), false);
+            }
+        } else {
+            for (const SimplePolygon& polygon : simple_polygons(rings)) {
+                put_ring(polygon.outer, true);
+                for (const Ring& hole : polygon.holes)
+                    put_ring(hole, false);
+            }
         }
         out.append(any ? "]]}}" : "]}}");
     }
@@ -138,6 +164,7 @@ class GeoJsonWriter final : public SequentialWriter {
 
     std::vector<std::string> labels_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
+    WriterGrid uncounted_{text_step_mm};
 };
 
 } // namespace
