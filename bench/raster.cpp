@@ -121,7 +121,7 @@ bool right(const Part& part, unsigned antialias) {
     const LayerStack layers = slice(opened.mesh, opened.plan);
     for (std::size_t i = 0; i < layers.size(); ++i) {
         const RasterOptions options = raster_options(layers[i], antialias);
-        const double covered = rasterise({&layers[i], 1}, grid, options, [](auto, auto) {}) * mm * mm;
+        const double covered = rasterise({&layers[i], 1}, grid, options, [](auto, auto) {}).covered * mm * mm;
         const LayerMeasure measured = measure(layers[i]);
         double bound = 1e-9 * areas[i];
         if (antialias == 1)

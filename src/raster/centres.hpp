@@ -29,19 +29,33 @@ struct CentreCrossing {
 /// Draws the rows of an image from the top down.
 class CentreRows {
   public:
-    CentreRows(std::span<const Layer> parts, const PixelGrid& grid)
-        : crossings_(parts, grid), width_(grid.width) {}
+    CentreRows(std::span<const Layer> parts, const PixelGrid& grid);
 
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
+    /// Returns the area, in pixels, of bodies and fins between the lines through the centres of rows.
+    [[nodiscard]] double between_rows() const noexcept { return between_rows_; }
 
   private:
     /// Covers the columns from `from` to `to`. `from` must not be less than the previous `to`.
     void cover(std::uint32_t from, std::uint32_t to);
 
+    /// Material between two crossings that covers no centre.
+    struct Gap {
+        double from;
+        double to;
+        bool counted;
+    };
+
+    /// Returns the unseen area of `times` equal rows that are drawn now.
+    double unseen(std::uint32_t times);
+
     RowSweep<CentreCrossing> crossings_;
     std::uint32_t width_;
     std::vector<PixelRun> runs_;
     std::uint32_t covered_ = 0;
+    std::vector<Gap> gaps_;       ///< of this row
+    std::vector<Gap> gaps_above_; ///< of the previous row
+    double between_rows_ = 0;
 };
 
 } // namespace lamella

@@ -47,7 +47,7 @@ void RowPiece::reach(const ImageEdge& edge, std::uint32_t row, double top_column
 DrawnRow CoverageRows::draw(std::uint32_t row) {
     const std::uint32_t times = cover(row);
     const std::span<const PixelRun> runs = coverage_.take(0);
-    return {runs, coverage_.covered(), times};
+    return {runs, coverage_.covered(), times, coverage_.unseen() * times};
 }
 
 std::uint32_t CoverageRows::cover(std::uint32_t row) {

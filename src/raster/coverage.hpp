@@ -45,6 +45,8 @@ class CoverageRows {
           coverage_(grid.width, 1, options.gamma) {}
 
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
+    /// Returns the area that no row shows; the rows show all.
+    [[nodiscard]] double between_rows() const noexcept { return 0; }
 
   private:
     using Pieces = std::span<const RowSweep<RowPiece>::Entry>;

@@ -103,6 +103,8 @@ std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
     double covered = 0;
     double coverage = 0;
     double clamped = 0;
+    double unseen = 0;
+    double unseen_here = 0; // `clamped` if it is rounded to 0, else 0
     std::uint32_t since = 0;
     std::uint8_t value = 0;
     if (common_.touched(0)) {
@@ -115,11 +117,13 @@ std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
         if (here >= width)
             return;
         covered += clamped * (here - since);
+        unseen += unseen_here * (here - since);
         since = here;
         clamped = coverage < 0 ? 0 : coverage; // not std::clamp, which is compiled to two branches
         clamped = 1 < clamped ? 1 : clamped;
         // The conversion to 32 bits, signed, is a single instruction.
         const double rounded_up = clamped * 255 + 0.5;
+        unseen_here = rounded_up < 1 ? clamped : 0;
         const std::uint8_t value_here =
             value_of_[static_cast<std::size_t>(static_cast<std::int32_t>(rounded_up))];
         // A run that ends here is always written, but kept only if it has pixels and a value other than the
@@ -130,6 +134,7 @@ std::span<const PixelRun> CoverageBand::take(std::uint32_t row) {
     });
     own_.clear(row);
     covered_ = covered + clamped * (width - since);
+    unseen_ = unseen + unseen_here * (width - since);
     *next++ = {width, value};
     assert(next <= runs_.data() + runs_.size());
     assert(covered_ >= 0 && covered_ <= width * (1 + 1e-9));

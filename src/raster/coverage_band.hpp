@@ -41,6 +41,9 @@ class CoverageBand {
     [[nodiscard]] std::span<const PixelRun> take(std::uint32_t row);
     /// Returns the covered area, in pixels, of the row that was taken last.
     [[nodiscard]] double covered() const noexcept { return covered_; }
+    /// Returns the area, in pixels, of the material in pixels of that row that are too little covered to be
+    /// seen.
+    [[nodiscard]] double unseen() const noexcept { return unseen_; }
 
   private:
     std::uint32_t width_;
@@ -49,6 +52,7 @@ class CoverageBand {
     std::array<std::uint8_t, 256> value_of_{};
     std::vector<PixelRun> runs_;
     double covered_ = 0;
+    double unseen_ = 0;
 };
 
 } // namespace lamella

@@ -38,15 +38,16 @@ void check(const PixelGrid& grid, const RasterOptions& options) {
 }
 
 template <class Rows>
-double draw(Rows rows, std::uint32_t height, const RowSink& sink) {
-    double covered = 0;
+RasterAreas draw(Rows rows, std::uint32_t height, const RowSink& sink) {
+    RasterAreas areas{.covered = 0, .unseen = rows.between_rows()};
     std::vector<PixelRun> same; // the last rows, which are equal
     std::uint32_t times = 0;
     for (std::uint32_t row = 0; row < height;) {
         const DrawnRow drawn = rows.draw(row);
         assert(drawn.times >= 1 && drawn.times <= height - row);
         assert(!drawn.runs.empty());
-        covered += drawn.covered * drawn.times;
+        areas.covered += drawn.covered * drawn.times;
+        areas.unseen += drawn.unseen;
         if (times > 0 && !std::equal(same.begin(), same.end(), drawn.runs.begin(), drawn.runs.end())) {
             sink(same, times);
             times = 0;
@@ -57,13 +58,13 @@ double draw(Rows rows, std::uint32_t height, const RowSink& sink) {
         row += drawn.times;
     }
     sink(same, times);
-    return covered;
+    return areas;
 }
 
 } // namespace
 
-double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
-                 const RowSink& sink) {
+RasterAreas rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
+                      const RowSink& sink) {
     check(grid, options);
     if (options.antialias == 1)
         return draw(CentreRows(parts, grid), grid.height, sink);

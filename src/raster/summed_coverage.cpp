@@ -27,7 +27,7 @@ DrawnRow SummedRows::draw(std::uint32_t row) {
         while (row + times < end_ && coverage_.plain(row + times - top_))
             ++times;
     const std::span<const PixelRun> runs = coverage_.take(row - top_);
-    return {runs, coverage_.covered(), times};
+    return {runs, coverage_.covered(), times, coverage_.unseen() * times};
 }
 
 void SummedRows::add_line(std::span<const Point2> points) {

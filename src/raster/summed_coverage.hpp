@@ -19,6 +19,8 @@ class SummedRows {
     SummedRows(std::span<const Layer> parts, const PixelGrid& grid, double gamma);
 
     [[nodiscard]] DrawnRow draw(std::uint32_t row);
+    /// Returns the area that no row shows; the rows show all.
+    [[nodiscard]] double between_rows() const noexcept { return 0; }
 
   private:
     /// Adds the edges between consecutive points.

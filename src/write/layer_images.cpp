@@ -5,7 +5,10 @@
 
 #include "container/inflate.hpp"
 #include "contour/box2.hpp"
+#include "core/counted.hpp"
 #include "write/png.hpp"
+
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -37,6 +40,23 @@ Layer without_lone_holes(const Layer& layer) {
 
 } // namespace
 
+void UnseenMaterial::add(double z, const RasterAreas& areas, double pixel_mm2) noexcept {
+    if (areas.unseen <= 1 || areas.unseen <= 1e-3 * (areas.covered + areas.unseen))
+        return;
+    if (layers_++ == 0)
+        first_z_ = z;
+    area_mm2_ += areas.unseen * pixel_mm2;
+}
+
+std::vector<std::string> UnseenMaterial::warnings() const {
+    if (layers_ == 0)
+        return {};
+    return {fmt::format(
+        "{:.4g} mm2 of material on {}, the lowest at z = {:.6g} mm, are too thin for the pixels and in "
+        "no image; smaller pixels, more anti-aliasing or a positive offset show them",
+        area_mm2_, counted(layers_, "layer"), first_z_)};
+}
+
 // Draws an empty image so that impossible options are reported before the first layer.
 LayerImages::LayerImages(const PixelGrid& grid, const RasterOptions& options)
     : grid_(grid), options_(options) {
@@ -51,11 +71,11 @@ LayerImage LayerImages::image(std::span<const Layer> all) const {
     // fraction of the time.
     options.winds_once = options.antialias > 1 && winds_once(parts);
     PngEncoder encoder(grid_.width, grid_.height);
-    const double covered =
+    const RasterAreas areas =
         rasterise(parts, grid_, options, [&](auto row, auto times) { encoder.add(row, times); });
     const std::shared_ptr<ByteBuffer> file = buffers_->take();
     encoder.finish(*file);
-    return {file, crc32_of(file->view()), covered};
+    return {file, crc32_of(file->view()), areas};
 }
 
 } // namespace lamella

@@ -11,15 +11,32 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace lamella {
 
 struct LayerImage {
     std::shared_ptr<const ByteBuffer> file;
     std::uint32_t crc = 0; ///< of the file
-    double covered = 0;    ///< pixels
+    RasterAreas areas = {};
 
     [[nodiscard]] ZipChunk in_zip() const { return {file->view(), file->view().size(), crc}; }
+};
+
+/// Material that images do not show because it is too thin for their pixels.
+class UnseenMaterial {
+  public:
+    /// Adds the areas of the image of a layer at z. Corners and the edges of bodies lose a little everywhere,
+    /// so a layer counts if it loses more than a thousandth of its area, and more than a pixel.
+    void add(double z, const RasterAreas& areas, double pixel_mm2) noexcept;
+    /// Returns a line, or none if nothing is lost.
+    [[nodiscard]] std::vector<std::string> warnings() const;
+
+  private:
+    std::uint64_t layers_ = 0;
+    double first_z_ = 0;
+    double area_mm2_ = 0;
 };
 
 /// Makes images with the same grid and options. May be used by any number of threads at once.

@@ -26,6 +26,25 @@ class Images(ProgramTest):
             self.fail_with(2, f"--output and {option} contradict each other: {name} would lie in the folder", "slice",
                            "box.stl", "-o", "out", "--format", "png", option, name)
 
+    def test_walls_too_thin_for_the_pixels_are_warned_of(self):
+        # In columns 240.6 to 241.4 on both sides of the middle, where no pixel has its own middle.
+        fin = lambda x: [[(x, 0, 0), (x + 0.04, 0, 0), (x + 0.04, 10, 0), (x, 10, 0)],
+                         [(x, 0, 1), (x + 0.04, 0, 1), (x + 0.04, 10, 1), (x, 10, 1)]]
+        lines, first = [], 1
+        for low, high in [[[(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)], [(0, 0, 1), (10, 0, 1), (10, 10, 1), (0, 10, 1)]],
+                          fin(12.03), fin(-12.07)]:
+            lines += [f"v {x} {y} {z}" for x, y, z in low + high]
+            for face in [(4, 3, 2, 1), (5, 6, 7, 8), (1, 2, 6, 5), (2, 3, 7, 6), (3, 4, 8, 7), (4, 1, 5, 8)]:
+                lines.append("f " + " ".join(str(first + i - 1) for i in face))
+            first += 8
+        self.write("fins.obj", "\n".join(lines))
+        job = ["slice", "fins.obj", "--layer-height", "0.5", "--strict", "--pixel-size", "0.05", "--resolution", "500x500"]
+        for name, options in [("x.zip", ["--format", "png-zip"]), ("x.sl1", []), ("folder", ["--format", "png"])]:
+            with self.subTest(name):
+                self.fail_with(4, r"[0-9.]+ mm2 of material on 2 layers, the lowest at z = 0.25 mm, are too thin for the pixels",
+                               *job, *options, "--antialias", "1", "-o", name)
+                self.assertEqual(self.succeed(*job, *options, "--antialias", "8", "-o", name).err, "")
+
     def test_a_job_needs_no_options(self):
         self.succeed("slice", self.box(), "-o", "part.sl1")
         archive = self.archive("part.sl1")

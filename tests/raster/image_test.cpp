@@ -311,7 +311,8 @@ TEST(Image, HasTheAreaOfTheLayer) {
         const PixelGrid grid{.width = 1000, .height = 1000, .ux = 1 / mm, .vy = -1 / mm, .v0 = 1000};
         const LayerMeasure measured = measure(layer);
         for (const unsigned antialias : {1U, 4U, 16U}) {
-            const double pixels = rasterise({&layer, 1}, grid, {.antialias = antialias}, [](auto, auto) {});
+            const double pixels =
+                rasterise({&layer, 1}, grid, {.antialias = antialias}, [](auto, auto) {}).covered;
             const double bound = antialias == 1 ? 0.05 * measured.perimeter_mm * mm : 1e-9;
             EXPECT_NEAR(pixels * mm * mm, measured.area_mm2, bound)
                 << "seed " << seed << ", antialias " << antialias;
@@ -322,7 +323,7 @@ TEST(Image, HasTheAreaOfTheLayer) {
 TEST(Image, SumsUpToTheCoverageThatItReports) {
     const Layer layer = tangle(77, 200);
     const PixelGrid grid = plain(200, 200);
-    const double covered = rasterise({&layer, 1}, grid, {.antialias = 8}, [](auto, auto) {});
+    const double covered = rasterise({&layer, 1}, grid, {.antialias = 8}, [](auto, auto) {}).covered;
     double sum = 0;
     for (const std::uint8_t value : paint_one(layer, grid, 8).values)
         sum += value / 255.0;
@@ -427,18 +428,70 @@ TEST(Image, IgnoresOpenChains) {
     EXPECT_EQ(pixels_of(0, image), 91);
 }
 
+double unseen_of(const Layer& layer, unsigned antialias, bool winds_once = false) {
+    return rasterise({&layer, 1}, plain(100, 100), {.antialias = antialias, .winds_once = winds_once},
+                     [](auto, auto) {})
+        .unseen;
+}
+
+Contour transposed(Contour ring) {
+    for (Point2& p : ring)
+        p = {p.y, p.x};
+    return reversed(ring);
+}
+
+TEST(Image, MeasuresMaterialThatIsTooThinForItsPixels) {
+    const Contour body = rectangle(10, 10, 60, 60);
+    const Contour beside = rectangle(70.55, 10, 70.95, 60);
+    const Contour fin{{10, 10},    {60, 10},    {60, 60},    {40.95, 60},
+                      {40.95, 90}, {40.55, 90}, {40.55, 60}, {10, 60}};
+    for (const bool turned : {false, true}) {
+        const auto layer = [&](const std::vector<Contour>& rings) {
+            std::vector<Contour> all;
+            for (const Contour& ring : rings)
+                all.push_back(turned ? transposed(ring) : ring);
+            return layer_of(all);
+        };
+        EXPECT_EQ(unseen_of(layer({body}), 1), 0);
+        EXPECT_NEAR(unseen_of(layer({body, beside}), 1), 20, 1e-9);
+        EXPECT_NEAR(unseen_of(layer({fin}), 1), 12, 1);
+        for (const bool once : {false, true}) {
+            EXPECT_EQ(unseen_of(layer({fin}), 8, once), 0);
+            EXPECT_NEAR(unseen_of(layer({body, rectangle(70.5, 10, 70.5 + 1. / 600, 60)}), 8, once),
+                        50. / 600, 1e-9);
+            EXPECT_EQ(unseen_of(layer({body, rectangle(70.5, 10, 70.5 + 1. / 400, 60)}), 8, once), 0);
+        }
+    }
+}
+
+TEST(Image, ShowsLargerBodiesWhole) {
+    Random random(77);
+    for (int round = 0; round < 300; ++round) {
+        Contour ring;
+        const int corners = static_cast<int>(random.integer(3, 60));
+        const double radius = random.real(6, 40);
+        const double turn = random.real(0, 7);
+        for (int i = 0; i < corners; ++i) {
+            const double angle = turn + 2 * std::numbers::pi * i / corners;
+            ring.push_back({50 + radius * std::cos(angle), 50 + radius * std::sin(angle)});
+        }
+        for (const unsigned antialias : {1U, 4U})
+            EXPECT_LE(unseen_of(layer_of({ring}), antialias), 1) << round;
+    }
+}
+
 TEST(Image, IsBlankWithoutMaterial) {
     for (const Layer& layer :
          {Layer{}, layer_of({rectangle(200, 0, 300, 10)}), layer_of({rectangle(-30, 0, -20, 10)}),
           layer_of({rectangle(0, 40, 10, 50)}), layer_of({rectangle(0, -40, 10, -30)})}) {
         std::uint32_t rows = 0;
-        const double covered = rasterise({&layer, 1}, plain(100, 20), {}, [&](auto row, auto times) {
+        const RasterAreas areas = rasterise({&layer, 1}, plain(100, 20), {}, [&](auto row, auto times) {
             ASSERT_EQ(row.size(), 1U);
             EXPECT_EQ(row.front(), (PixelRun{100, 0}));
             rows += times;
         });
         EXPECT_EQ(rows, 20U);
-        EXPECT_EQ(covered, 0);
+        EXPECT_EQ(areas.covered, 0);
     }
 }
 
@@ -498,7 +551,8 @@ TEST(Image, StandsCoordinatesAtTheEndOfTheNumbers) {
 TEST(Image, ReachesTheLargestSize) {
     const Layer layer = layer_of({{{0, 0}, {most_pixels, 0}, {most_pixels, most_pixels}}});
     const double half = 0.5 * most_pixels * most_pixels;
-    EXPECT_NEAR(rasterise({&layer, 1}, plain(most_pixels, most_pixels), {}, [](auto, auto) {}), half, 1);
+    EXPECT_NEAR(rasterise({&layer, 1}, plain(most_pixels, most_pixels), {}, [](auto, auto) {}).covered, half,
+                1);
 }
 
 TEST(Image, BendsValuesByGammaAndLeavesFullAndEmptyPixels) {

@@ -62,7 +62,7 @@ struct Drawn {
 
 Drawn drawn(std::span<const Layer> parts, const PixelGrid& grid) {
     const RasterOptions options{.antialias = 8, .winds_once = true};
-    return {paint(parts, grid, options), rasterise(parts, grid, options, [](auto, auto) {})};
+    return {paint(parts, grid, options), rasterise(parts, grid, options, [](auto, auto) {}).covered};
 }
 
 /// Compares each pixel with the sum of the rings' areas in it, each ring cut off at the pixel's sides.
@@ -167,7 +167,7 @@ TEST(SummedCoverage, HasTheAreaOfContoursMuchFinerThanPixels) {
         const auto side = static_cast<std::uint32_t>(std::ceil(10 * pixels_per_mm));
         const PixelGrid grid{.width = side, .height = side, .ux = pixels_per_mm, .vy = pixels_per_mm};
         const double covered =
-            rasterise({&layer, 1}, grid, {.antialias = 8, .winds_once = true}, [](auto, auto) {});
+            rasterise({&layer, 1}, grid, {.antialias = 8, .winds_once = true}, [](auto, auto) {}).covered;
         EXPECT_NEAR(covered / (pixels_per_mm * pixels_per_mm), area, 1e-11 * area);
     }
 }
@@ -193,7 +193,7 @@ TEST(SummedCoverage, DrawsTheLargestImage) {
     const double side = most_pixels;
     const Layer layer = layer_of({{{0, 0}, {side, 0}, {side, side}}});
     const PixelGrid grid{.width = most_pixels, .height = most_pixels};
-    const double covered = rasterise({&layer, 1}, grid, {.winds_once = true}, [](auto, auto) {});
+    const double covered = rasterise({&layer, 1}, grid, {.winds_once = true}, [](auto, auto) {}).covered;
     EXPECT_NEAR(covered, 0.5 * side * side, 1);
 }
 

@@ -60,14 +60,24 @@ struct PixelRun {
 /// value; the last one ends at the width of the image.
 using RowSink = std::function<void(std::span<const PixelRun> row, std::uint32_t times)>;
 
+/// Areas of an image, in pixels.
+struct RasterAreas {
+    double covered = 0; ///< before coverage is rounded to values
+    /// Material that no pixel shows. With anti-aliasing: the coverage of pixels whose value is 0. Without:
+    /// bodies, and fins of bodies, that lie between the lines through the centres of pixels, or between the
+    /// centres of at least two consecutive rows. What rounding to whole pixels takes from the edges of larger
+    /// bodies does not count.
+    double unseen = 0;
+};
+
 /// Rasterises the closed rings of all parts at one height, row by row. Area covered by several parts counts
-/// once. Open chains are ignored; everything outside the image is clipped. Returns the covered area in pixels
-/// before rounding to values. Throws Error{usage} for a grid or options that define no image.
+/// once. Open chains are ignored; everything outside the image is clipped. Throws Error{usage} for a grid or
+/// options that define no image.
 ///
 /// O(p + c log c + r) for p points, r rows and c crossings of contours with rows (or with strips of rows),
 /// with memory for the points and one row. With `winds_once` O(p + c + r), with memory for a few rows.
-double rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
-                 const RowSink& sink);
+RasterAreas rasterise(std::span<const Layer> parts, const PixelGrid& grid, const RasterOptions& options,
+                      const RowSink& sink);
 
 /// An image in memory, row after row.
 struct GreyImage {
