@@ -177,6 +177,26 @@ class Slice(ProgramTest):
         self.assertRegex(self.succeed(*view).err, "level faces lie within rounding of a plane .*--snap")
         self.assertEqual(self.succeed(*view, "--snap", "1e-5").err, "")
 
+    def test_a_plane_that_touches_a_knife_edge_loses_nothing(self):
+        self.succeed("make", "torus", "-o", "torus.stl")
+        result = self.succeed("slice", "torus.stl", "--layer-height", "0.1", "--slice-at", "bottom", "--strict", "-o", "t.json")
+        self.assertEqual(result.err, "")
+        self.assertEqual(self.succeed("verify", "t.json", "--mesh", "torus.stl", "--slice-at", "bottom").code, 0)
+
+    def test_a_snap_distance_of_half_a_layer_is_refused(self):
+        self.succeed("make", "box", "--size", "10", "-o", "box.stl")
+        self.succeed("slice", "box.stl", "--snap", "0.0499", "--strict", "-o", "box.json")
+        self.succeed("verify", "box.json", "--mesh", "box.stl", "--snap", "0.0499")
+        for snap in ["0.05", "1", "1e9"]:
+            refused = r"the snap distance is \S+ mm, half of the layer height or more: layer 0 is 0.1 mm high"
+            self.fail_with(2, refused, "slice", "box.stl", "--snap", snap, "-o", "lost.json")
+            self.fail_with(2, refused, "view", "box.stl", "--layer-height", "0.1", "--snap", snap)
+            self.fail_with(2, refused, "verify", "box.json", "--mesh", "box.stl", "--snap", snap)
+        self.succeed("slice", "box.stl", "--scan", "-o", "box.ovf")
+        self.fail_with(2, refused, "verify", "box.ovf", "--scan", "--mesh", "box.stl", "--snap", "1")
+        heights = ["--heights", "0:5=0.5,5:10=1"]
+        self.fail_with(2, "layer 0 is 0.5 mm high", "slice", "box.stl", *heights, "--snap", "0.3", "-o", "lost.json")
+
     def test_level_faces_that_rounding_has_bent_are_warned_of_and_cut_as_faces_where_it_snaps(self):
         self.write("tilted.stl", binary_stl(tilted_steps()))
         options = ["tilted.stl", "--rotate-x", "-30", "--layer-height", "0.5", "--slice-at", "bottom"]
