@@ -123,7 +123,7 @@ class LayerStream {
     const Engine& engine_;
     unsigned threads_;
     pybind11::object listener_;
-    /// What the worker uses. A forked process never destroys it: there, nobody releases a lock that the
+    /// The state of the worker. A forked process never destroys it: there, nobody releases a lock that the
     /// worker held at the time of the fork, and a condition variable waits for those who waited for it.
     struct Shared {
         ProgressBox progress;

@@ -218,7 +218,7 @@ lamella_mesh read(MeshFile file, const Execution& execution) {
     return placed(std::make_shared<const MeshFile>(std::move(file)), {}, execution);
 }
 
-/// Throws Error{usage} if an array of so many items of this size cannot exist.
+/// Throws Error{usage} if no array can have this number of items of this size.
 std::size_t possible(std::size_t count, std::size_t bytes_each, const char* name) {
     if (count > static_cast<std::size_t>(std::numeric_limits<std::ptrdiff_t>::max()) / bytes_each)
         throw Error(ErrorKind::usage, fmt::format("{}: found {}, more than any array has", name, count));
@@ -355,7 +355,7 @@ Layer layer_of(const lamella_layer& from) {
     return layer;
 }
 
-/// What a slice file holds, and what the writer needs to know before the layers.
+/// The contents of a slice file, and what the writer needs to know before the layers.
 struct Writing {
     const LayerFormat& format;
     LayerFileInfo info;

@@ -11,15 +11,15 @@
        lamella_free_mesh(mesh);
 
    Lengths are millimetres. Texts are UTF-8. A function that fails changes none of its results. No function
-   throws, prints or ends the process. Handles are immutable, and any number of threads may use them at once;
-   free each of them once, in any order: a result does not need the handle it was made from.
+   throws, prints or ends the process. Handles are immutable, and any number of threads may use them at once.
+   Each handle must be freed once, in any order: a result does not need the handle that it was made from.
 
    Each struct begins with its size, which the caller sets:
 
        lamella_settings settings = {.size = sizeof settings};
 
-   Fields that are zero have their defaults. The binary interface is stable: as long as lamella_abi() is the
-   same, functions are only added, structs only get new fields at their end, and values of enums do not
+   A field that is zero stands for its default. The binary interface is stable: as long as lamella_abi() is
+   the same, functions are only added, structs only get new fields at their end, and values of enums do not
    change. The number is also in the name of the shared library, liblamella-c.so.1, so programs need not be
    linked again for a new version of Lamella. */
 #ifndef LAMELLA_C_H
@@ -62,7 +62,7 @@ typedef struct lamella_slicer lamella_slicer;
 
 typedef struct lamella_bytes lamella_bytes;
 
-/* How to work. Instead of a pointer to settings, null may be passed. No setting changes a result. */
+/* Settings of a call. Null may be passed instead of a pointer to settings. No setting changes a result. */
 typedef struct lamella_settings {
     size_t size;         /* sizeof(lamella_settings) */
     uint32_t threads;    /* 0: one for each processor */
@@ -78,7 +78,7 @@ typedef struct lamella_settings {
     void* user; /* passed to both functions */
 } lamella_settings;
 
-/* What a plane through vertices cuts: the section just above it or just below it. */
+/* The result for a plane that passes through vertices: the section just above it or just below it. */
 typedef enum lamella_rule { LAMELLA_SECTION_ABOVE = 0, LAMELLA_SECTION_BELOW = 1 } lamella_rule;
 
 /* Position of the cut within each layer. Cuts at the top use LAMELLA_SECTION_BELOW, others
@@ -89,11 +89,11 @@ typedef enum lamella_cut { LAMELLA_CUT_MIDDLE = 0, LAMELLA_CUT_BOTTOM = 1, LAMEL
 typedef struct lamella_plan {
     size_t size;               /* sizeof(lamella_plan) */
     double layer_height;       /* 0: 0.1 */
-    double first_layer_height; /* 0: as the others */
+    double first_layer_height; /* 0: as of the other layers */
     lamella_cut cut;
     double snap; /* vertices at most this far from a plane count as on it */
-    /* If max_height is above 0, adaptive layers instead: between these heights, and as high as the slopes of
-       the surface allow if steps deviate from it by at most `cusp` (0: 0.05). */
+    /* If max_height is above 0, layers are adaptive: their heights are between min_height and max_height, and
+       as large as possible while steps deviate from the surface by at most `cusp` (0: 0.05). */
     double min_height;
     double max_height;
     double cusp;
@@ -107,7 +107,7 @@ typedef struct lamella_mending {
     int orient;            /* flips triangles so that neighbours agree and bodies face outwards */
 } lamella_mending;
 
-/* Changes by lamella_mend. */
+/* Numbers of changes by lamella_mend. */
 typedef struct lamella_mended {
     size_t size; /* sizeof(lamella_mended) */
     uint64_t joined_vertices;
@@ -138,7 +138,7 @@ typedef enum lamella_operation {
 
 /* One layer. Contour i has the points [offsets[i], offsets[i + 1]). The first `rings` contours are closed,
    and their first point is not repeated; the others are open chains, caused by holes in the mesh. Material is
-   to the left of each contour. The arrays exist as long as the layers. */
+   to the left of each contour. The arrays are valid until the layers are freed. */
 typedef struct lamella_layer {
     size_t size;    /* sizeof(lamella_layer) */
     uint64_t index; /* its number in the whole plan */
@@ -162,31 +162,31 @@ LAMELLA_C_API const char* lamella_error(void);
    none. */
 LAMELLA_C_API const char* lamella_warnings(void);
 
-/* Reads all meshes of a file, as one. */
+/* Reads all meshes of a file as one mesh. */
 LAMELLA_C_API lamella_status lamella_read_mesh(const char* path, const lamella_settings* settings,
                                                lamella_mesh** mesh);
 /* Reads a copy of a file in memory; `name` is used in error messages. */
 LAMELLA_C_API lamella_status lamella_read_mesh_bytes(const void* bytes, size_t size, const char* name,
                                                      const lamella_settings* settings, lamella_mesh** mesh);
-/* Copies arrays: x, y and z of each vertex, and three indices for each triangle, counter-clockwise from
- * outside. */
+/* Copies arrays: x, y and z of each vertex, and three indices for each triangle, counter-clockwise seen
+ * from outside. */
 LAMELLA_C_API lamella_status lamella_make_mesh(const double* vertices, size_t vertex_count,
                                                const uint32_t* triangles, size_t triangle_count,
                                                lamella_mesh** mesh);
-/* The mesh after p' = M p + t; `matrix` has the rows of (M | t), 12 numbers. */
+/* Makes a mesh with each vertex p moved to M p + t; `matrix` has the rows of (M | t), 12 numbers. */
 LAMELLA_C_API lamella_status lamella_transform_mesh(const lamella_mesh* mesh, const double* matrix,
                                                     lamella_mesh** transformed);
 /* Repairs a mesh, each of its bodies by itself. `counts` gets the changes; it may be null. */
 LAMELLA_C_API lamella_status lamella_mend(const lamella_mesh* mesh, const lamella_mending* mending,
                                           const lamella_settings* settings, lamella_mended* counts,
                                           lamella_mesh** mended);
-/* 0 for a null pointer. */
+/* Returns 0 for a null pointer. */
 LAMELLA_C_API size_t lamella_triangle_count(const lamella_mesh* mesh);
-/* Sets 6 numbers: the least x, y and z, and the largest. */
+/* Sets 6 numbers: the smallest x, y and z, then the largest. */
 LAMELLA_C_API lamella_status lamella_mesh_box(const lamella_mesh* mesh, double* box);
 LAMELLA_C_API void lamella_free_mesh(lamella_mesh* mesh);
 
-/* Cuts the mesh into layers of this height, each in its middle. */
+/* Cuts the mesh into layers of this height. Each layer is cut in its middle. */
 LAMELLA_C_API lamella_status lamella_slice(const lamella_mesh* mesh, double layer_height,
                                            const lamella_settings* settings, lamella_layers** layers);
 /* Cuts the mesh at these heights, which must ascend. */
@@ -196,14 +196,15 @@ LAMELLA_C_API lamella_status lamella_slice_at(const lamella_mesh* mesh, const do
 LAMELLA_C_API lamella_status lamella_slice_by_plan(const lamella_mesh* mesh, const lamella_plan* plan,
                                                    const lamella_settings* settings, lamella_layers** layers);
 
-/* Prepares a mesh for many single planes: each then costs in proportion to the triangles that it cuts. */
+/* Prepares a mesh for many single planes. The cost of a plane is then proportional to the number of triangles
+   that it cuts. */
 LAMELLA_C_API lamella_status lamella_prepare(const lamella_mesh* mesh, lamella_rule rule,
                                              const lamella_settings* settings, lamella_slicer** slicer);
-/* The section at a height, as one layer. */
+/* Computes the section at a height, as one layer. */
 LAMELLA_C_API lamella_status lamella_section(const lamella_slicer* slicer, double z, lamella_layers** layers);
-/* The section with the plane through `origin` perpendicular to `normal`, three numbers each, as one layer
-   in coordinates within the plane. `to_mesh` gets 12 numbers, the rows of a matrix that maps (x, y, 0) to the
-   mesh; it may be null. */
+/* Computes the section with the plane through `origin` perpendicular to `normal`, three numbers each, as one
+   layer in coordinates within the plane. `to_mesh` gets 12 numbers, the rows of a matrix that maps (x, y, 0)
+   to the mesh; it may be null. */
 LAMELLA_C_API lamella_status lamella_section_of_plane(const lamella_slicer* slicer, const double* origin,
                                                       const double* normal, double* to_mesh,
                                                       lamella_layers** layers);
@@ -226,11 +227,11 @@ LAMELLA_C_API lamella_status lamella_write_layers(const lamella_layers* layers, 
 LAMELLA_C_API lamella_status lamella_write_layers_bytes(const lamella_layers* layers, const char* format,
                                                         const lamella_settings* settings,
                                                         lamella_bytes** bytes);
-/* Null and 0 for a null pointer. */
+/* Return null and 0 for a null pointer. */
 LAMELLA_C_API const void* lamella_bytes_data(const lamella_bytes* bytes);
 LAMELLA_C_API size_t lamella_bytes_size(const lamella_bytes* bytes);
 LAMELLA_C_API void lamella_free_bytes(lamella_bytes* bytes);
-/* 0 for a null pointer. */
+/* Returns 0 for a null pointer. */
 LAMELLA_C_API size_t lamella_layer_count(const lamella_layers* layers);
 LAMELLA_C_API lamella_status lamella_get_layer(const lamella_layers* layers, size_t number,
                                                lamella_layer* layer);
@@ -239,8 +240,8 @@ LAMELLA_C_API lamella_status lamella_get_layer(const lamella_layers* layers, siz
 LAMELLA_C_API lamella_status lamella_ring_parents(const lamella_layers* layers, size_t number,
                                                   int64_t* parents);
 
-/* Joins ends of open chains that are at most `distance` apart, the closest first. `closed` gets the number of
-   joins; it may be null. */
+/* Joins ends of open chains that are at most `distance` apart, the closest pairs first. `closed` gets the
+   number of joins; it may be null. */
 LAMELLA_C_API lamella_status lamella_close_gaps(const lamella_layers* layers, double distance,
                                                 const lamella_settings* settings, uint64_t* closed,
                                                 lamella_layers** result);
@@ -248,8 +249,8 @@ LAMELLA_C_API lamella_status lamella_close_gaps(const lamella_layers* layers, do
 LAMELLA_C_API lamella_status lamella_offset(const lamella_layers* layers, double distance,
                                             const lamella_corners* corners, const lamella_settings* settings,
                                             lamella_layers** result);
-/* Combines the first layers, the second layers, and so on. Both must have as many. Heights and open chains
-   are those of `first`. */
+/* Combines the first layers of both, the second layers of both, and so on. Both must have the same number of
+   layers. Heights and open chains are those of `first`. */
 LAMELLA_C_API lamella_status lamella_combine(const lamella_layers* first, const lamella_layers* second,
                                              lamella_operation operation, const lamella_settings* settings,
                                              lamella_layers** result);

@@ -45,9 +45,9 @@ struct ClosedGaps {
 ///
 /// A layer without chains is returned as it is. Throws Error{usage} for a distance that is not a positive
 /// finite number, Error{limit} if more pairs of ends are close enough than `limits` allow, and
-/// Error{cancelled}. O(n + c log c) for n points and c chains, and 64 pairs for each chain at worst; also
-/// where many ends are close to one another, unless segments are long and so many that no grid separates
-/// them.
+/// Error{cancelled}. O(n + c log c) for n points and c chains, and 64 pairs for each chain at worst, also
+/// where many ends are close to one another. The exception is a great number of long segments, which no grid
+/// separates.
 [[nodiscard]] ClosedGaps close_gaps(const Layer& layer, double within_mm, const LayerLimits& limits = {});
 
 struct ClosedPlane {

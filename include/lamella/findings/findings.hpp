@@ -1,7 +1,7 @@
 #pragma once
 
-// What is wrong in meshes and layers, or is lost on the way to a file: one table of kinds, and containers
-// that count.
+// Findings: defects of meshes and layers, and contents that are lost on the way to a file. One table has all
+// kinds of findings; containers count them.
 
 #include "lamella/core/api.hpp"
 
@@ -18,26 +18,26 @@ namespace lamella {
 
 /// Kinds of findings, in the order in which they are reported. Each has a row in finding_kinds().
 enum class FindingKind : std::uint32_t {
-    open_chains,          ///< in layers of a mesh
-    inverted_rings,       ///< in layers of a mesh
-    near_faces,           ///< horizontal faces on a plane except for rounding
+    open_chains,          ///< contours that do not close, in layers of a mesh
+    inverted_rings,       ///< rings that bound no material, in layers of a mesh
+    near_faces,           ///< horizontal faces that are on a plane except for rounding
     dropped_open_chains,  ///< contours of a slice file of which no scan vectors can be made
     reversible_rings,     ///< inverted rings of a slice file
-    replaced_hatch_lines, ///< of a slice file, because new ones are made
-    outdated_hatch_lines, ///< of a slice file, whose contours were changed
-    nothing_left,         ///< no contour after the steps
-    unreached_material,   ///< by any scan vector
+    replaced_hatch_lines, ///< lines of a slice file that new ones replace
+    outdated_hatch_lines, ///< lines of a slice file whose contours were changed
+    nothing_left,         ///< no contour is left after the steps
+    unreached_material,   ///< material that no scan vector reaches
 };
 
 enum class Severity : std::uint8_t {
-    note,    ///< worth knowing; never an error
+    note,    ///< information; never an error
     warning, ///< an error with `strict`
 };
 
-/// What a finding is about. Programs point to `lamella info` for defects of a mesh.
+/// The cause of a finding. For defects of a mesh, programs refer to `lamella info`.
 enum class FindingOrigin : std::uint8_t {
     mesh, ///< a defect of the mesh
-    job,  ///< a choice of the job, or content of a slice file
+    job,  ///< an option of the job, or content of a slice file
 };
 
 struct Finding;
@@ -53,11 +53,11 @@ struct FindingDescription {
     FindingOrigin origin = FindingOrigin::job;
     const char* one = "";  ///< text if the count is 1
     const char* many = ""; ///< text for other counts
-    /// Unit of the amount: "mm", "mm2"; or "mm3" for areas of layers, which are multiplied by the thickness
-    /// of their layers; "" if there is no amount.
+    /// Unit of the amount over all layers: "mm" or "mm2"; "mm3" if the areas of layers are multiplied by the
+    /// thickness of the layers; "" if there is no amount.
     const char* unit = "";
-    /// Names of the numbers in JSON, "" for numbers that are not written. The amount of one layer and of all
-    /// layers have different names if their units differ.
+    /// Names of the numbers in JSON; "" for numbers that are not written. The amount of one layer and the
+    /// amount of all layers have different names if their units differ.
     const char* count_key = "";
     const char* amount_key = "";
     const char* layer_amount_key = "";
@@ -70,12 +70,12 @@ struct FindingDescription {
 [[nodiscard]] std::span<const FindingDescription> finding_kinds() noexcept;
 [[nodiscard]] const FindingDescription& description(FindingKind kind) noexcept;
 
-/// What was found of one kind in a part on a plane. Has no padding, so that processes can send it.
+/// The finding of one kind in one part on one plane. Has no padding, so that processes can send it.
 struct PlaneFinding {
     FindingKind kind = {};
     std::uint32_t file = 0;   ///< index of the input
-    std::uint32_t part = 0;   ///< index of the part; see no_part
-    std::uint32_t unused = 0; ///< padding
+    std::uint32_t part = 0;   ///< index of the part, or no_part
+    std::uint32_t unused = 0; ///< fills the place of padding; always 0
     std::uint64_t plane = 0;  ///< index of the plane
     std::uint64_t count = 0;  ///< number of chains, rings, and so on
     double amount = 0;        ///< sum of their lengths in mm, or areas in mm2
@@ -84,16 +84,16 @@ struct PlaneFinding {
     /// Part of findings that do not belong to a part.
     static constexpr std::uint32_t no_part = ~std::uint32_t{0};
 
-    /// Adds findings of the same kind on the same plane.
+    /// Adds the numbers of another finding of the same kind on the same plane.
     void add(const PlaneFinding& other) noexcept;
 
     friend bool operator==(const PlaneFinding&, const PlaneFinding&) = default;
 };
 
-/// What was found of one kind in a file, or in all files, over all layers.
+/// The finding of one kind in one file, or in all files, over all layers.
 struct Finding {
     FindingKind kind = {};
-    std::uint32_t file = 0; ///< index of the input; see all_files
+    std::uint32_t file = 0; ///< index of the input, or all_files
     std::uint64_t count = 0;
     double amount = 0;                   ///< in the unit of the kind
     double largest = 0;                  ///< mm
@@ -105,8 +105,8 @@ struct Finding {
     /// File of findings that do not belong to a single file.
     static constexpr std::uint32_t all_files = ~std::uint32_t{0};
 
-    /// Returns one line: what was found, where, and a cure. Names options as fields between backquotes, such
-    /// as `orient`.
+    /// Returns one line with the finding, its position and a cure. Options are named as fields between
+    /// backquotes, such as `orient`.
     [[nodiscard]] std::string text() const;
 
     friend bool operator==(const Finding&, const Finding&) = default;
@@ -124,16 +124,15 @@ struct Findings {
     std::vector<Finding> total;   ///< over all files, by ascending kind
 
     [[nodiscard]] bool empty() const noexcept { return by_file.empty(); }
-    /// Returns the finding of a kind over all files, or one that counts nothing.
+    /// Returns the finding of a kind over all files; its count is 0 if there is none.
     [[nodiscard]] const Finding& of(FindingKind kind) const noexcept;
-    /// Returns the finding of a kind in a file, or one that counts nothing.
+    /// Returns the finding of a kind in a file; its count is 0 if there is none.
     [[nodiscard]] const Finding& of(FindingKind kind, std::uint32_t file) const noexcept;
     /// Returns the first finding that is an error with `strict`; null if there is none.
     [[nodiscard]] const Finding* first_warning() const noexcept;
     /// Returns a line for each finding, without the names of files.
     [[nodiscard]] std::vector<std::string> texts() const;
-    /// Adds a finding. It must be the only one of its kind and file, and is added to the total of its kind by
-    /// its numbers.
+    /// Adds a finding, also to the total of its kind. It must be the only one of its kind and file.
     void add(Finding finding);
     /// Adds the findings of other files or kinds.
     void add(const Findings& others);
@@ -146,10 +145,10 @@ class FindingLog {
     FindingLog(const FindingLog&) = delete;
     FindingLog& operator=(const FindingLog&) = delete;
 
-    /// Keeps findings, except those that count nothing. O(found).
+    /// Adds findings; those with a count of 0 are ignored. O(found).
     void add(std::span<const PlaneFinding> found);
     void add(const PlaneFinding& found) { add({&found, 1}); }
-    /// Returns what was added, and forgets it.
+    /// Returns and removes all findings that were added.
     [[nodiscard]] std::vector<PlaneFinding> take();
     /// Returns sums over planes, which do not depend on the order of `add`. `planes` are the heights of all
     /// planes, `labels` the labels of all parts, `files` the file of each part. O(n log n).

@@ -1,6 +1,6 @@
 #pragma once
 
-// Findings about layers with unsound contours, from a mesh or a slice file.
+// Findings in layers of a mesh or of a slice file: defects of contours, horizontal faces near planes.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
@@ -23,14 +23,14 @@ namespace lamella {
 
 /// Where layers come from, and what happens to them. This decides which of their defects matter.
 enum class LayerUse : std::uint8_t {
-    cut,     ///< layers of a mesh: open_chains, inverted_rings
-    scanned, ///< layers of a slice file, of which scan vectors are made: dropped_open_chains,
+    cut,     ///< layers of a mesh; finds open_chains and inverted_rings
+    scanned, ///< layers of a slice file that are converted to scan vectors; finds dropped_open_chains and
              ///< reversible_rings
-    kept,    ///< layers of a slice file, which are written as they are: reversible_rings
+    kept,    ///< layers of a slice file that are written unchanged; finds reversible_rings
 };
 
-/// Adds nothing_left, as a finding of all files, if steps removed the contours of all layers; `layers` is
-/// their number.
+/// Adds nothing_left, as a finding of all files, if steps removed the contours of all layers. `layers` is the
+/// number of layers.
 void add_nothing_left(Findings& findings, const LayerChanges& changes, std::uint64_t layers,
                       std::uint64_t contours);
 
@@ -41,15 +41,15 @@ void add_nothing_left(Findings& findings, const LayerChanges& changes, std::uint
 /// Finds defects in layers that pass plane by plane.
 class LayerFindingSearch {
   public:
-    /// For this number of planes; 0 if it is not known, and then planes follow in order, on one thread.
-    /// `max_memory`: see layer_limits.
+    /// Prepares for `planes` planes. If their number is not known, `planes` is 0, and the planes must follow
+    /// in order, on one thread. `max_memory`: see layer_limits.
     LayerFindingSearch(std::size_t planes, LayerUse use, const Rounding& rounding, InversionSearch search,
                        const Execution& execution = {}, std::uint64_t max_memory = 0);
 
-    /// Searches the layer of a part on the plane at this position. May be called from any threads, but for
-    /// one plane from one thread at a time. Throws the errors of inverted_rings.
+    /// Searches the layer of a part on the plane at this position. Several threads may call this at the same
+    /// time, but only one of them for each plane. Throws the errors of inverted_rings.
     void look_at(std::size_t position, std::size_t part, const Layer& layer);
-    /// Searches the parts of a plane of a file that are not scan vectors.
+    /// Searches, on one plane of a file, the parts that are not scan vectors.
     void look_at(std::size_t position, const LayerFile& file, const ScanVectors& plane);
     /// Returns the findings, as those of file 0; without labels of parts.
     [[nodiscard]] Findings findings() const { return log_.sums(planes_); }

@@ -175,8 +175,8 @@ struct FileResult {
     /// FileJob::scan. One beam exposes the parts of a layer one after the other. Jumps between layers are not
     /// counted. All other figures are those of the layers from which vectors are computed.
     std::vector<ExposureResult> exposures;
-    /// What was found in the layers, by file (index in `files`). Inverted rings are counted before `steps`.
-    /// The search for them is full with `scan`, an offset or negative volumes, otherwise quick (see
+    /// Defects and losses of the layers, by file (index in `files`). Inverted rings are counted before
+    /// `steps`. The search for them is full with `scan`, an offset or negative volumes, otherwise quick (see
     /// InversionSearch). With a FillRule, which itself defines the material, none are counted.
     Findings findings;
     std::uint64_t planned_layers = 0; ///< number of layers of all shards together
@@ -200,8 +200,8 @@ struct FileResult {
     /// file. Of it, `polygon`, `scan`, `format` and `write` are the times of layer steps, of scan vectors, of
     /// formatting with compression, and of writing bytes, each summed over threads; `order` is the time of
     /// the work that must be done in order, by one thread at a time. `end` is the time of one thread for the
-    /// end of the file. No number of threads makes a job faster than `order` and `end`, and of `write` the
-    /// part that the system does for one thread at a time.
+    /// end of the file. However many threads there are, a job takes at least `order`, `end` and the part of
+    /// `write` that the system does for one thread at a time.
     struct Seconds {
         double read = 0;
         double weld = 0;

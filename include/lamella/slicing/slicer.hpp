@@ -27,7 +27,7 @@ struct PlaneSection {
 };
 
 /// Cuts one mesh with many single planes, for example while somebody moves a plane through it. The mesh is
-/// prepared once; then a plane costs in proportion to the triangles that it cuts, not to all of them. Use
+/// prepared once; then the cost of a plane is proportional to the number of triangles that it cuts. Use
 /// `slice` for the layers of a whole part.
 ///
 /// Immutable: any number of threads may use it at once. Cheap to move, and the mesh is shared.
@@ -35,7 +35,7 @@ class Slicer {
   public:
     /// Prepares horizontal planes. O(n log n) for n triangles: it links all edges, where `slice` links only
     /// those that its planes cut. Takes about 64 bytes for each edge. Throws Error{limit} for about 2^32 / 3
-    /// triangles or more, and Error{cancelled}. The number of threads applies to all of the preparation.
+    /// triangles or more, and Error{cancelled}. The preparation uses `execution.threads`.
     explicit Slicer(Mesh mesh, PlaneRule rule = PlaneRule::section_above, const Execution& execution = {});
     ~Slicer();
     Slicer(Slicer&&) noexcept;
@@ -47,8 +47,9 @@ class Slicer {
 
     /// Returns the layer at height z: bit for bit the contours that `slice` returns for this plane. Its index
     /// is 0, and its bottom and top are z. A plane that misses the mesh gives a layer without contours.
-    /// Throws Error{usage} if z is not finite. O(log n + k log k) for k triangles that the plane cuts, if
-    /// there are not many more triangles of similar height near the plane; on the calling thread.
+    /// Throws Error{usage} if z is not finite. O(log n + k log k) for k triangles that the plane cuts,
+    /// provided that few triangles span nearly the same heights without being cut. Runs on the calling
+    /// thread.
     [[nodiscard]] Layer section(double z) const;
 
     /// Returns the section with the plane through `origin` at right angles to `normal`, of any length. The
@@ -57,7 +58,8 @@ class Slicer {
     /// rotated or rounded. Under section_above, a plane through a face gives the face if the material is on
     /// the side of the normal, and nothing if it is on the other side. Only the triangles near the plane are
     /// rotated. The first call prepares the mesh for this. Throws Error{usage} unless all numbers are finite
-    /// and the normal is not 0. O(log n + k log k) on the calling thread for k triangles near the plane.
+    /// and the normal is not 0. O(log n + k log k) for k triangles near the plane. Runs on the calling
+    /// thread.
     [[nodiscard]] PlaneSection section(const Point3& origin, const Point3& normal) const;
 
   private:
