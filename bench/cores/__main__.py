@@ -43,9 +43,9 @@ def page_of(results):
     threads = results["threads"]
     page = Page("Cores")
     page.say("This page shows how much faster the commands of the program become with more threads.")
-    page.say("Each time is the least wall time of several runs on the machine named below, from the start to the end of a "
-             "process. The page of [other slicers](benchmarks.md) has medians instead, which include runs in which the system "
-             "hands out memory slowly. All outputs of a job were equal.")
+    page.say("Each time is the shortest wall time of several runs on the machine named below, from the start to the end of a "
+             "process. [Benchmarks](benchmarks.md) gives medians instead. They are larger, because in some runs the system "
+             "allocates memory slowly. All outputs of a job were equal.")
     page.say("**times**: the time of one thread divided by the time of all threads; **efficiency** is this number divided by "
              "the number of threads.",
              "**lower bound**: the larger of (a) the processor time of the run with one thread, divided by the number of "
@@ -53,8 +53,8 @@ def page_of(results):
              "measured on this machine.",
              "**no file** writes only statistics (`--stats`), for which each layer is measured and hashed; it can take "
              "longer than writing a CLI file.",
-             "**lattice 26** has 26 cells in each direction; **head 7.5 million** is the test part `head`, subdivided to 7.5 "
-             "million triangles.")
+             "**lattice 26** is a lattice with 26 cells in each direction. **head 7.5 million** is the test part `head`, "
+             "subdivided to 7.5 million triangles.")
     page.say(f"Machine: {results['machine']}.")
     page.heading("Large parts")
     page.show(Chart("cores", "Seconds with 1 to all threads; lines: the lower bound", scatter(
