@@ -351,7 +351,6 @@ test('messages use the words of the page, and a pattern needs no order of clicks
     one.dispatchEvent(new Event('change', { bubbles: true }));
   });
   await page.locator('#error:not(:empty)').waitFor();
-  assert.match(await page.locator('#error').textContent(), /“Layer height”/);
   assert.doesNotMatch(await page.locator('#error').textContent(), /--/);
   assert.deepEqual(complaints, []);
   await close();

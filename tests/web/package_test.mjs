@@ -380,6 +380,12 @@ test('a mesh and a stack give up their memory', async () => {
   assert.deepEqual(stack.layers, []);
 });
 
+test('files of a run may lie in folders, also in empty ones', async () => {
+  const { bytes } = await makeBody('box');
+  const { files } = await run(['slice', 'in/part.stl', '-o', 'out/part.npz'], { 'in/part.stl': bytes, 'out/': '' });
+  assert.deepEqual(Object.keys(files), ['out/part.npz']);
+});
+
 test('a thousand slices leave no memory behind, with threads or without', async () => {
   const box = await makeBody('sphere', { size: 20, detail: 3 });
   const some = async (count) => {

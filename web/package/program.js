@@ -106,7 +106,7 @@ export class Program {
   }
 
   /**
-   * Runs the program on files of a folder of its own.
+   * Runs the program on files of a folder of its own. An input whose name ends with a slash is an empty folder.
    * @param {{words: string[], inputs: NamedBytes[], processors: number}} request its command line, and how many processors
    *     it may use; 0: only this thread
    * @param {(line: string) => void} onLine of standard error
@@ -124,8 +124,8 @@ export class Program {
     FS.chdir('/job');
     for (const { name, bytes } of inputs) {
       const folder = name.slice(0, name.lastIndexOf('/') + 1);
-      if (folder) FS.mkdirTree(folder);
-      FS.writeFile(name, bytes, { canOwn: true });
+      if (folder) FS.mkdirTree(`/job/${folder}`);
+      if (name !== folder) FS.writeFile(name, bytes, { canOwn: true });
     }
     let spoiled = true;
     try {

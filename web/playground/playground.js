@@ -398,7 +398,8 @@ async function downloaded({ name, output, command }, calls) {
   };
   const isStreamed = streamedFormats.includes($('format').value);
   const taken = isStreamed ? command.map((word) => (word === output ? '-' : word)) : command;
-  const { files, warnings } = await runOn(input, taken, isStreamed ? { ...calls, onOutput } : calls);
+  const places = { files: { ...input.files, 'out/': '' } };
+  const { files, warnings } = await runOn(places, taken, isStreamed ? { ...calls, onOutput } : calls);
   showWarnings(warnings, name);
   flush();
   return new Blob(isStreamed ? blobs : [files[output]]);
