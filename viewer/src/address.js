@@ -1,14 +1,15 @@
 import { nearest } from './extremes.js';
 import { layerNumber } from './text.js';
 
-/** "#layer=265" at the end of the page's address: it survives a reload, and is a link to a layer. */
+/** "#layer=265" at the end of the page's address: it survives a reload, and is a link to a layer. So is "#z=26.55", in mm. */
 
 const millisecondsOfStay = 300; // browsers take no more than some changes of the address in a second
 
 /** The layer that the address names, or the one with the nearest number; undefined where it names none. */
 export function layerInAddress(table, address = location.hash) {
-  const named = /^#layer=(\d+)$/.exec(address);
-  return named && table.index.length > 0 ? nearest(table.index, Number(named[1])) : undefined;
+  const named = /^#(layer|z)=(-?\d+(?:\.\d+)?)$/.exec(address);
+  if (!named || table.index.length === 0) return undefined;
+  return nearest(named[1] === 'z' ? table.z : table.index, Number(named[2]));
 }
 
 /** Has the address follow the layer once that stays, and the layer the address. @param {(layer: number) => void} go */

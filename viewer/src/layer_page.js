@@ -79,6 +79,8 @@ function keyTable(page, store, player, orderPlayer, layerView, stackView, help) 
     { keys: ['Shift+ArrowRight'], act: () => move(1, 0) },
     { keys: ['Shift+ArrowUp'], act: () => move(0, 1) },
     { keys: ['Shift+ArrowDown'], act: () => move(0, -1) },
+    { keys: ['m'], label: 'M', help: 'measure a distance between two clicks; end it', act: () => store.set({ measuring: !store.state.measuring }) },
+    { keys: ['Escape'], label: 'Esc', help: 'forget what was clicked and measured', act: () => layerView.forget() },
     { keys: ['d'], label: 'D', help: 'directions', act: () => store.set({ directions: !store.state.directions }) },
     ...(hasMaterial(page.head) ? [{ keys: ['f'], label: 'F', help: 'fill', act: () => store.set({ fill: !store.state.fill }) }] : []),
     ...(hasVectors(page.head) ? ofVectors : []),
@@ -92,6 +94,7 @@ function keyTable(page, store, player, orderPlayer, layerView, stackView, help) 
 export const signsOfLayers = [
   'Red lines are open contours; red lines with red stripes are rings inside out. A cross in a circle marks a crossing of contours, ' +
     'a square on its corner a defect of the mesh.',
+  'A click on a contour or a scan vector shows its figures.',
 ];
 
 /**

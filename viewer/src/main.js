@@ -25,6 +25,8 @@ import { nextTurn } from './turn.js';
  * @property {number} order number of vectors of the layer that are shown, as they are executed; Infinity for all
  * @property {boolean} executing whether the order plays
  * @property {boolean} jumps whether the ways between vectors are shown
+ * @property {string} colouring of vectors: 'kind', or a key of colourings
+ * @property {boolean} measuring whether clicks on the layer are the ends of a distance
  * @property {number|null} shell of a mesh: the one that is shown in colours; null for all
  */
 async function build() {
@@ -46,6 +48,8 @@ async function build() {
     order: Infinity,
     executing: false,
     jumps: true,
+    colouring: 'kind',
+    measuring: false,
     shell: null,
     ...lookOf(before.look),
   });

@@ -1,5 +1,6 @@
 import { colourOfVectors } from '../data/exposures.js';
 import { jumpsTo, partOf } from '../data/vectors.js';
+import { rangeOf, runsOf } from './colouring.js';
 
 /** Draws scan vectors as they are executed: contours strong, hatches thin, the ways between them faint. */
 
@@ -55,10 +56,12 @@ function traceJumps(path, vectors, from, to, camera) {
  * @param {CanvasRenderingContext2D} ctx in CSS pixels
  * @param {import('./camera.js').Camera} camera
  * @param {import('../data/vectors.js').Vectors} vectors
- * @param {{parts: object[], hidden: Set<number>, jumps: boolean, colours: object}} options
+ * @param {{parts: object[], hidden: Set<number>, jumps: boolean, colours: object, colouring: string}} options `colouring` is a key of
+ *     colourings, or 'kind'
  */
-export function drawVectors(ctx, camera, vectors, from, to, { parts, hidden, jumps, colours }) {
+export function drawVectors(ctx, camera, vectors, from, to, { parts, hidden, jumps, colours, colouring = 'kind' }) {
   ctx.lineJoin = 'round';
+  const range = colouring === 'kind' ? null : rangeOf(colouring, vectors, parts);
   for (let at = from, part = partOf(vectors, from); at < to; part += at === vectors.ends[part] ? 1 : 0) {
     const end = Math.min(to, vectors.ends[part], at + linesOfPath);
     if (jumps) {
@@ -69,11 +72,16 @@ export function drawVectors(ctx, camera, vectors, from, to, { parts, hidden, jum
       ctx.stroke();
     }
     if (!hidden.has(part) && at < end) {
-      ctx.beginPath();
-      traceVectors(ctx, vectors, at, end, camera);
-      ctx.strokeStyle = colourOfVectors(parts[part], colours);
-      ctx.lineWidth = widths[parts[part].exposure.kind];
-      ctx.stroke();
+      const runs = range === null ? [{ end, colour: colourOfVectors(parts[part], colours) }] : runsOf(colouring, range, vectors, at, end, parts, part);
+      let begin = at;
+      for (const { end: stop, colour } of runs) {
+        ctx.beginPath();
+        traceVectors(ctx, vectors, begin, stop, camera);
+        ctx.strokeStyle = colour;
+        ctx.lineWidth = widths[parts[part].exposure.kind];
+        ctx.stroke();
+        begin = stop;
+      }
     }
     at = end;
   }

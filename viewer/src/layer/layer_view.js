@@ -3,12 +3,15 @@ import { vectorsOf } from '../data/vectors.js';
 import { element } from '../element.js';
 import { hasHatches, layerText } from '../findings.js';
 import { iconButton } from '../icon.js';
+import { saveFile, csvOf, stemOf, svgOf } from '../save.js';
 import { coordinate, layerNumber, layerNumbers, mm } from '../text.js';
 import { scrollOrPinch } from '../touch.js';
 import { Camera } from './camera.js';
-import { drawFaults, drawLayer } from './draw_layer.js';
+import { colourings, rangeOf, scaleColour, usefulColourings } from './colouring.js';
+import { drawFaults, drawLayer, trace } from './draw_layer.js';
 import { drawBeam, drawOutline, drawVectorDirections, drawVectors } from './draw_vectors.js';
 import { OrderBar } from './order_bar.js';
+import { cornerNear, distanceText, pickAt, pickText } from './pick.js';
 import { roundStep } from './round_step.js';
 
 /** Where lines of the notes' places pass through the plane at z, x and y in turn. */
@@ -27,6 +30,9 @@ export function marksAt(places, z, tolerance, origin) {
   }
   return marks;
 }
+
+const nearClick = 8; // pixels: what is no farther from a click is meant by it
+const stillClick = 4; // pixels that a pointer may move between down and up in a click
 
 /** Called in a frame; acts when the browser has painted that. */
 const afterPaint = (act) => setTimeout(act);
@@ -52,6 +58,8 @@ export class LayerView {
   #vectors = null; // of it, where there are any
   #executed = { canvas: document.createElement('canvas'), count: Infinity }; // a picture of the first of them
   #shown = -1;
+  #picked; // what was clicked
+  #ends = []; // of the distance that is measured, mm
   #asked = false;
   #tellDrawn;
   /** Resolved when the first layer is on the screen. */
@@ -72,6 +80,8 @@ export class LayerView {
     this.order = hasVectors(page.head) ? new OrderBar(page, store, orderPlayer) : null;
     this.tools = this.#tools();
     this.readout = element('output', { className: 'readout', 'aria-hidden': true });
+    this.told = element('output', { className: 'told', 'aria-live': 'polite', hidden: true });
+    this.legend = element('div', { className: 'legend', hidden: true });
     this.scaleText = element('span');
     this.scale = element('div', { className: 'scale', 'aria-hidden': true }, this.scaleText, element('i'));
     this.node = element(
@@ -80,6 +90,8 @@ export class LayerView {
       this.canvas,
       this.tools,
       this.scale,
+      this.legend,
+      this.told,
       this.readout,
       ...(this.order ? [this.order.node] : []),
       element('p', { id: 'keys-of-layer', className: 'unseen' }, 'Plus and minus zoom, shift and arrows move, 0 shows all.'),
@@ -90,6 +102,11 @@ export class LayerView {
     store.on(['layer'], (state) => this.#show(state.layer));
     store.on(['theme', 'fill', 'lines', 'directions', 'hatches', 'jumps', 'hidden'], () => this.redraw());
     store.on(['order'], () => this.#drawSoon());
+    store.on(['colouring'], () => this.redraw());
+    store.on(['measuring'], ({ measuring }) => {
+      this.canvas.classList.toggle('measuring', measuring);
+      this.forget();
+    });
   }
 
   get camera() {
@@ -113,7 +130,7 @@ export class LayerView {
     if (hasMaterial(head) && hasHatches(table)) toggles.push(toggle('hatches', 'Hatches'));
     toggles.push(...kindsOf(head).map((kind) => this.#kindToggle(kind)));
     if (hasVectors(head)) toggles.push(toggle('jumps', sample('jump', 1), 'jumps'));
-    toggles.push(toggle('directions', 'Direction'));
+    toggles.push(toggle('directions', 'Direction'), ...this.#colouringChoice(), toggle('measuring', 'Measure'), this.#saveMenu());
     return element(
       'div',
       { className: 'tools', role: 'toolbar', 'aria-label': 'How the layer is drawn' },
@@ -126,6 +143,48 @@ export class LayerView {
         iconButton('Show all (0)', 'all', () => this.fit()),
       ),
     );
+  }
+
+  /** The choice of the colours of vectors, if there is any. */
+  #colouringChoice() {
+    const keys = usefulColourings(this.#page.head);
+    if (keys.length === 0) return [];
+    const choice = element('select', { className: 'toggle', 'aria-label': 'Colour of the vectors' });
+    choice.append(element('option', { value: 'kind' }, 'Colour: kind'), ...keys.map((key) => element('option', { value: key }, `Colour: ${colourings[key].name.toLowerCase()}`)));
+    choice.addEventListener('change', () => this.#store.set({ colouring: choice.value }));
+    this.#store.on(['colouring'], ({ colouring }) => (choice.value = colouring));
+    return [choice];
+  }
+
+  #saveMenu() {
+    const { head, table } = this.#page;
+    const stem = stemOf(head.title);
+    const name = () => `${stem}_layer_${layerNumber(table, this.#shown)}`;
+    const menu = element('details', { className: 'menu' }, element('summary', { className: 'toggle' }, 'Save'));
+    const entry = (text, act) => {
+      const save = () => {
+        menu.open = false;
+        act();
+      };
+      return element('button', { type: 'button', onclick: save }, text);
+    };
+    menu.append(
+      element(
+        'div',
+        {},
+        entry('Layer as shown (PNG)', () => this.canvas.toBlob((blob) => saveFile(`${name()}.png`, blob))),
+        entry('Layer as drawing (SVG)', () => saveFile(`${name()}.svg`, this.svg(), 'image/svg+xml')),
+        entry('Table of all layers (CSV)', () => saveFile(`${stem}_layers.csv`, csvOf(table), 'text/csv')),
+      ),
+    );
+    return menu;
+  }
+
+  /** The layer that is shown, as SVG. */
+  svg() {
+    const { hidden, theme } = this.#store.state;
+    const { head, table } = this.#page;
+    return svgOf(this.#layer, this.#vectors, { head, origin: this.origin, z: table.z[this.#shown], hidden, colours: theme });
   }
 
   /** Of the legend: shows what is drawn in that colour and stroke. */
@@ -142,6 +201,8 @@ export class LayerView {
     if (this.#store.state.layer !== number) return; // another one was asked for meanwhile
     this.#layer = layer;
     this.#shown = number;
+    this.#picked = undefined;
+    this.#tellPicked();
     const { head, table } = this.#page;
     if (this.order) {
       this.#vectors = vectorsOf(layer, head.parts);
@@ -180,9 +241,15 @@ export class LayerView {
       };
     });
     const fingers = new Map();
+    let down = null; // where a pointer came down that may be a click
     canvas.addEventListener('pointerdown', (event) => {
       canvas.setPointerCapture(event.pointerId);
       fingers.set(event.pointerId, [event.offsetX, event.offsetY]);
+      down = fingers.size === 1 ? [event.offsetX, event.offsetY] : null;
+    });
+    canvas.addEventListener('pointerup', (event) => {
+      if (down !== null && Math.hypot(event.offsetX - down[0], event.offsetY - down[1]) <= stillClick) this.#click(event.offsetX, event.offsetY);
+      down = null;
     });
     canvas.addEventListener('pointermove', (event) => {
       this.#tell(event.offsetX, event.offsetY);
@@ -204,6 +271,7 @@ export class LayerView {
     for (const kind of ['pointerup', 'pointercancel']) canvas.addEventListener(kind, (event) => fingers.delete(event.pointerId));
     canvas.addEventListener('pointerleave', () => (this.readout.value = ''));
     canvas.addEventListener('dblclick', (event) => {
+      if (this.#store.state.measuring) return;
       this.#camera.zoomBy(2.5, event.offsetX, event.offsetY);
       this.redraw();
     });
@@ -213,6 +281,40 @@ export class LayerView {
     const [x, y] = this.#camera.toPlane(pixelX, pixelY);
     const [atX, atY] = [x + this.origin[0], y + this.origin[1]].map((value) => coordinate(value, 1 / this.#camera.scale));
     this.readout.value = `x ${atX}   y ${atY} mm`;
+  }
+
+  /** A click tells what is there, or is an end of the distance that is measured. */
+  #click(pixelX, pixelY) {
+    if (this.#layer === null) return;
+    const { state } = this.#store;
+    const [x, y] = this.#camera.toPlane(pixelX, pixelY);
+    const reach = nearClick / this.#camera.scale;
+    const options = { ...state, parts: this.#page.head.parts };
+    if (state.measuring) {
+      if (this.#ends.length === 2) this.#ends = [];
+      this.#ends.push(cornerNear(this.#layer, x, y, reach, options));
+    } else {
+      this.#picked = pickAt(this.#layer, this.#vectors, x, y, reach, options);
+    }
+    this.#tellPicked();
+    this.#drawSoon();
+  }
+
+  /** Forgets what was clicked and measured. */
+  forget() {
+    this.#picked = undefined;
+    this.#ends = [];
+    this.#tellPicked();
+    this.#drawSoon();
+  }
+
+  #tellPicked() {
+    const { measuring } = this.#store.state;
+    let text = '';
+    if (measuring) text = ['Click where the distance begins', 'Click where it ends'][this.#ends.length] ?? distanceText(...this.#ends);
+    else if (this.#picked) text = pickText(this.#picked, this.#layer, this.#vectors, this.#page.head.parts);
+    this.told.value = text;
+    this.told.hidden = text === '';
   }
 
   zoomBy(factor) {
@@ -292,6 +394,8 @@ export class LayerView {
     if (this.#vectors === null) drawLayer(ctx, this.#camera, this.#layer, options);
     else this.#drawExecuted(ctx, density, options);
     drawFaults(ctx, this.#camera, this.#layer, options);
+    this.#drawPicked(ctx, state.theme);
+    this.#drawLegend(state.colouring);
     this.#drawScale();
     if (canvas.dataset.layer === undefined) {
       performance.mark('first picture');
@@ -318,6 +422,42 @@ export class LayerView {
     ctx.drawImage(executed.canvas, 0, 0, camera.width, camera.height);
     if (options.directions) drawVectorDirections(ctx, camera, vectors, order, options);
     if (order < vectors.count) drawBeam(ctx, camera, vectors, order, options.colours);
+  }
+
+  /** The contour or vector that was clicked, and the distance that is measured. */
+  #drawPicked(ctx, colours) {
+    const [camera, picked] = [this.#camera, this.#picked];
+    ctx.strokeStyle = colours.accent;
+    ctx.fillStyle = colours.accent;
+    ctx.lineWidth = 3;
+    ctx.lineJoin = 'round';
+    ctx.beginPath();
+    if (picked?.kind === 'contour') trace(ctx, this.#layer.parts[picked.part], picked.number, camera);
+    if (picked?.kind === 'vector') {
+      const [ax, ay, bx, by] = this.#vectors.lines.subarray(4 * picked.number, 4 * picked.number + 4);
+      ctx.moveTo(camera.toPixelX(ax), camera.toPixelY(ay));
+      ctx.lineTo(camera.toPixelX(bx), camera.toPixelY(by));
+    }
+    ctx.stroke();
+    ctx.lineWidth = 2;
+    ctx.beginPath();
+    this.#ends.forEach(([x, y], i) => (i === 0 ? ctx.moveTo(camera.toPixelX(x), camera.toPixelY(y)) : ctx.lineTo(camera.toPixelX(x), camera.toPixelY(y))));
+    ctx.stroke();
+    for (const [x, y] of this.#ends) {
+      ctx.beginPath();
+      ctx.arc(camera.toPixelX(x), camera.toPixelY(y), 4, 0, 7);
+      ctx.fill();
+    }
+  }
+
+  /** The scale of the colours, with the values at its ends. */
+  #drawLegend(colouring) {
+    this.legend.hidden = colouring === 'kind' || this.#vectors === null;
+    if (this.legend.hidden) return;
+    const { name, text } = colourings[colouring];
+    const range = rangeOf(colouring, this.#vectors, this.#page.head.parts);
+    const bar = element('i', { 'aria-hidden': true, style: `background: linear-gradient(90deg, ${[0, 0.25, 0.5, 0.75, 1].map(scaleColour).join(', ')})` });
+    this.legend.replaceChildren(`${name} ${text(range[0])} `, bar, ` ${text(range[1])}`);
   }
 
   #drawScale() {

@@ -30,6 +30,9 @@ const rowsFor = ({ head, table }) =>
     ({ column, extra }) => !extra || table[column]?.some((value) => value > 0),
   );
 
+/** A height for a field: digits and a point, without the last digits that sums leave. */
+const plain = (z) => mm(z).replaceAll(',', '');
+
 /** The slider over all layers, and under it what they measure, on the same axis. */
 export class Timeline {
   #page;
@@ -60,7 +63,11 @@ export class Timeline {
       if (this.number.value !== '') player.go(nearest(page.table.index, Number(this.number.value)));
       this.number.value = page.table.index[store.state.layer];
     });
-    this.height = element('span', { className: 'height' });
+    this.height = element('input', { type: 'number', className: 'number', step: 'any', 'aria-label': 'Height of the cut, mm' });
+    this.height.addEventListener('change', () => {
+      if (this.height.value !== '') player.go(nearest(page.table.z, Number(this.height.value)));
+      this.height.value = plain(page.table.z[store.state.layer]);
+    });
     this.cursor = element('i', { className: 'cursor', 'aria-hidden': true });
     this.plots = rowsFor(page).map((row) => this.#plot(row));
     this.node = element(
@@ -76,7 +83,7 @@ export class Timeline {
         iconButton('Last layer (End)', 'last', () => player.go(page.head.layers - 1)),
         element('label', { className: 'chosen' }, 'Layer ', this.number),
         element('span', { className: 'of' }, layerNumbers(page.table)),
-        this.height,
+        element('label', { className: 'height' }, 'z ', this.height, ' mm'),
       ),
       element('div', { className: 'track' }, this.slider),
       element('div', { className: 'plots' }, ...this.plots.map((plot) => plot.node), this.cursor),
@@ -137,7 +144,7 @@ export class Timeline {
     const faults = faultText(table, layer);
     this.slider.setAttribute('aria-valuetext', `Layer ${layerNumber(table, layer)} ${layerNumbers(table)}, z = ${mm(table.z[layer])} mm${faults && `, ${faults}`}`);
     if (document.activeElement !== this.number) this.number.value = table.index[layer];
-    this.height.textContent = `z = ${mm(table.z[layer])} mm`;
+    if (document.activeElement !== this.height) this.height.value = plain(table.z[layer]);
     for (const plot of this.plots) plot.value.textContent = `${plot.tell(plot.values[layer])} ${plot.unit}`;
     this.#place();
   }
