@@ -98,6 +98,11 @@ constexpr std::array kinds{
                        .name = "nothing_left",
                        .many = "no contour is left in any of {layers}: `offset_mm`, `min_area_mm2` or `fill` "
                                "removed those of {affected}"},
+    FindingDescription{.kind = FindingKind::no_contours,
+                       .name = "no_contours",
+                       .many =
+                           "no contour is in any of {layers}: no plane cuts the mesh, or negative volumes "
+                           "remove all of it"},
     FindingDescription{.kind = FindingKind::unreached_material,
                        .name = "unreached_material",
                        .many =

@@ -283,6 +283,19 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
     return done;
 }
 
+/// Adds a finding if the job has no contour at all.
+void add_missing_contours(FileResult& result) {
+    const std::uint64_t layers = result.report.layers;
+    if (result.changes)
+        add_nothing_left(result.findings, *result.changes, layers, result.report.contours);
+    if (result.report.contours == 0 && result.findings.of(FindingKind::nothing_left).count == 0)
+        result.findings.add({.kind = FindingKind::no_contours,
+                             .file = Finding::all_files,
+                             .count = 1,
+                             .layers = layers,
+                             .of_layers = layers});
+}
+
 /// Throws Error{defect} for the first sign of a defect, if the job is strict.
 void refuse_defects(const FileJob& job, const FileResult& result) {
     if (!job.strict)
@@ -381,9 +394,8 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
                         .amount = near.area_mm2,
                         .largest = near.farthest_mm});
     totals.store_in(result);
-    // If a shard has no contours, other shards may still have some.
-    if (!job.shard && result.changes)
-        add_nothing_left(result.findings, *result.changes, result.report.layers, result.report.contours);
+    if (!job.shard) // if a shard has no contours, other shards may still have some
+        add_missing_contours(result);
     refuse_defects(job, result);
 
     const Stopwatch writing;

@@ -323,6 +323,14 @@ class Slice(ProgramTest):
         self.assertRegex(result.err, r"^lamella: warning: open\.stl: 10 open chains in 10 of 10 layers")
         self.assertIn("lamella info open.stl", result.err)
 
+    def test_a_job_without_any_contour_is_warned_of(self):
+        self.write("box.stl", binary_stl(box_triangles(20, 30, 10)))
+        self.write("larger.stl", binary_stl(box_triangles(40, 40, 20)))
+        job = ["slice", "box.stl", "larger.stl", "--negative", "--translate=-5,-5,-5", "--layer-height", "1"]
+        nothing = "no contour is in any of 10 layers: no plane cuts the mesh, or negative volumes remove all of it"
+        self.assertIn(f"box.stl and 1 more file: {nothing}", self.succeed(*job, "-o", "x.json").err)
+        self.fail_with(4, nothing, *job, "-o", "y.json", "--strict")
+
     def test_bodies_that_are_inside_out_are_warned_about_wherever_they_stand(self):
         whole = r"10 rings bound no material in 10 of 10 layers, first at z = 0\.5 mm \(6000 mm3 lost\): .*triangles face inwards"
         self.write("inverted.stl", binary_stl([(a, c, b) for a, b, c in box_triangles(20, 30, 10)]))

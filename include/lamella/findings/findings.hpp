@@ -26,6 +26,7 @@ enum class FindingKind : std::uint32_t {
     replaced_hatch_lines, ///< lines of a slice file that new ones replace
     outdated_hatch_lines, ///< lines of a slice file whose contours were changed
     nothing_left,         ///< no contour is left after the steps
+    no_contours,          ///< no layer has a contour, for another reason
     unreached_material,   ///< material that no scan vector reaches
 };
 
