@@ -21,6 +21,7 @@ struct FieldOption {
 };
 
 constexpr std::array field_options{
+    FieldOption{"`accepted_mm2`", "accepted_mm2"},
     FieldOption{"`adaptive`", "--adaptive"},
     FieldOption{"`close_gaps_mm`", "--close-gaps"},
     FieldOption{"`drop_duplicates`", "--drop-duplicates"},

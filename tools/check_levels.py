@@ -38,7 +38,7 @@ MODULES = {
     "raster": ["core", "contour"],  # not container: pixels, not files
     "scan": ["core", "contour", "polygon"],  # not mesh: layers of any source
     "write": ["core", "findings", "system", "container", "mesh", "contour", "polygon", "raster"],  # not slicing, not read: any layers
-    "c": ["core", "findings", "mesh", "contour", "read", "slicing", "write", "pipeline"],  # only what it passes on
+    "c": ["core", "findings", "mesh", "contour", "read", "slicing", "polygon", "write", "pipeline"],  # only what it passes on
     "pipeline": ["core", "findings", "system", "container", "mesh", "contour", "read", "slicing", "polygon", "raster", "scan", "write"],
 }
 

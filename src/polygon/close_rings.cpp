@@ -87,7 +87,7 @@ class JoinedGroups {
         return i;
     }
     void join(std::uint32_t a, std::uint32_t b) {
-        const auto [low, high] = std::minmax(first_of(a), first_of(b));
+        const auto [low, high] = std::minmax({first_of(a), first_of(b)}); // values, not references
         next_[high] = low;
     }
 
