@@ -8,7 +8,8 @@
 
 namespace lamella::app {
 
-/// Returns the whole file, without the byte order mark that some editors add; "-" is standard input. Throws
+/// Returns the whole file, without the byte order mark that some editors add; "-" is standard input. A file
+/// in UTF-16 with such a mark, which redirections of Windows PowerShell write, is returned in UTF-8. Throws
 /// Error{input}, and Error{limit} if it has more than `most` bytes, unless that is 0.
 [[nodiscard]] std::string read_text_file(const std::string& path, std::uint64_t most = 0);
 

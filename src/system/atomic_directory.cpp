@@ -2,6 +2,7 @@
 
 #include "system/atomic_file.hpp"
 #include "system/nameless_file.hpp"
+#include "system/output_target.hpp"
 #include "system/working_folder.hpp"
 
 #include <fmt/format.h>
@@ -27,6 +28,7 @@ AtomicDirectory::AtomicDirectory(std::string path, std::function<bool(const fs::
         target_ = target_.parent_path();
     if (target_.empty())
         throw Error(ErrorKind::output, "cannot write a folder without a name");
+    refuse_device(path_);
     check_replaceable();
     const UnfinishedName::Creation creation;
     working_ = take_free_name(target_, this_machine(), [this](const char* name) {

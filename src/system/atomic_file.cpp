@@ -37,6 +37,18 @@ std::string first_bad_folder(const std::string& path) {
     return folder.string();
 }
 
+/// Returns the network folder of a path, such as \\server\share, if it cannot be reached; else "".
+std::string unreachable_share(const fs::path& path) {
+    if (!path.has_relative_path())
+        return {};
+    const std::string server = path.root_name().string(); // or a drive, or empty
+    const fs::path share = path.root_path() / *path.relative_path().begin();
+    std::error_code ignored;
+    const bool of_network =
+        server.size() > 3 && server[1] == server[0] && server[2] != '?' && server[2] != '.';
+    return of_network && !fs::is_directory(share, ignored) ? share.string() : std::string();
+}
+
 bool working_folder_is_gone() {
     std::error_code error;
     static_cast<void>(fs::current_path(error));
@@ -49,6 +61,15 @@ std::string folder_of(const std::string& path) {
 }
 
 } // namespace
+
+void refuse_device(const std::string& path) {
+    if (const std::string device = device_named(path); !device.empty())
+        throw Error(
+            ErrorKind::output,
+            fmt::format("cannot write '{}': names that begin with {} stand for a device of this system; "
+                        "choose another name",
+                        path, device));
+}
 
 std::string name_of_output(const std::string& path) {
     return path == "-" ? "standard output" : path;
@@ -66,6 +87,9 @@ Error output_error(const std::string& path, int system_error) {
         return text("the disk quota is used up; free some space or choose another place");
     switch (system_error) {
     case ENOENT:
+        if (const std::string folder = unreachable_share(path); !folder.empty())
+            return text(fmt::format(
+                "the network folder '{}' cannot be reached; check its name and the network", folder));
         if (std::error_code ignored; fs::is_regular_file(first_bad_folder(path), ignored)) // as on Windows
             return output_error(path, ENOTDIR);
         if (std::error_code ignored; fs::is_directory(folder_of(path), ignored)) // such as /proc
@@ -137,6 +161,7 @@ AtomicFile::AtomicFile(std::string path, Overwriting overwriting, std::string* m
     }
     if (path_.empty())
         throw Error(ErrorKind::output, "cannot write a file without a name");
+    refuse_device(path_);
     check_links(path_);
     OutputTarget target = find_target(path_);
     if (target.error != 0)

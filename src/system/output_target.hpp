@@ -16,6 +16,13 @@ struct OutputTarget {
 };
 [[nodiscard]] OutputTarget find_target(const std::string& path);
 
+/// Returns the device that the last part of a path names whatever its extension is, such as AUX for aux.cli, on
+/// a system with such names; "" for other paths. The null device by its bare name is a path like any other.
+[[nodiscard]] std::string device_named(const std::string& path);
+
+/// Throws Error{output} if a path names a device so.
+void refuse_device(const std::string& path);
+
 /// Returns whether the path leads through a symbolic link that another user made in a folder that others can
 /// write. Such a link could lead the output of this user to any of their files. Links that the owner of the
 /// folder made are trusted.

@@ -25,6 +25,18 @@ void prepare_standard_streams() noexcept;
 /// Returns the columns of the terminal on standard error, or nullopt if it is no terminal that can draw a
 /// progress bar. A terminal that does not know its size has 80.
 [[nodiscard]] std::optional<unsigned> terminal_columns() noexcept;
+/// Returns the columns of the terminal on standard output, or nullopt if it is no terminal or does not know
+/// its size.
+[[nodiscard]] std::optional<unsigned> output_columns() noexcept;
+
+/// Returns the files that a pattern with * and ? names, sorted by name, on a system whose shells leave this
+/// to the programs. Only the last part of the path may have such characters; hidden files and folders are
+/// left out. Returns nullopt for other texts and on other systems.
+[[nodiscard]] std::optional<std::vector<std::string>> files_matching(const std::string& pattern);
+
+/// If the window with the output closes when the program ends, as after a click on its file, asks for a key
+/// and waits for it.
+void keep_window_open();
 
 /// Reads a file, or standard input if the path is "-", to its end. Returns an errno, or 0; EFBIG as soon as
 /// there are more than `most` bytes.
@@ -44,5 +56,8 @@ void set_heap(int own_pages, int kept) noexcept;
 
 /// Returns the most bytes that a path can have.
 [[nodiscard]] std::size_t longest_path() noexcept;
+
+/// Returns a path as a word for a command line of the usual shell, which can be copied into it.
+[[nodiscard]] std::string quoted_for_shell(const std::string& path);
 
 } // namespace lamella

@@ -352,8 +352,17 @@ const LayerFormat& layer_format(std::string_view name, const std::string& path) 
                 fmt::format("'{}': Lamella writes layers and scan vectors, and no G-code; programs such as "
                             "PrusaSlicer and Cura do",
                             path));
+    if (extension == ".png")
+        throw Error(
+            ErrorKind::usage,
+            fmt::format("'{}': images go into a folder, one for each layer; give the path of a folder "
+                        "and the `format` png",
+                        path));
     throw Error(ErrorKind::usage,
-                fmt::format("the extension of '{}' names no format; choose another, or a `format`: {}", path,
+                fmt::format("{}; choose another, or a `format`: {}",
+                            extension.empty()
+                                ? fmt::format("'{}' has no extension that determines the format", path)
+                                : fmt::format("the extension of '{}' is that of no format", path),
                             names()));
 }
 

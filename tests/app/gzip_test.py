@@ -53,7 +53,7 @@ class GzipTest(ProgramTest):
                 "leave out .gz",
                 error,
             )
-        self.fail_with(2, "names no format", "slice", "missing.stl", "-o", "part.gz")
+        self.fail_with(2, "has no extension that determines the format|is that of no format", "slice", "missing.stl", "-o", "part.gz")
 
 
 if __name__ == "__main__":

@@ -272,7 +272,7 @@ def test_the_name_of_a_file_object_selects_its_format(tmp_path):
     with gzip.open(tmp_path / "out.json.gz", "wb") as file:
         lamella.write(file, stack)
     assert gzip.decompress((tmp_path / "out.json.gz").read_bytes()) == json_of(stack), "compressed once"
-    with pytest.raises(lamella.UsageError, match="'<BytesIO>' names no format.* `format`"):
+    with pytest.raises(lamella.UsageError, match="'<BytesIO>'.* format.* `format`"):
         lamella.write(io.BytesIO(), stack)
 
 

@@ -94,6 +94,10 @@ OutputTarget find_target(const std::string& path) {
     return target;
 }
 
+std::string device_named(const std::string& /*path*/) {
+    return {};
+}
+
 Replaces replaced_at(const std::string& target) {
     struct stat status {};
     if (::stat(target.c_str(), &status) != 0) // the temporary name may be shorter

@@ -9,9 +9,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <climits>
+#include <string_view>
 
 namespace lamella {
 
@@ -37,6 +39,19 @@ std::optional<unsigned> terminal_columns() noexcept {
     winsize size{};
     return ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : usual;
 }
+
+std::optional<unsigned> output_columns() noexcept {
+    winsize size{};
+    if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+        return std::nullopt;
+    return size.ws_col;
+}
+
+std::optional<std::vector<std::string>> files_matching(const std::string& /*pattern*/) {
+    return std::nullopt; // shells replace patterns
+}
+
+void keep_window_open() {}
 
 int read_text(const std::string& path, std::string& text, std::uint64_t most) {
     // Standard input is read by its descriptor, because some files, such as a socket, cannot be opened by
@@ -95,6 +110,19 @@ void set_heap(int own_pages, int kept) noexcept {
 
 std::size_t longest_path() noexcept {
     return PATH_MAX;
+}
+
+std::string quoted_for_shell(const std::string& path) {
+    const auto is_plain = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c < 0 ||
+               std::string_view("_-+=.,:/@%").find(c) != std::string_view::npos;
+    };
+    if (!path.empty() && std::all_of(path.begin(), path.end(), is_plain))
+        return path;
+    std::string quoted = "'";
+    for (const char c : path)
+        quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    return quoted + "'";
 }
 
 } // namespace lamella

@@ -4,7 +4,10 @@
 
 #include <aclapi.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstddef>
 #include <string_view>
 #include <utility>
 
@@ -57,6 +60,27 @@ OutputTarget find_target(const std::string& path) {
     std::string target = end_of_links(name);
     const bool in_place = target.empty();
     return {.path = std::move(target), .in_place = in_place};
+}
+
+std::string device_named(const std::string& path) {
+    constexpr std::array<std::string_view, 6> devices{"AUX", "CON", "CONIN$", "CONOUT$", "NUL", "PRN"};
+    constexpr std::array<std::string_view, 3> superscripts{"\u00b9", "\u00b2", "\u00b3"}; // count as digits
+    if (path.starts_with(R"(\\.\)") || path.starts_with(R"(\\?\)"))
+        return {}; // names of the system itself
+    const std::string file = path.substr(path.find_last_of("/\\:") + 1);
+    std::string name = file.substr(0, file.find('.'));
+    name.resize(name.find_last_not_of(' ') + 1);
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](char c) { return c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c; });
+    if (name == "NUL" && path.size() == name.size())
+        return {};
+    if (std::find(devices.begin(), devices.end(), name) != devices.end())
+        return name;
+    constexpr std::size_t letters = 3;
+    const std::string_view number = std::string_view(name).substr(std::min(letters, name.size()));
+    const bool is_digit = (number.size() == 1 && number[0] >= '0' && number[0] <= '9') ||
+                          std::find(superscripts.begin(), superscripts.end(), number) != superscripts.end();
+    return is_digit && (name.starts_with("COM") || name.starts_with("LPT")) ? name : std::string();
 }
 
 Replaces replaced_at(const std::string& target) {

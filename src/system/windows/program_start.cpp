@@ -14,6 +14,7 @@
 #include <cstdlib>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -68,6 +69,36 @@ std::vector<std::wstring> words_of_command_line(std::wstring_view line) {
     }
 }
 
+/// Returns whether a name of a file agrees with a pattern in which * stands for any characters and ? for one.
+/// Both are in lower case.
+bool agrees(std::wstring_view name, std::wstring_view pattern) {
+    std::size_t after_star =
+        pattern.npos; // of the last star, and the part of the name that it stands for so far
+    std::size_t taken = 0;
+    std::size_t i = 0;
+    std::size_t k = 0;
+    while (i < name.size()) {
+        if (k < pattern.size() && pattern[k] == L'*') {
+            after_star = ++k;
+            taken = i;
+        } else if (k < pattern.size() && (pattern[k] == L'?' || pattern[k] == name[i])) {
+            ++i;
+            ++k;
+        } else if (after_star != pattern.npos) {
+            i = ++taken;
+            k = after_star;
+        } else {
+            return false;
+        }
+    }
+    return pattern.find_first_not_of(L'*', k) == pattern.npos;
+}
+
+std::wstring in_lower_case(std::wstring text) {
+    CharLowerBuffW(text.data(), static_cast<DWORD>(text.size()));
+    return text;
+}
+
 } // namespace
 
 std::vector<std::string> program_arguments(int /*argc*/, char** /*argv*/) {
@@ -117,6 +148,60 @@ std::optional<unsigned> terminal_columns() noexcept {
     return known ? static_cast<unsigned>(info.srWindow.Right - info.srWindow.Left + 1) : usual;
 }
 
+std::optional<unsigned> output_columns() noexcept {
+    CONSOLE_SCREEN_BUFFER_INFO info{};
+    if (GetConsoleScreenBufferInfo(GetStdHandle(STD_OUTPUT_HANDLE), &info) == 0 ||
+        info.srWindow.Right < info.srWindow.Left)
+        return std::nullopt;
+    return static_cast<unsigned>(info.srWindow.Right - info.srWindow.Left + 1);
+}
+
+std::optional<std::vector<std::string>> files_matching(const std::string& pattern) {
+    const std::size_t name_at = pattern.find_last_of("/\\:") + 1; // 0 if there is none
+    const std::string folder = pattern.substr(0, name_at);
+    const std::wstring name = in_lower_case(wide(pattern.substr(name_at)));
+    if (name.find_first_of(L"*?") == name.npos)
+        return std::nullopt;
+    // The pattern of this call would also be compared with short names, such as PART~1.STL for part.stlx.
+    WIN32_FIND_DATAW entry{};
+    const HANDLE search = FindFirstFileExW(wide_path(folder + "*").c_str(), FindExInfoBasic, &entry,
+                                           FindExSearchNameMatch, nullptr, FIND_FIRST_EX_LARGE_FETCH);
+    std::vector<std::pair<std::wstring, std::wstring>> found; // in lower case, and as they are
+    if (search != INVALID_HANDLE_VALUE) {
+        do {
+            const std::wstring one = entry.cFileName;
+            const std::wstring lower = in_lower_case(one);
+            const bool hidden = (one.starts_with(L'.') && !name.starts_with(L'.')) ||
+                                (entry.dwFileAttributes & FILE_ATTRIBUTE_HIDDEN) != 0;
+            if ((entry.dwFileAttributes & FILE_ATTRIBUTE_DIRECTORY) == 0 && !hidden && agrees(lower, name))
+                found.emplace_back(lower, one);
+        } while (FindNextFileW(search, &entry) != 0);
+        FindClose(search);
+    }
+    std::sort(found.begin(), found.end());
+    std::vector<std::string> files;
+    for (const auto& [lower, one] : found)
+        files.push_back(folder + narrow(one));
+    return files;
+}
+
+void keep_window_open() {
+    const HANDLE input = GetStdHandle(STD_INPUT_HANDLE);
+    DWORD others = 0;
+    DWORD mode = 0;
+    // A console that only this program uses was made for it.
+    if (GetConsoleProcessList(&others, 1) != 1 || GetConsoleMode(input, &mode) == 0 || !output_columns())
+        return;
+    std::fputs("\nPress a key to close this window.\n", stderr);
+    std::fflush(stderr);
+    FlushConsoleInputBuffer(input);
+    INPUT_RECORD event{};
+    DWORD got = 0;
+    while (ReadConsoleInputW(input, &event, 1, &got) != 0 && got == 1)
+        if (event.EventType == KEY_EVENT && event.Event.KeyEvent.bKeyDown != 0)
+            return;
+}
+
 int read_text(const std::string& path, std::string& text, std::uint64_t most) {
     const NativeFile file = open_input(path);
     if (!file.is_open())
@@ -159,6 +244,10 @@ void set_heap(int /*own_pages*/, int /*kept*/) noexcept {}
 
 std::size_t longest_path() noexcept {
     return std::size_t{1} << 15;
+}
+
+std::string quoted_for_shell(const std::string& path) {
+    return "\"" + path + "\""; // no name has quotes
 }
 
 } // namespace lamella
