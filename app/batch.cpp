@@ -352,16 +352,17 @@ OptionGroup batch_options(BatchArguments& target) {
     Option batch =
         input_file("batch",
                    "slice many files, each by itself: all meshes in a folder, or those listed in a file, one "
-                   "a line; prints a JSON object for each",
+                   "path per line; prints a JSON object for each",
                    target.source);
     batch.placeholder = "FOLDER|LIST";
     batch.configurable = false;
-    Option jobs = count("jobs", "N",
-                        "processors that the files of a batch share; 0 takes all: as many small files at "
-                        "once, large ones on several",
-                        target.jobs);
+    Option jobs =
+        count("jobs", "N",
+              "number of processors for the batch; 0, the default, uses all: small files are sliced "
+              "side by side, large ones on several threads",
+              target.jobs);
     jobs.goes_with = "batch";
-    return {"Many files", {std::move(batch), std::move(jobs)}};
+    return {"batch", "Batch", {std::move(batch), std::move(jobs)}};
 }
 
 std::vector<BatchItem> batch_items(const BatchArguments& arguments, const std::string& output,

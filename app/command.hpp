@@ -64,9 +64,12 @@ struct Setting {
     std::string text;
 };
 
+/// A section of the help.
 struct OptionGroup {
+    std::string name; ///< one word, for `lamella help COMMAND NAME`
     std::string title;
     std::vector<Option> options;
+    std::string note = {}; ///< sentences about all options of the section; may be empty
 };
 
 /// Value of an operand.

@@ -186,16 +186,15 @@ std::string cut_apart_text(const LayerFile& first, const LayerFile& second) {
 int run_compare(const CompareArguments& arguments, const Context& context) {
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
-    const LayerFile first =
-        read_layers(arguments.inputs[0], arguments.limits.of_passing_layers(), execution);
+    const LayerFile first = read_layers(arguments.inputs[0], arguments.limits.of_passing_layers(), execution);
     const LayerFile second =
         read_layers(arguments.inputs[1], arguments.limits.of_passing_layers(memory_of(first)), execution);
     for (const LayerFile* file : {&first, &second})
         context.messages.warn_of(input_name(file->path), file->warnings);
 
     const FileComparison files = compare_files(
-        first, second,
-        {.tolerance_mm = arguments.tolerance, .area_difference = arguments.area_difference}, execution);
+        first, second, {.tolerance_mm = arguments.tolerance, .area_difference = arguments.area_difference},
+        execution);
     const StackComparison& found = files.layers;
     if (found.cut_apart)
         context.messages.warn(cut_apart_text(first, second));
@@ -280,28 +279,29 @@ Command compare_command() {
         .name = "compare",
         .summary = "compare two slice files",
         .description =
-            "Compares the layers of two slice files, of any formats, plane by plane: how far the contours of "
-            "one are from those of the other, areas and their centres, open chains, hatch lines one by one, "
-            "heights, and by which parameters parts are exposed. Tells the first and the largest difference. "
-            "Exit code 4: they do not agree within the tolerance.",
+            "Compares the layers of two slice files of any formats, plane by plane: the distance between "
+            "their contours, areas and their centres, open contours, hatch lines one by one, heights, and "
+            "the parameters of exposures. Prints the first and the largest difference. Exit code 4: they do "
+            "not agree within the tolerance.",
         .operands = {operand("FIRST", "a slice file; - is standard input"),
                      operand("SECOND", "the slice file to compare it with")},
-        .groups = {{"What is compared",
+        .groups = {{"output",
+                    "Comparison and output",
                     {row("tolerance", ValueKind::number, "MM",
-                         "how far contours, ends of hatch lines and cuts may be apart; what the rounding of "
-                         "both formats explains unless given",
+                         "allowed distance between contours, ends of hatch lines and cuts (default: the "
+                         "rounding of both formats)",
                          [arguments](const std::string& text) {
                              arguments->tolerance = parse_not_negative(text);
                          }),
                      flag("area-difference",
-                          "report the area that one file has and the other has not, by plane and in total",
+                          "also print the area that only one of the files has, plane by plane and in total",
                           arguments->area_difference),
                      flag("json", "print JSON", arguments->json)}},
-                   run_options(arguments->run,
-                               {max_memory_option(arguments->limits, "the layers of both files take")}),
+                   run_options(arguments->run, {max_memory_option(arguments->limits,
+                                                                  "the layers of both files together take")}),
                    common_options(true)},
-        .examples = {{"lamella compare part.cli part.svg", "is it the same part?"},
-                     {"lamella compare old.cli new.cli --tolerance 0.01 --json", "for programs"}},
+        .examples = {{"lamella compare part.cli part.svg", "whether both files have the same layers"},
+                     {"lamella compare old.cli new.cli --tolerance 0.01 --json", "the result for programs"}},
         .run = [arguments](const Context& context) {
             return run_compare(*arguments, context);
         }};

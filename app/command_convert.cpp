@@ -35,11 +35,13 @@ struct ConvertArguments {
 };
 
 OptionGroup output_options(ConvertArguments& target) {
-    OptionGroup group{"What is written", layer_output_options(target.writing)};
+    OptionGroup group{"output", "Output", layer_output_options(target.writing)};
+    group.options.push_back(text("label", "TEXT",
+                                 "new name of the part in the slice file, which must have only one part",
+                                 target.label));
     group.options.push_back(
-        text("label", "TEXT", "name of the only part inside the slice file", target.label));
-    group.options.push_back(
-        flag("strict", "make an error of whatever is odd about the file or would be lost, and write nothing",
+        flag("strict",
+             "treat as errors: defects of the file, data that the new format cannot store; write no file",
              target.strict));
     return group;
 }
@@ -88,10 +90,10 @@ Command convert_command() {
     const auto arguments = std::make_shared<ConvertArguments>();
     return {
         .name = "convert",
-        .summary = "turn a slice file into another format",
-        .description =
-            "Reads the layers of a slice file and writes them in another format. Unless more is asked for, "
-            "contours stay as they are, up to the rounding of the new format.",
+        .summary = "convert a slice file to another format",
+        .description = "Writes the layers of a slice file in another format. Without layer steps, contours "
+                       "remain as they "
+                       "are, up to the rounding of the new format.",
         .operands = {{.placeholder = "IN",
                       .help = "the slice file to read; - is standard input",
                       .set =
@@ -99,8 +101,9 @@ Command convert_command() {
                               arguments->input = text;
                           }},
                      {.placeholder = "OUT",
-                      .help = "the slice file to write; its extension gives the format, and .gz after it "
-                              "compresses it; - is standard output",
+                      .help =
+                          "the slice file to write; its extension determines the format, and .gz after it "
+                          "compresses it; - is standard output",
                       .written = true,
                       .set =
                           [arguments](const std::string& text) {
@@ -110,9 +113,9 @@ Command convert_command() {
                    layer_step_options(arguments->making),
                    run_options(arguments->run, {max_memory_option(arguments->limits, "the layers take")}),
                    common_options(true)},
-        .examples = {{"lamella convert part.cli part.svg", "to look at it"},
+        .examples = {{"lamella convert part.cli part.svg", "a file for a browser or a drawing program"},
                      {"lamella convert part.svg part.cli --short --units-mm 0.005",
-                      "for a machine with 5 um steps"}},
+                      "16-bit coordinates in units of 5 micrometres"}},
         .run = [arguments](const Context& context) {
             return run_convert(*arguments, context);
         }};

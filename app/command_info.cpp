@@ -9,6 +9,7 @@
 #include "command_line.hpp"
 #include "commands.hpp"
 #include "diagnosis_report.hpp"
+#include "failure.hpp"
 #include "figures.hpp"
 #include "messages.hpp"
 #include "numbers.hpp"
@@ -24,6 +25,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <optional>
 #include <set>
@@ -37,7 +39,7 @@ namespace lamella::app {
 namespace {
 
 struct InfoArguments {
-    std::string input;
+    std::vector<std::string> inputs;
     bool json = false;
     bool strict = false;
     bool self_intersections = false;
@@ -66,6 +68,11 @@ bool negatives_are_sound(const Plate& plate, const std::string& name, Messages& 
     return sound;
 }
 
+/// Returns the object on several lines, or on one line if there are several objects.
+std::string json_of(const InfoArguments& arguments, const Json& object) {
+    return arguments.inputs.size() == 1 ? json_text(object) : compact_json(object) + "\n";
+}
+
 int describe_mesh(const InfoArguments& arguments, const MeshFile& file, const Context& context,
                   const Execution& execution) {
     context.messages.warn_of(input_name(file.path), file.warnings);
@@ -82,7 +89,7 @@ int describe_mesh(const InfoArguments& arguments, const MeshFile& file, const Co
         write_mesh_page(arguments.report, mesh, found, mesh_notes(file, found), page_options(file.path),
                         execution);
     const std::string text =
-        arguments.json ? json_text(mesh_json(file, found, plate)) : mesh_text(file, found, plate);
+        arguments.json ? json_of(arguments, mesh_json(file, found, plate)) : mesh_text(file, found, plate);
     if (arguments.report == "-")
         context.messages.note(text);
     else
@@ -198,24 +205,48 @@ int describe_layers(const InfoArguments& arguments, const LayerFile& file, const
     const FileFigures measured = measure(file, execution);
     const Figures figures = figures_of(file, measured);
     const std::vector<RegionFigures> regions = region_figures(measured.exposures);
-    context.messages.result(arguments.json ? json_text(layers_json(arguments.input, file, figures, regions))
-                                           : layers_text(file, figures, regions));
+    context.messages.result(arguments.json
+                                ? json_of(arguments, layers_json(file.path, file, figures, regions))
+                                : layers_text(file, figures, regions));
     if (const std::size_t chains = measured.contours.open_chains; arguments.strict && chains > 0)
         throw Error(ErrorKind::defect, fmt::format("{}: has {}", file.path, counted(chains, "open chain")));
     return 0;
 }
 
-int run_info(const InfoArguments& arguments, const Context& context) {
-    check_outputs(context.command);
-    const Execution execution = arguments.run.execution(context);
-    arguments.limits.prepare_memory();
+int describe(const std::string& input, const InfoArguments& arguments, const Context& context,
+             const Execution& execution) {
     MeshReadOptions options = arguments.limits.of_meshes();
     options.strict = arguments.strict;
     options.layers = LayersKept::if_faster;
-    const auto file = read_any(arguments.input, options, execution);
+    const auto file = read_any(input, options, execution);
     if (const auto* mesh = std::get_if<MeshFile>(&file))
         return describe_mesh(arguments, *mesh, context, execution);
     return describe_layers(arguments, std::get<LayerFile>(file), context, execution);
+}
+
+int run_info(const InfoArguments& arguments, const Context& context) {
+    check_outputs(context.command);
+    check_conflict(arguments.inputs.size() > 1, !arguments.report.empty(), "several files and --report",
+                   "a page shows one mesh");
+    const Execution execution = arguments.run.execution(context);
+    arguments.limits.prepare_memory();
+    if (arguments.inputs.size() == 1)
+        return describe(arguments.inputs.front(), arguments, context, execution);
+    int code = 0; // of the first file that fails
+    for (const std::string& input : arguments.inputs) {
+        try {
+            describe(input, arguments, context, execution);
+        } catch (const Error& error) {
+            if (error.kind() == ErrorKind::cancelled || error.kind() == ErrorKind::output)
+                throw;
+            const Failure failure = failure_of(std::current_exception());
+            const std::string name = input_name(input);
+            const bool is_named = failure.text.find(name) != std::string::npos;
+            context.messages.error(is_named ? failure.text : name + ": " + failure.text, failure.exit_code);
+            code = code == 0 ? failure.exit_code : code;
+        }
+    }
+    return code;
 }
 
 } // namespace
@@ -224,37 +255,39 @@ Command info_command() {
     const auto arguments = std::make_shared<InfoArguments>();
     return {
         .name = "info",
-        .summary = "what is in a mesh or slice file: size, volume, defects",
+        .summary = "describe a mesh or slice file: size, volume, defects",
         .description = fmt::format(
-            "Tells what a file holds. Of a mesh (.{}): size, volume, area, shells, and every kind of "
-            "defect with what it means for slicing and where it is. Of a slice file: layers, "
-            "contours, points and volume, of scan vectors lengths and times. Nothing is repaired or written.",
+            "Describes the contents of files. For a mesh (.{}): size, volume, area, shells, and every kind "
+            "of defect with its location and its effect on slicing. For a slice file: layers, contours, "
+            "points and volume; for scan vectors, lengths and times. Nothing is repaired.",
             fmt::join(mesh_extensions(), ", .")),
         .operands = {{.placeholder = "FILE",
-                      .help = "a mesh or a slice file; - is standard input",
+                      .help = "meshes and slice files; - is standard input",
+                      .repeated = true,
                       .set =
                           [arguments](const std::string& text) {
-                              arguments->input = text;
+                              arguments->inputs.push_back(text);
                           }}},
         .groups =
-            {{"Contents",
+            {{"output",
+              "Output",
               {flag("json", "print JSON", arguments->json),
                flag("self-intersections",
-                    "look for triangles that cross, overlap or touch one another, too (takes longer)",
+                    "also look for triangles that cross, overlap or touch one another (takes longer)",
                     arguments->self_intersections),
-               output_file("report", "write a page to look at the mesh, its shells and its defects (HTML)",
+               output_file("report",
+                           "also write an HTML page that shows the mesh, its shells and its defects",
                            arguments->report, page_extensions()),
-               unit_option(arguments->placement.unit),
-               flag("strict", "exit with code 4 where there is any defect, or in a slice file an open chain",
+               flag("strict", "exit with code 4 if a mesh has any defect, or a slice file an open contour",
                     arguments->strict)}},
-             run_options(arguments->run,
-                         {include_option(arguments->limits), max_triangles_option(arguments->limits),
-                          max_memory_option(arguments->limits, "what is read takes")}),
+             {"input", "Input", {unit_option(arguments->placement.unit), include_option(arguments->limits)}},
+             run_options(arguments->run, {max_triangles_option(arguments->limits),
+                                          max_memory_option(arguments->limits, "the file takes")}),
              common_options(true)},
-        .examples = {{"lamella info part.stl", "is it closed, how large is it?"},
+        .examples = {{"lamella info part.stl", "size, volume and defects of a mesh"},
                      {"lamella info scan.stl --self-intersections --report scan.html",
-                      "everything that may be wrong, and a page that shows where"},
-                     {"lamella info part.cli --json", "for programs"}},
+                      "all checks, and a page that shows the locations of defects"},
+                     {"lamella info part.cli --json", "the same for programs"}},
         .run = [arguments](const Context& context) {
             return run_info(*arguments, context);
         }};

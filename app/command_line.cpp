@@ -10,6 +10,7 @@
 #include "numbers.hpp"
 #include "standard_streams.hpp"
 #include "suggest.hpp"
+#include "system/program_start.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -210,6 +211,23 @@ class Assignment {
             option.given_for_all = text;
     }
 
+    /// Takes an argument of the command line, which may name several files.
+    void take_word(const std::string& word) {
+        const std::vector<Operand>& operands = command_.operands;
+        const bool is_input = !operands.empty() &&
+                              operands[std::min(taken_, operands.size() - 1)].choices.empty() &&
+                              !operands[std::min(taken_, operands.size() - 1)].written;
+        const auto files = is_input ? files_matching(word) : std::nullopt;
+        if (!files)
+            return take(word);
+        if (files->empty())
+            refuse(fmt::format(
+                "{}: no file has a name of this form; only the last part of a path may have * and ?",
+                excerpt(word)));
+        for (const std::string& file : *files)
+            take(file);
+    }
+
     void take(const std::string& given) {
         std::vector<Operand>& operands = command_.operands;
         if (taken_ >= operands.size() && (operands.empty() || !operands.back().repeated))
@@ -314,21 +332,21 @@ Configuration config_in_time(const std::string& path, const Words& words, Comman
 } // namespace
 
 OptionGroup common_options(bool configurable) {
-    OptionGroup group{"General", {}};
+    OptionGroup group{"general", "General", {}};
     if (configurable) {
         group.options.push_back({.name = std::string(config),
                                  .kind = ValueKind::input,
                                  .placeholder = "FILE",
                                  .help =
-                                     "take options from a TOML file, with the names that they have here; the "
-                                     "command line goes before it",
+                                     "read options from a TOML file, with the names that they have here; the "
+                                     "command line overrides it",
                                  .configurable = false});
         group.options.push_back({.name = std::string(dump_config),
                                  .help = "print the options in effect as such a file, and do nothing else",
                                  .configurable = false});
     }
     group.options.push_back(
-        {.name = std::string(help), .letter = 'h', .help = "show this help", .configurable = false});
+        {.name = std::string(help), .letter = 'h', .help = "print this help", .configurable = false});
     return group;
 }
 
@@ -384,7 +402,7 @@ Wish parse(Command& command, std::span<const std::string> words, const Messages&
         if (word.option != nullptr)
             assignment.set(*word.option, word.as_typed, word.text);
         else
-            assignment.take(word.text);
+            assignment.take_word(word.text);
     }
     if (!assignment.took_any()) {
         for (const ConfiguredInput& input : configured.inputs) {

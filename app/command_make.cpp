@@ -142,7 +142,7 @@ constexpr std::array<Body, 11> bodies{{{"sheet", "holes segments size thickness 
                                        {"torus", "size thickness segments", torus},
                                        {"cylinder", "size thickness segments", cylinder}}};
 
-constexpr std::string_view shape_title = "What it is like";
+constexpr std::string_view shape_title = "Shape";
 
 /// Rejects an option that this body would ignore.
 void check_options(const Body& body, const Command& command) {
@@ -162,6 +162,7 @@ void check_options(const Body& body, const Command& command) {
 
 OptionGroup shape_options(MakeArguments& target) {
     return {
+        "shape",
         std::string(shape_title),
         {count("holes", "N", "sheet: number of holes, a square such as 100, 225 or 1225", target.holes),
          count("segments", "N", "sheet: corners of a hole; torus, cylinder: around the axis",
@@ -173,11 +174,12 @@ OptionGroup shape_options(MakeArguments& target) {
                 "sheet: thickness; lattice: diameter of a strut; torus: of the tube; cylinder: height",
                 target.thickness),
          count("cells", "N", "lattice: cells along each axis", target.cells),
-         count("detail", "N", "lattice, sphere: how fine; the triangles grow fast with it", target.detail),
+         count("detail", "N", "lattice, sphere: fineness; the number of triangles grows fast with it",
+               target.detail),
          choice(
              "order", "HOW",
-             "sheet: the triangles of a wall together, all lower ones first (hard for some algorithms), or "
-             "in random order (--shuffle gives the seed, else 1)",
+             "sheet: order of the triangles: wall by wall, hole by hole with the lower ones first, all lower "
+             "ones first (hard for some algorithms), or random (with the seed of --shuffle, or 1)",
              {"wall", "hole", "split", "shuffle"}, target.order)}};
 }
 
@@ -259,36 +261,37 @@ Command make_command() {
     const auto arguments = std::make_shared<MakeArguments>();
     Option output = output_file(
         "output",
-        "the file, STL, or PLY or OBJ by its extension; - is standard output; without it, BODY.stl "
-        "here",
+        "the file: STL, or PLY or OBJ by its extension; - is standard output (default: BODY.stl in this "
+        "folder)",
         arguments->output, {".stl", ".ply", ".obj"});
     output.letter = 'o';
     return {
         .name = "make",
-        .summary = "make a test body: a sheet with holes, a chess rook, ...",
-        .description =
-            "Makes a closed body to try things with. The same options give the same bytes on every "
-            "machine.",
+        .summary = "make a test part: a sheet with holes, a chess rook, ...",
+        .description = "Writes a closed test part. The same options give the same bytes on every machine. "
+                       "Options that do "
+                       "not apply to the body are refused.",
         .operands = {{.placeholder = "BODY",
-                      .help = "which body",
+                      .help = "the body",
                       .choices = names_of(bodies),
                       .set =
                           [arguments](const std::string& text) {
                               arguments->body = text;
                           }}},
-        .groups = {{"What is written",
-                    {std::move(output), flag("ascii", "ASCII instead of binary", arguments->ascii),
+        .groups = {{"output",
+                    "Output",
+                    {std::move(output), flag("ascii", "write text instead of binary data", arguments->ascii),
                      count("shuffle", "SEED", "put the triangles in a random order", arguments->shuffle)}},
                    shape_options(*arguments),
                    pose_options(arguments->pose),
                    common_options(true)},
         .examples = {{"lamella make rook", "writes rook.stl"},
-                     {"lamella make rook -o rook.obj", "the same with shared vertices"},
+                     {"lamella make rook -o rook.obj", "the same as OBJ, with shared vertices"},
                      {"lamella make sheet --holes 1225 -o sheet.stl", "2.5 million triangles"},
                      {"lamella make sheet --holes 100 --rotate-x 90", "a sheet on its edge"},
                      {"lamella make lattice --cells 61", "102 million triangles, 5 GB"},
                      {"lamella make sole", "struts from bottom to top: 860,000 long triangles"},
-                     {"lamella make box --size 20,30,2.5 --ascii", "a small file to read"}},
+                     {"lamella make box --size 20,30,2.5 --ascii", "a small text file"}},
         .run = [arguments](const Context& context) {
             return run_make(*arguments, context);
         }};

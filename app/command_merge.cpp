@@ -53,18 +53,18 @@ Command merge_command() {
     const auto arguments = std::make_shared<MergeArguments>();
     return {
         .name = "merge",
-        .summary = "put slice files of consecutive layers together",
+        .summary = "join slice files of consecutive layers",
         .description =
-            "Makes one slice file of several whose layers lie on one another, such as the shards of a job "
-            "(lamella slice --shard); they may be named in any order. Files that overlap, leave gaps "
-            "or come from different jobs are refused. An exposure may be missing in some; in ilt, ovf and "
-            "3mf-toolpath a whole part. Files "
-            "in the formats cli and cli-ascii become the file "
-            "of a single run, byte for byte, unless other units, the short form or compression are asked for; "
-            "layers of other formats are read and written anew.",
+            "Joins slice files with consecutive layers, such as the shards of a job (lamella slice --shard), "
+            "named in any order. Files that overlap, leave gaps or belong to different jobs are refused. An "
+            "exposure may be missing in some files; in ilt, ovf and 3mf-toolpath also a whole part. Files in "
+            "the formats cli and cli-ascii become the file of a single run, byte for byte, unless other "
+            "units, the short form or compression are requested; layers of other formats are read and "
+            "written again.",
         .operands = {{.placeholder = "OUT",
-                      .help = "the slice file to write; its extension gives the format, and .gz after it "
-                              "compresses it; - is standard output",
+                      .help =
+                          "the slice file to write; its extension determines the format, and .gz after it "
+                          "compresses it; - is standard output",
                       .written = true,
                       .set =
                           [arguments](const std::string& text) {
@@ -77,12 +77,12 @@ Command merge_command() {
                           [arguments](const std::string& text) {
                               arguments->shards.push_back(text);
                           }}},
-        .groups = {{"What is written", layer_output_options(arguments->writing)},
+        .groups = {{"output", "Output", layer_output_options(arguments->writing)},
                    image_options(arguments->writing.image),
                    run_options(arguments->run,
-                               {max_memory_option(arguments->limits, "the layers of one of the files take")}),
+                               {max_memory_option(arguments->limits, "the layers of one file take")}),
                    common_options(true)},
-        .examples = {{"lamella merge part.cli part.*.cli", "one file of all shards"}},
+        .examples = {{"lamella merge part.cli part.*.cli", "one file from all shards"}},
         .run = [arguments](const Context& context) {
             return run_merge(*arguments, context);
         }};

@@ -45,18 +45,18 @@ struct ScanCommandArguments {
 
 OptionGroup output_options(ScanCommandArguments& target) {
     Option output = output_file("output",
-                                "the slice file; its extension gives the format, and .gz after it compresses "
-                                "it; - is standard output",
+                                "the slice file; its extension determines the format, and .gz after it "
+                                "compresses it; - is standard output",
                                 target.output);
     output.letter = 'o';
-    OptionGroup group{"What is written", {std::move(output)}};
+    OptionGroup group{"output", "Output", {std::move(output)}};
     for (Option& option : layer_output_options(target.writing))
         group.options.push_back(std::move(option));
     group.options.push_back(output_file(
         "stats", "write figures of the vectors of every layer as JSON; - is standard output", target.stats));
-    group.options.push_back(
-        flag("strict", "make an error of whatever is odd about the file or would be lost, and write nothing",
-             target.strict));
+    group.options.push_back(flag(
+        "strict", "treat as errors: defects of the file, data that the format cannot store; write no file",
+        target.strict));
     return group;
 }
 
@@ -143,11 +143,11 @@ Command scan_command() {
     const auto arguments = std::make_shared<ScanCommandArguments>();
     return {
         .name = "scan",
-        .summary = "make scan vectors of a slice file",
+        .summary = "make scan vectors from a slice file",
         .description =
-            "Reads the layers of a slice file and writes what a powder-bed machine exposes: contours moved "
-            "inwards and parallel lines that fill the inside, for each part and each region of a strategy "
-            "apart. lamella slice does the same at once, with --scan or --strategy.",
+            "Makes scan vectors for a powder-bed machine from the layers of a slice file: contours moved "
+            "inwards, and hatch lines that fill the inside, separately for each part and each region of the "
+            "strategy. lamella slice makes them directly from a mesh, with --scan or --strategy.",
         .operands = {{.placeholder = "FILE",
                       .help = "the slice file to read; - is standard input",
                       .set =
@@ -158,9 +158,9 @@ Command scan_command() {
                    image_options(arguments->writing.image),
                    run_options(arguments->run, {max_memory_option(arguments->limits, "the layers take")}),
                    common_options(true)},
-        .examples = {{"lamella scan part.cli -o job.cli", "with the strategy that is there by default"},
+        .examples = {{"lamella scan part.cli -o job.cli", "with the default strategy"},
                      {"lamella scan part.3mf -o job.cli --strategy 316l.toml --hatch-distance 0.09",
-                      "with another distance than the file has"}},
+                      "with a strategy file, of which one value is changed"}},
         .run = [arguments](const Context& context) {
             return run_scan(*arguments, context);
         }};

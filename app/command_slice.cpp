@@ -92,21 +92,21 @@ std::vector<Option> with_output(std::vector<Option> options) {
 }
 
 OptionGroup output_options(SliceArguments& target) {
-    OptionGroup group{"What is written", {}};
+    OptionGroup group{"output", "Output", {}};
     Option output = output_file("output",
-                                "the slice file; its extension gives the format, and .gz after it compresses "
-                                "it; - is standard output",
+                                "the slice file; its extension determines the format, and .gz after it "
+                                "compresses it; - is standard output",
                                 target.output);
     output.letter = 'o';
     group.options.push_back(std::move(output));
     for (Option& option : with_output(layer_output_options(target.writing)))
         group.options.push_back(std::move(option));
     group.options.push_back(
-        output_file("report", "write a page to look at the layers and the figures of the run (HTML), too",
+        output_file("report", "also write an HTML page that shows the layers and the figures of the run",
                     target.report, page_extensions()));
     group.options.push_back(output_file("stats",
-                                        "write figures of the run and of every layer as JSON, not in a "
-                                        "folder that -o makes; - is standard output",
+                                        "write figures of the run and of every layer as JSON; - is standard "
+                                        "output; not in a folder that -o makes",
                                         target.stats));
     return group;
 }
@@ -134,78 +134,85 @@ void add_input(SliceArguments& target, const std::string& path) {
 
 OptionGroup input_options(SliceArguments& target) {
     OptionGroup group = placement_options(target.of_input.placement);
-    group.title = "Where parts stand (after a file, of that one; before the first, of all)";
-    group.options.push_back(row("copies", ValueKind::count, "N", "this many copies, side by side in rows",
+    group.note =
+        "Options after a file apply to that file, those before the first file to all. Parts are scaled, "
+        "then rotated, then moved.";
+    group.options.push_back(row("copies", ValueKind::count, "N",
+                                "number of copies, side by side in rows (default: 1)",
                                 [&target](const std::string& text) {
                                     target.of_input.copies = parse_count(text);
                                     if (*target.of_input.copies == 0)
                                         throw Error(ErrorKind::usage, "there must be one at least");
                                 }));
     Option spacing =
-        row("spacing", ValueKind::number, "MM", "the gap between copies",
+        row("spacing", ValueKind::number, "MM", "gap between copies",
             [&target](const std::string& text) { target.of_input.spacing = parse_number(text); });
     spacing.goes_with = "copies";
     spacing.preset = exact(PlateInput{}.spacing_mm);
     group.options.push_back(std::move(spacing));
-    group.options.push_back(text("label", "TEXT",
-                                 "its name in the slice file, instead of that of its object, or of the file",
-                                 target.of_input.label));
+    group.options.push_back(
+        text("label", "TEXT",
+             "name of the part in the slice file (default: the name of its object, or of the file)",
+             target.of_input.label));
     group.options.push_back(
         flag("support",
-             "it is a support, whatever the file says: scan vectors are made by a rule of "
-             "their own",
+             "treat the parts of the file as supports, whatever it says: their scan vectors follow the "
+             "rules for supports",
              target.of_input.support));
     group.options.push_back(flag("negative",
-                                 "it is no part: it is subtracted from the parts of all other files",
+                                 "no part: subtract the bodies of the file from the parts of all other files",
                                  target.of_input.negative));
     for (Option& option : group.options)
         option.of_each_file = true;
     group.options.push_back(triple("build-volume", "X,Y,Z",
-                                   "make an error of any part that reaches out of the box from 0,0,0 to here",
+                                   "refuse parts that extend beyond the box from 0,0,0 to X,Y,Z",
                                    target.build_volume));
+    group.options.push_back(include_option(target.limits));
     return group;
 }
 
 OptionGroup shard_options(SliceArguments& target) {
     Option resume = flag("resume",
-                         "do nothing where this shard is finished, with the statistics and the report asked "
-                         "for, as the stamp beside its file shows",
+                         "exit at once if this shard, its --stats and its --report are already complete, as "
+                         "its stamp beside the slice file records",
                          target.resume);
     resume.goes_with = "shard";
-    return {"How it is shared out",
-            {row("shard", ValueKind::text, "I/N",
-                 "only the I-th of N runs of layers of about equal work; lamella merge puts them together",
-                 [&target](const std::string& text) { target.shard = parse_share(text); }),
-             std::move(resume)}};
+    return {
+        "shards",
+        "Shards",
+        {row("shard", ValueKind::text, "I/N",
+             "slice only the I-th of N ranges of layers with about equal work; lamella merge joins the files",
+             [&target](const std::string& text) { target.shard = parse_share(text); }),
+         std::move(resume)}};
 }
 
 OptionGroup checking_options(SliceArguments& target) {
-    Option engine = choice("engine", "NAME", "the algorithm", names_of(engines()), target.engine);
+    Option engine = choice("engine", "NAME", "the slicing algorithm", names_of(engines()), target.engine);
     engine.preset = engines().front().name;
     return {
-        "How it is sliced",
+        "checks",
+        "Checks and engine",
         {std::move(engine),
-         flag("inspect", "count the defects of the mesh first, for --stats and the summary (takes a while)",
+         flag("inspect", "count the defects of the mesh first, for --stats and the summary (takes longer)",
               target.inspect),
          flag("strict",
-              "make an error of any defect of the file or its mesh, of what the slice file would lose, of "
-              "material that no scan vector reaches and of steps that leave nothing, and write nothing",
+              "treat as errors: defects of the file or the mesh, data that the format cannot store, material "
+              "that no scan vector reaches, steps that leave nothing; write no file",
               target.strict)}};
 }
 
 OptionGroup timed_run_options(SliceArguments& target) {
     OptionGroup group = run_options(target.run);
-    group.options.push_back(include_option(target.limits));
     group.options.push_back(max_triangles_option(target.limits));
     group.options.push_back(byte_limit(
         "max-memory",
-        "take no more memory, such as 500M or 2G: larger STL files are sliced in ranges of planes, if need "
-        "be by way of temporary files in $TMPDIR or /var/tmp, with the same result; what cannot be is an "
-        "error (exit code 5); three quarters of the memory there is unless given",
+        "use at most this much memory, such as 500M or 2G (default: three quarters of the memory of the "
+        "machine); larger STL files are sliced in ranges of planes, if necessary with temporary files in "
+        "$TMPDIR or /var/tmp, with the same result; other jobs that do not fit end with exit code 5",
         target.limits.max_memory));
     group.options.push_back(
         row("timeout", ValueKind::number, "SECONDS",
-            "stop after this time, report how far it came (exit code 5), and leave no output",
+            "stop after this time with exit code 5, report the progress, and leave no output",
             [&target](const std::string& text) { target.timeout = parse_positive(text); }));
     return group;
 }
@@ -374,6 +381,11 @@ std::string files_before(const std::string& meshes, const SliceArguments& argume
 std::string_view batch_extension(const SliceArguments& arguments) {
     if (arguments.output.empty() || has_placeholder(arguments.output))
         return {};
+    if (arguments.writing.format.empty() && extension_of(arguments.output).empty())
+        throw Error(ErrorKind::usage,
+                    fmt::format("{} becomes a folder with a file for each mesh; choose their format, such as "
+                                "--format cli",
+                                arguments.output));
     return layer_format(arguments.writing.format, arguments.output).file_extension;
 }
 
@@ -545,14 +557,12 @@ Command slice_command(Communicator* team) {
         .name = "slice",
         .summary = "cut a mesh into layers and write a slice file",
         .description =
-            "Cuts meshes into layers and writes their contours: outer rings counter-clockwise, holes "
-            "clockwise. Several files, and all that a 3MF or AMF file places, make up a build plate: they "
-            "are cut "
-            "on common planes, and stay separate in formats that distinguish parts. A mesh is taken as it "
-            "is, "
-            "repaired only if options ask for it: where it has a hole, contours stay "
-            "open, are marked as such in the file, and a warning says so. The result does not depend on the "
-            "number of threads nor on the order of the triangles.",
+            "Cuts meshes into layers and writes their contours: outer contours counter-clockwise, holes "
+            "clockwise. Several files, and all objects that a 3MF or AMF file places, make up a build plate: "
+            "they are cut on common planes, and stay separate in formats that distinguish parts. A mesh is "
+            "repaired only if options ask for it. Where it has a hole, contours stay open; the slice file "
+            "marks them if its format can, and a warning counts them. The result does not depend on the "
+            "number of threads or the order of the triangles.",
         .operands = {{.placeholder = "FILE",
                       .help = fmt::format("a mesh (.{}); - is standard input",
                                           fmt::join(mesh_extensions(), ", .")),
@@ -563,30 +573,30 @@ Command slice_command(Communicator* team) {
                           [arguments](const std::string& text) {
                               add_input(*arguments, text);
                           }}},
-        .groups = {output_options(*arguments), std::move(images), layering_options(arguments->layering),
-                   shard_options(*arguments), repair_options(arguments->repair),
+        .groups = {output_options(*arguments), layering_options(arguments->layering),
+                   input_options(*arguments), repair_options(arguments->repair),
                    layer_step_options(arguments->making),
                    scan_options(arguments->scanning,
                                 {flag("scan", "write scan vectors instead of contours", arguments->scan)}),
-                   input_options(*arguments), checking_options(*arguments), batch_options(arguments->batch),
-                   timed_run_options(*arguments), common_options(true)},
+                   std::move(images), checking_options(*arguments), batch_options(arguments->batch),
+                   shard_options(*arguments), timed_run_options(*arguments), common_options(true)},
         .examples = {{"lamella slice part.stl -o part.cli --layer-height 0.05",
                       "a binary CLI file, layers of 0.05 mm"},
                      {"lamella slice part.stl -o part.sl1 --layer-height 0.05 --exposure 8",
                       "a job for an Original Prusa SL1"},
                      {"lamella slice part.stl -o part.svg --unit inch --rotate-x 90",
-                      "a part drawn in inches, stood up, as SVG"},
+                      "a part in inches, rotated by 90 degrees, as SVG"},
                      {"lamella slice a.stl --copies 4 b.stl --translate 60,0,0 -o plate.cli",
-                      "a plate of four and one"},
+                      "a plate with four copies of one part and one of another"},
                      {"lamella slice part.stl -o job.cli --layer-height 0.03 --strategy 316l.toml",
                       "scan vectors for a powder-bed machine"},
-                     {"lamella slice part.stl --stats - --layers 100:110", "only figures, of ten layers"},
+                     {"lamella slice part.stl --stats - --layers 100:110", "only the figures of ten layers"},
                      {"lamella slice part.stl -o part.3.cli --shard 3/8 --resume",
-                      "the third of eight shares of the layers, unless it is done already"},
+                      "the third of eight shards, unless it is complete"},
                      {"lamella slice --batch parts -o layers --format cli",
-                      "each mesh in a folder by itself, into another folder"},
+                      "each mesh of a folder by itself, into another folder"},
                      {"lamella slice part.stl -o part.cli --config machine.toml",
-                      "with options kept in a file"}},
+                      "with the options in a file"}},
         .run = [arguments](const Context& context) {
             return run_slice(*arguments, context);
         }};

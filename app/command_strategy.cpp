@@ -35,28 +35,28 @@ Command strategy_command() {
     const auto arguments = std::make_shared<StrategyArguments>();
     return {
         .name = "strategy",
-        .summary = "show or check how parts are scanned",
+        .summary = "print or check a scan strategy",
         .description =
-            "show prints all of a scan strategy, with units and meanings, as a TOML file to begin a new one "
-            "with: that of FILE, or the one that is there by default. check says whether FILE is a strategy, "
-            "and where it is not.",
+            "show prints a complete scan strategy as a TOML file, with units and meanings: the strategy in "
+            "FILE, or the default one. check checks whether FILE is a strategy; if not, the error names the "
+            "line.",
         .operands = {{.placeholder = "ACTION",
-                      .help = "what to do",
+                      .help = "the action",
                       .choices = {"show", "check"},
                       .set =
                           [arguments](const std::string& text) {
                               arguments->action = text;
                           }},
                      {.placeholder = "FILE",
-                      .help = "the strategy; - is standard input",
+                      .help = "the strategy file; - is standard input",
                       .required = false,
                       .set =
                           [arguments](const std::string& text) {
                               arguments->file = text;
                           }}},
         .groups = {common_options(false)},
-        .examples = {{"lamella strategy show > 316l.toml", "a file to change"},
-                     {"lamella strategy check 316l.toml", "is it right?"}},
+        .examples = {{"lamella strategy show > 316l.toml", "the default strategy, as a file to edit"},
+                     {"lamella strategy check 316l.toml", "whether the file is a strategy"}},
         .run = [arguments](const Context& /*context*/) {
             return run_strategy(*arguments);
         }};

@@ -316,55 +316,52 @@ Command verify_command() {
     const auto arguments = std::make_shared<VerifyArguments>();
     return {
         .name = "verify",
-        .summary = "check a slice file: closed, oriented, areas; scan vectors",
+        .summary = "check the layers or scan vectors of a slice file",
         .description =
-            "Checks the layers of a slice file: every contour closed, outer contours counter-clockwise and "
-            "holes "
-            "clockwise by their nesting, no contour crossing another or itself. With --mesh the area of "
-            "every layer is "
-            "compared with the section of that mesh, computed straight from its triangles, and so are their "
-            "centres: a layer that is rotated about its centre is not found. Scan vectors are checked alike. "
-            "All must "
-            "lie inside the mesh, or without --mesh inside the part's outermost contour. With --strategy or "
-            "--scan: distance from the edge, missing contours, spacing, angle and length of hatch lines, and "
-            "whether they fill the area. Exit code 4: the check failed.",
+            "Checks the layers of a slice file: every contour is closed; outer contours run "
+            "counter-clockwise and holes clockwise, by their nesting; no contour crosses another or itself. "
+            "With --mesh, the area and the centre of every layer are compared with those of the section of "
+            "that mesh, which is computed directly from its triangles; a layer that is rotated about its "
+            "centre is not found. Scan vectors are checked, too: they must lie inside the mesh or, without "
+            "--mesh, inside the outermost contour of their part. With --strategy or --scan, also their "
+            "distance from the edge, missing contours, the spacing, angle and length of hatch lines, and "
+            "whether these fill the area. Exit code 4: the check failed.",
         .operands = {{.placeholder = "FILE",
                       .help = "the slice file; - is standard input",
                       .set =
                           [arguments](const std::string& text) {
                               arguments->input = text;
                           }}},
-        .groups = {{"What is checked",
-                    {input_file("mesh", "the mesh that was sliced; give the same options for where it stands",
-                                arguments->mesh),
-                     choice("slice-at", "WHERE",
-                            "where in their thickness the layers were cut, if not where the file says",
-                            slice_at_names(), arguments->slice_at),
-                     snap_option(arguments->snap),
-                     row("tolerance", ValueKind::number, "MM",
-                         "how far points, ends of lines and cuts may be off, beside what the format rounds; "
-                         "for layers that were rounded before [0]",
-                         [arguments](const std::string& text) {
-                             arguments->tolerance = parse_not_negative(text);
-                         }),
-                     flag("strict", "make a failed check of whatever is warned of when the file is read, too",
-                          arguments->strict),
-                     flag("json", "print JSON", arguments->json)}},
-                   placement_options(arguments->placement),
-                   repair_options(arguments->repair),
-                   layer_step_options(arguments->making),
-                   scan_options(
-                       arguments->scanning,
-                       {flag("scan", "hold scan vectors against a strategy, the one that is there by default",
-                             arguments->scan)}),
-                   run_options(arguments->run,
-                               {include_option(arguments->limits), max_triangles_option(arguments->limits),
-                                max_memory_option(arguments->limits, "the files take together")}),
-                   common_options(true)},
-        .examples = {{"lamella verify part.cli", "is the file sound in itself?"},
-                     {"lamella verify part.cli --mesh part.stl --rotate-x 90", "and true to its mesh?"},
+        .groups =
+            {{"checks",
+              "Checks",
+              {input_file("mesh",
+                          "the mesh that was sliced; give the same options of input, repair and layer steps "
+                          "as for slicing",
+                          arguments->mesh),
+               choice("slice-at", "WHERE",
+                      "height within a layer at which it was cut, if the file does not state it correctly",
+                      slice_at_names(), arguments->slice_at),
+               snap_option(arguments->snap),
+               row("tolerance", ValueKind::number, "MM",
+                   "allowed error of points, ends of lines and cuts, in addition to the rounding of the "
+                   "format, for layers that were rounded before (default: 0)",
+                   [arguments](const std::string& text) { arguments->tolerance = parse_not_negative(text); }),
+               flag("strict", "the check also fails if reading the file causes a warning", arguments->strict),
+               flag("json", "print JSON", arguments->json)}},
+             placement_options(arguments->placement, {include_option(arguments->limits)}),
+             repair_options(arguments->repair),
+             layer_step_options(arguments->making),
+             scan_options(arguments->scanning,
+                          {flag("scan", "check scan vectors against the default strategy", arguments->scan)}),
+             run_options(arguments->run, {max_triangles_option(arguments->limits),
+                                          max_memory_option(arguments->limits, "the files together take")}),
+             common_options(true)},
+        .examples = {{"lamella verify part.cli", "the slice file alone"},
+                     {"lamella verify part.cli --mesh part.stl --rotate-x 90",
+                      "the slice file against its mesh, which was rotated"},
                      {"lamella verify job.ilt --mesh part.stl --scan",
-                      "are scan vectors where they should be?"}},
+                      "scan vectors against the mesh and the default strategy"}},
         .run = [arguments](const Context& context) {
             return run_verify(*arguments, context);
         }};

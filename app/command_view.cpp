@@ -148,49 +148,49 @@ int run_view(const ViewArguments& arguments, const Context& context) {
 OptionGroup cutting_options(ViewArguments& target) {
     Option layer_height = length("layer-height", "thickness of a layer", target.layer_height);
     layer_height.preset = exact(UniformLayers{}.layer_height);
-    Option slice_at = choice("slice-at", "WHERE", "where in its thickness a layer is cut", slice_at_names(),
-                             target.slice_at);
+    Option slice_at = choice("slice-at", "WHERE", "height within a layer at which it is cut",
+                             slice_at_names(), target.slice_at);
     slice_at.preset = "middle";
-    return {"How a mesh is cut", {std::move(layer_height), std::move(slice_at), snap_option(target.snap)}};
+    return {"layers",
+            "Layers (of a mesh)",
+            {std::move(layer_height), std::move(slice_at), snap_option(target.snap)}};
 }
 
 } // namespace
 
 Command view_command() {
     const auto arguments = std::make_shared<ViewArguments>();
-    Option output =
-        output_file("output", "the page; without it, FILE's name with .html, here; - is standard output",
-                    arguments->output, page_extensions());
+    Option output = output_file(
+        "output", "the page; - is standard output (default: the name of FILE with .html, in this folder)",
+        arguments->output, page_extensions());
     output.letter = 'o';
-    return {
-        .name = "view",
-        .summary = "write a page to look at the layers with a browser",
-        .description =
-            "Writes one HTML page with all layers of a mesh or a slice file: layer by layer and as a stack, "
-            "with "
-            "figures over the height, and with what is wrong and where. The page needs no network and no "
-            "other "
-            "file. For more ways to cut a mesh, lamella slice writes such a page, too: with -o page.html, or "
-            "beside a slice file with --report.",
-        .operands = {{.placeholder = "FILE",
-                      .help = "a mesh or a slice file; - is standard input",
-                      .set =
-                          [arguments](const std::string& text) {
-                              arguments->input = text;
-                          }}},
-        .groups = {{"What is written", {std::move(output)}},
-                   cutting_options(*arguments),
-                   placement_options(arguments->placement),
-                   layer_step_options(arguments->making),
-                   run_options(arguments->run,
-                               {include_option(arguments->limits), max_triangles_option(arguments->limits),
-                                max_memory_option(arguments->limits, "what is read takes")}),
-                   common_options(true)},
-        .examples = {{"lamella view part.stl", "part.html, with layers of 0.1 mm"},
-                     {"lamella view part.cli -o look.html", "what is in a slice file"}},
-        .run = [arguments](const Context& context) {
-            return run_view(*arguments, context);
-        }};
+    return {.name = "view",
+            .summary = "write a page that shows the layers in a browser",
+            .description =
+                "Writes one HTML page that shows all layers of a mesh or a slice file, one by one and as a "
+                "stack, "
+                "with figures over the height and the locations of defects. The page needs no network and no "
+                "other "
+                "file. lamella slice writes such a page with all of its own options: by -o page.html, or by "
+                "--report in addition to a slice file.",
+            .operands = {{.placeholder = "FILE",
+                          .help = "a mesh or a slice file; - is standard input",
+                          .set =
+                              [arguments](const std::string& text) {
+                                  arguments->input = text;
+                              }}},
+            .groups = {{"output", "Output", {std::move(output)}},
+                       cutting_options(*arguments),
+                       placement_options(arguments->placement, {include_option(arguments->limits)}),
+                       layer_step_options(arguments->making),
+                       run_options(arguments->run, {max_triangles_option(arguments->limits),
+                                                    max_memory_option(arguments->limits, "the file takes")}),
+                       common_options(true)},
+            .examples = {{"lamella view part.stl", "writes part.html, with layers of 0.1 mm"},
+                         {"lamella view part.cli -o look.html", "the layers of a slice file"}},
+            .run = [arguments](const Context& context) {
+                return run_view(*arguments, context);
+            }};
 }
 
 } // namespace lamella::app

@@ -2,7 +2,9 @@
 
 #include "names.hpp"
 
+#include <algorithm>
 #include <array>
+#include <utility>
 
 namespace lamella::app {
 
@@ -10,7 +12,14 @@ std::vector<Command> all_commands() {
     std::vector<Command> commands{slice_command(),   info_command(), verify_command(),     compare_command(),
                                   convert_command(), scan_command(), strategy_command(),   merge_command(),
                                   view_command(),    make_command(), completion_command(), help_command()};
-    commands.back().operands.front().choices = names_of(commands);
+    std::vector<std::string> sections;
+    for (const Command& command : commands)
+        for (const OptionGroup& group : command.groups)
+            if (std::find(sections.begin(), sections.end(), group.name) == sections.end())
+                sections.push_back(group.name);
+    std::vector<Operand>& of_help = commands.back().operands;
+    of_help.front().choices = names_of(commands);
+    of_help.back().choices = std::move(sections);
     return commands;
 }
 

@@ -42,17 +42,19 @@ std::string bash_pattern(const Option& option) {
     return option.letter != 0 ? fmt::format("-{}|--{}", option.letter, option.name) : "--" + option.name;
 }
 
-/// Returns the completion of operands. Choices are offered for the first operand only, until one of them is
-/// present.
+/// Returns the completion of operands. Choices of the first operand are offered until one of them is present,
+/// then those of the second one, or files.
 std::string bash_operands(const Command& command) {
-    const std::string files = "compopt -o default; return";
-    if (command.operands.empty() || command.operands.front().choices.empty())
-        return files;
-    const std::vector<std::string>& choices = command.operands.front().choices;
-    return fmt::format(
-        "case \" ${{COMP_WORDS[*]:2:COMP_CWORD-2}} \" in *\" {} \"*) {} ;; *) words=\"{}\" ;; esac",
-        fmt::join(choices, " \"*|*\" "), command.operands.size() > 1 ? files : "return",
-        fmt::join(choices, " "));
+    const auto offer = [](const Operand& operand) {
+        return operand.choices.empty() ? std::string("compopt -o default; return")
+                                       : fmt::format("words=\"{}\"", fmt::join(operand.choices, " "));
+    };
+    const std::vector<Operand>& operands = command.operands;
+    if (operands.empty() || operands.front().choices.empty())
+        return "compopt -o default; return";
+    return fmt::format("case \" ${{COMP_WORDS[*]:2:COMP_CWORD-2}} \" in *\" {} \"*) {} ;; *) {} ;; esac",
+                       fmt::join(operands.front().choices, " \"*|*\" "),
+                       operands.size() > 1 ? offer(operands[1]) : "return", offer(operands.front()));
 }
 
 /// Returns the branch of the case statement for one command: values of options, option names, operands.
@@ -127,19 +129,48 @@ std::string fish_option(const Command& command, const Option& option) {
 std::string fish_operands(const Command& command) {
     const std::string here =
         fmt::format("complete -c lamella -n '__fish_seen_subcommand_from {}", command.name);
-    std::string choices;
+    std::string before; // the condition that choices of the operands before this one are present
     std::string text;
     for (const Operand& operand : command.operands) {
         if (operand.choices.empty()) {
-            text += fmt::format("{}{}' -F\n", here, choices.empty() ? "" : "; and " + choices);
+            text += fmt::format("{}{}' -F\n", here, before);
         } else {
             std::vector<std::string> others = operand.choices; // the choices except the command itself (help)
             std::erase(others, command.name);
-            choices = fmt::format("__fish_seen_subcommand_from {}", fmt::join(others, " "));
-            text += fmt::format("{}; and not {}' -a '{}'\n", here, choices, fmt::join(operand.choices, " "));
+            const std::string seen = fmt::format("__fish_seen_subcommand_from {}", fmt::join(others, " "));
+            text += fmt::format("{}{}; and not {}' -a '{}'\n", here, before, seen,
+                                fmt::join(operand.choices, " "));
+            before += "; and " + seen;
         }
     }
     return text;
+}
+
+/// Returns a list of strings of PowerShell, in single quotes.
+std::string powershell_list(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words)
+        text += fmt::format("{}'{}'", text.empty() ? "" : ", ", with_prefixes(word, "'", "'"));
+    return fmt::format("@({})", text);
+}
+
+/// Returns the table of one command: its options with their values, and the words that it takes.
+std::string powershell_command(const Command& command) {
+    std::string text = fmt::format("        '{}' = @{{\n            Summary = '{}'\n            Words = @(",
+                                   command.name, with_prefixes(command.summary, "'", "'"));
+    // A list with one list in it needs a comma in front of that.
+    const std::string_view first = command.operands.size() == 1 ? "," : "";
+    for (const Operand& operand : command.operands)
+        text += fmt::format("{}{}", &operand == command.operands.data() ? first : ", ",
+                            powershell_list(operand.choices));
+    text += ")\n            Options = @(\n";
+    for (const Option* option : options_of(command))
+        text += fmt::format(
+            "                @{{ Name = '--{}'; Letter = '{}'; Takes = '{}'; Values = {}; Help = '{}' }}\n",
+            option->name, option->letter != 0 ? fmt::format("-{}", option->letter) : "",
+            option->kind == ValueKind::flag ? "" : with_prefixes(option->placeholder, "'", "'"),
+            powershell_list(option->choices), with_prefixes(option->help, "'", "'"));
+    return text + "            )\n        }\n";
 }
 
 } // namespace
@@ -214,6 +245,58 @@ std::string fish_completion(std::span<const Command> commands) {
             text += fish_option(command, *option);
     }
     return text;
+}
+
+std::string powershell_completion(std::span<const Command> commands) {
+    std::string text = "# PowerShell completion for lamella; made by: lamella completion powershell\n"
+                       "Register-ArgumentCompleter -Native -CommandName lamella, lamella.exe -ScriptBlock {\n"
+                       "    param($wordToComplete, $commandAst, $cursorPosition)\n"
+                       "    $commands = [ordered]@{\n";
+    for (const Command& command : commands)
+        text += powershell_command(command);
+    return text + R"(    }
+    $offer = {
+        param($word, $tip, $before = '')
+        if ("$before$word".StartsWith($wordToComplete)) {
+            [System.Management.Automation.CompletionResult]::new("$before$word", $word, 'ParameterValue', $tip)
+        }
+    }
+    # The words in front of the one to complete.
+    $words = @($commandAst.CommandElements | Where-Object { $_.Extent.EndOffset -lt $cursorPosition } |
+        ForEach-Object { $_.ToString() })
+    if ($words.Count -le 1) {
+        foreach ($name in $commands.Keys) { & $offer $name $commands[$name].Summary }
+        foreach ($name in '--help', '--version') { & $offer $name $name }
+        return
+    }
+    $command = $commands[$words[1]]
+    if ($null -eq $command) { return }
+    if ($wordToComplete -match '^(--[a-z-]+)=') {
+        $start = $Matches[0]
+        foreach ($option in $command.Options | Where-Object { "$($_.Name)=" -eq $start }) {
+            foreach ($value in $option.Values) { & $offer $value $option.Help $start }
+        }
+        return
+    }
+    $last = $words[-1]
+    foreach ($option in $command.Options | Where-Object { $_.Takes -and ($_.Name -eq $last -or $_.Letter -ceq $last) }) {
+        foreach ($value in $option.Values) { & $offer $value $option.Help }
+        return # without values, PowerShell offers files
+    }
+    if ($wordToComplete.StartsWith('-')) {
+        foreach ($option in $command.Options) { & $offer $option.Name $option.Help }
+        return
+    }
+    # The words of the first argument until one of them is there, then those of the second.
+    foreach ($choices in $command.Words) {
+        if ($choices.Count -eq 0) { return }
+        if (-not ($words | Select-Object -Skip 2 | Where-Object { $choices -contains $_ })) {
+            foreach ($word in $choices) { & $offer $word $word }
+            return
+        }
+    }
+}
+)";
 }
 
 } // namespace lamella::app

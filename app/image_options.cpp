@@ -69,33 +69,36 @@ Option count_within(std::string name, std::string help, std::uint32_t least, std
 OptionGroup image_options(ImageArguments& target) {
     Option antialias =
         count_within("antialias",
-                     "1 is black and white, by the middles of pixels; 2 to 64: grey by the covered "
-                     "part of each pixel, exact for up to N corners close together; 8 unless given",
+                     "1: black or white, by the centre of each pixel; 2 to 64: grey, by the covered part of "
+                     "each pixel, exact for up to N corners close together (default: 8)",
                      1, most_antialias, target.antialias);
-    Option gamma = positive(
-        "gamma", "G", "grey becomes 255 times the covered part to this power; 1 unless given", target.gamma);
+    Option gamma = positive("gamma", "G", "grey is 255 times the covered part to the power of G (default: 1)",
+                            target.gamma);
     Option fade = count_within(
-        "fade-layers", "sl1: layers in which the first exposure fades to the normal one; 10 unless given", 0,
+        "fade-layers",
+        "sl1: number of layers in which the first exposure fades to the normal one (default: 10)", 0,
         std::numeric_limits<std::uint32_t>::max(), target.fade_layers);
-    return {"Images (png, png-zip, sl1, sl1s)",
-            {lengths("pixel-size", "MM|X,Y", "of a pixel; for png and png-zip 0.05 unless given",
-                     target.pixel_mm),
-             row("resolution", ValueKind::text, "WxH",
-                 "pixels of the display along x and y; for png and png-zip as many as the part needs",
-                 [&target](const std::string& text) { target.pixels = parse_pixels(text); }),
-             lengths("display-size", "X,Y", "of the display, in place of pixel size or resolution",
-                     target.display_mm),
-             choice("orientation", "HOW",
-                    "landscape: x runs from left to right in an image; portrait: x runs upwards",
-                    {"landscape", "portrait"}, target.orientation),
-             choice("mirror", "AXES", "mirror the display, as PrusaSlicer does", {"none", "x", "y", "xy"},
-                    target.mirror),
-             std::move(antialias), std::move(gamma),
-             positive("exposure", "SECONDS",
-                      "sl1: of a layer; 7.5 for the SL1 and 2 for the SL1S unless given", target.exposure_s),
-             positive("first-exposure", "SECONDS", "sl1: of the first three layers; 35 and 25 unless given",
-                      target.first_exposure_s),
-             std::move(fade)}};
+    return {
+        "images",
+        "Images (png, png-zip, sl1, sl1s)",
+        {lengths("pixel-size", "MM|X,Y", "size of a pixel (default for png and png-zip: 0.05)",
+                 target.pixel_mm),
+         row("resolution", ValueKind::text, "WxH",
+             "pixels of the display along x and y (default for png and png-zip: as many as the part needs)",
+             [&target](const std::string& text) { target.pixels = parse_pixels(text); }),
+         lengths("display-size", "X,Y", "size of the display, instead of --pixel-size or --resolution",
+                 target.display_mm),
+         choice("orientation", "HOW", "direction of x in an image, to the right or upwards",
+                {"landscape", "portrait"}, target.orientation),
+         choice("mirror", "AXES", "axes along which the display is mirrored, as in PrusaSlicer",
+                {"none", "x", "y", "xy"}, target.mirror),
+         std::move(antialias), std::move(gamma),
+         positive("exposure", "SECONDS",
+                  "sl1: exposure of a layer (default: 7.5 for the SL1, 2 for the SL1S)", target.exposure_s),
+         positive("first-exposure", "SECONDS",
+                  "sl1: exposure of the first three layers (default: 35 for the SL1, 25 for the SL1S)",
+                  target.first_exposure_s),
+         std::move(fade)}};
 }
 
 void ImageArguments::apply(const LayerFormat& format, LayerWriteOptions& options) const {

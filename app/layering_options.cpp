@@ -93,47 +93,47 @@ Layering LayeringOptions::layering(std::uint64_t max_memory) const {
 Option snap_option(std::optional<double>& target) {
     return length(
         "snap",
-        "vertices no further from a plane than this count as on it, such as those of faces that are "
-        "level but for rounding; less than half of the thinnest layer",
+        "treat vertices at most this far from a plane as lying on it, such as those of faces that are "
+        "horizontal except for rounding; less than half of the thinnest layer",
         target);
 }
 
 OptionGroup layering_options(LayeringOptions& target) {
     Option layer_height = length("layer-height", "thickness of a layer", target.layer_height);
     layer_height.preset = exact(UniformLayers{}.layer_height);
-    Option cusp = length("cusp", "how far the steps of --adaptive may stand off the surface", target.cusp);
+    Option cusp = length("cusp", "largest distance of the steps of --adaptive from the surface", target.cusp);
     cusp.goes_with = "adaptive";
     cusp.preset = exact(AdaptiveLayers{}.cusp_mm);
-    return {
-        "Where it is cut",
-        {std::move(layer_height),
-         length("first-layer-height", "thickness of the first layer, where it differs",
-                target.first_layer_height),
-         choice("slice-at", "WHERE", "where in its thickness a layer is cut", slice_at_names(),
-                target.slice_at),
-         row("z-range", ValueKind::text, "A:B",
-             "only layers cut from z = A to z = B (millimetres); an end may be left out",
-             [&target](const std::string& text) { target.only.z_range = parse_range(text); }),
-         row("layers", ValueKind::text, "A:B",
-             "only layers A to B - 1 of all, counted from 0; an end may be left out",
-             [&target](const std::string& text) { target.only.index_range = parse_index_range(text); }),
-         input_file(
-             "z-list",
-             "cut at the heights listed in this file instead: one a line, # starts a comment; or a JSON list",
-             target.z_list),
-         row("heights", ValueKind::text, "A:B=H,...",
-             "layers of H from A to B above the bottom, of the layer height elsewhere",
-             [&target](const std::string& text) { target.heights = parse_height_ranges(text); }),
-         row("adaptive", ValueKind::text, "MIN:MAX",
-             "layers as high as the slopes of the surface allow, between these heights",
-             [&target](const std::string& text) {
-                 if (text.starts_with(':') || text.ends_with(':'))
-                     throw Error(ErrorKind::usage,
-                                 fmt::format("\"{}\" names one height; both are needed, such as 0.05:0.3",
-                                             excerpt(text)));
-                 target.adaptive = parse_range(text);
-             }),
-         std::move(cusp), snap_option(target.snap)}};
+    return {"layers",
+            "Layers",
+            {std::move(layer_height),
+             length("first-layer-height", "thickness of the first layer, if different",
+                    target.first_layer_height),
+             choice("slice-at", "WHERE", "height within a layer at which it is cut", slice_at_names(),
+                    target.slice_at),
+             row("z-range", ValueKind::text, "A:B",
+                 "only layers cut from z = A to z = B; either end may be omitted",
+                 [&target](const std::string& text) { target.only.z_range = parse_range(text); }),
+             row("layers", ValueKind::text, "A:B",
+                 "only layers A to B - 1 of all, counted from 0; either end may be omitted",
+                 [&target](const std::string& text) { target.only.index_range = parse_index_range(text); }),
+             input_file("z-list",
+                        "cut at the heights listed in this file instead: one per line, # starts a comment; "
+                        "or a JSON list",
+                        target.z_list),
+             row("heights", ValueKind::text, "A:B=H,...",
+                 "layers of height H from A to B mm above the bottom, of the layer height elsewhere",
+                 [&target](const std::string& text) { target.heights = parse_height_ranges(text); }),
+             row("adaptive", ValueKind::text, "MIN:MAX",
+                 "layers between these heights, each as high as the slopes of the surface allow",
+                 [&target](const std::string& text) {
+                     if (text.starts_with(':') || text.ends_with(':'))
+                         throw Error(ErrorKind::usage,
+                                     fmt::format("\"{}\" names one height; both are needed, such as 0.05:0.3",
+                                                 excerpt(text)));
+                     target.adaptive = parse_range(text);
+                 }),
+             std::move(cusp), snap_option(target.snap)}};
 }
 
 } // namespace lamella::app

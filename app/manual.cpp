@@ -39,12 +39,11 @@ std::string command_section(const Command& command) {
     std::string text = fmt::format(".SS lamella {}\n.B lamella {} {}\n.PP\n{}\n", command.name, command.name,
                                    plain(synopsis(command)), plain(command.description));
     for (const Operand& operand : command.operands)
-        text += tagged(operand.placeholder,
-                       operand.choices.empty()
-                           ? operand.help
-                           : fmt::format("{}: {}", operand.help, fmt::join(operand.choices, ", ")));
+        text += tagged(operand.placeholder, operand_body(operand));
     for (const OptionGroup& group : command.groups) {
         text += fmt::format(".PP\n.I {}\n", plain(group.title));
+        if (!group.note.empty())
+            text += fmt::format(".PP\n{}\n", plain(group.note));
         for (const Option& option : group.options)
             text += tagged(option_header(option), option_body(option));
     }

@@ -36,7 +36,7 @@ constexpr std::array<Unit, 9> units{Unit{"mm", 1},  {"cm", 10},      {"m", 1000}
 
 Option scale_option(std::optional<std::vector<double>>& target) {
     return row("scale", ValueKind::numbers, "F|X,Y,Z",
-               "make it larger (or smaller) by a factor, or by one along each axis",
+               "scale by a factor, or by one factor along each axis; a negative one mirrors",
                [&target](const std::string& text) {
                    std::vector<double> factors = parse_numbers(text);
                    if (factors.size() != 1 && factors.size() != 3)
@@ -145,33 +145,36 @@ Option byte_limit(std::string name, std::string help, std::optional<std::uint64_
 
 Option unit_option(std::string& target) {
     Option option =
-        choice("unit", "UNIT", "the unit of the file, if the file does not give it", names_of(units), target);
+        choice("unit", "UNIT", "unit of the file, unless the file states it", names_of(units), target);
     option.preset = "mm";
     return option;
 }
 
 OptionGroup pose_options(PlacementOptions& target) {
-    OptionGroup group{"Where a part stands (in this order)", {}};
+    OptionGroup group{"placement", "Placement", {}, "The part is scaled, then rotated, then moved."};
     group.options.push_back(scale_option(target.scale));
     group.options.push_back(
-        triple("rotate", "X,Y,Z", "turn it by degrees about the x axis, then y, then z", target.rotate));
+        triple("rotate", "X,Y,Z", "rotate by these degrees about the x axis, then y, then z", target.rotate));
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const char letter = "xyz"[axis];
         group.options.push_back(number(fmt::format("rotate-{}", letter), "DEG",
-                                       fmt::format("turn it about the {} axis only", letter),
+                                       fmt::format("rotate about the {} axis only", letter),
                                        target.rotate_axis[axis]));
     }
-    group.options.push_back(triple("translate", "X,Y,Z", "move it by millimetres", target.translate));
+    group.options.push_back(triple("translate", "X,Y,Z", "move by these millimetres", target.translate));
     return group;
 }
 
-OptionGroup placement_options(PlacementOptions& target) {
+OptionGroup placement_options(PlacementOptions& target, const std::vector<Option>& more) {
     OptionGroup group = pose_options(target);
+    group.name = "input";
+    group.title = "Input";
     group.options.insert(group.options.begin(), unit_option(target.unit));
     group.options.push_back(triple("direction", "X,Y,Z",
-                                   "slice along this direction instead of z: the part is rotated so that it "
-                                   "points up",
+                                   "slice along this direction instead of z: the part is rotated so that the "
+                                   "direction points up",
                                    target.direction));
+    group.options.insert(group.options.end(), more.begin(), more.end());
     return group;
 }
 
@@ -220,13 +223,16 @@ Transform PlacementOptions::pose() const {
 
 OptionGroup run_options(RunOptions& target, const std::vector<Option>& more) {
     OptionGroup group{
-        "How it runs",
-        {count("threads", "N", "threads to use; 0 takes all processors; the result is always the same",
+        "limits",
+        "Limits and processes",
+        {count("threads", "N",
+               "number of threads; 0, the default, uses all processors; the result is always the same",
                target.threads),
          choice("progress", "STYLE",
-                "on standard error: a bar (unless asked for, on a terminal only), or JSON, one object a line",
+                "progress on standard error: a bar (without this option only on a terminal), one JSON object "
+                "per line, or none",
                 {"bar", "json", "none"}, target.progress),
-         flag("quiet", "print no progress and no summary, only results, warnings and errors", target.quiet)}};
+         flag("quiet", "print no progress and no summary, but results, warnings and errors", target.quiet)}};
     group.options.front().letter = 'j';
     group.options.back().letter = 'q';
     group.options.insert(group.options.end(), more.begin(), more.end());
@@ -279,8 +285,9 @@ Option include_option(ReadLimits& target) {
             words.emplace_back(known.word);
     return row(
         "include", ValueKind::text, "WHAT",
-        fmt::format("read what 3MF and AMF files mark as {} as solids, too: one or several with commas "
-                    "between them; otherwise negative volumes are subtracted, and the rest is left out",
+        fmt::format("also read bodies that 3MF and AMF files mark with these roles, as solids: {}; commas "
+                    "separate several. Without it, negative volumes are subtracted and other such bodies are "
+                    "left out",
                     fmt::join(words, ", ")),
         [&target, words](const std::string& text) {
             try {
@@ -293,8 +300,7 @@ Option include_option(ReadLimits& target) {
 
 Option max_triangles_option(ReadLimits& target) {
     return row("max-triangles", ValueKind::count, "N",
-               "stop at a file of more triangles than this (exit code 5)",
-               [&target](const std::string& text) {
+               "stop at a file with more than N triangles (exit code 5)", [&target](const std::string& text) {
                    target.max_triangles = parse_count(text);
                    if (*target.max_triangles == 0) // 0 means no limit in the library
                        throw Error(ErrorKind::usage, "there must be one at least");
@@ -303,8 +309,8 @@ Option max_triangles_option(ReadLimits& target) {
 
 Option max_memory_option(ReadLimits& target, std::string_view what) {
     return byte_limit("max-memory",
-                      fmt::format("stop when {} more memory than this, such as 500M or 2G (exit code 5); "
-                                  "three quarters of the memory there is unless given",
+                      fmt::format("stop if {} more memory than this, such as 500M or 2G (exit code 5); "
+                                  "default: three quarters of the memory of the machine",
                                   what),
                       target.max_memory);
 }
@@ -327,19 +333,21 @@ std::vector<Option> layer_output_options(LayerOutputOptions& target) {
     // Options of some formats have no default, because a configuration file with all defaults must be valid
     // for any format.
     return {
-        choice("format", "NAME", "of the slice file, where its name does not end in a known extension",
+        choice("format", "NAME",
+               "format of the slice file; needed if the extension of its name does not determine it",
                names_of(layer_formats()), target.format),
         length("units-mm",
-               fmt::format("{}: millimetres per unit of the file; coordinates are rounded to whole ones with "
-                           "--short, in cli-ascii and in 3mf-toolpath; 0.001 unless given",
-                           formats_with(&LayerFormat::units)),
+               fmt::format(
+                   "{}: millimetres per unit of the file (default: 0.001); coordinates are rounded to whole "
+                   "units in cli-ascii, in 3mf-toolpath and with --short",
+                   formats_with(&LayerFormat::units)),
                target.units_mm),
         flag("short",
              fmt::format("{}: 16-bit coordinates, half the size", formats_with(&LayerFormat::short_form)),
              target.short_form),
         byte_limit(
             "max-output",
-            "stop when the layers take more than this in the slice file, such as 500M or 2G (exit code 5)",
+            "stop if the layers take more than this in the slice file, such as 500M or 2G (exit code 5)",
             target.max_output)};
 }
 
@@ -380,16 +388,18 @@ OptionGroup layer_step_options(LayerStepOptions& target) {
     std::vector<std::string> corners;
     for (const OffsetCorner corner : {OffsetCorner::mitre, OffsetCorner::bevel, OffsetCorner::round})
         corners.emplace_back(offset_corner_name(corner));
-    return {"What is made of the layers, in this order",
-            {choice("fill", "RULE", "unite contours that overlap: where material is, by the winding number",
+    return {"steps",
+            "Layer steps (applied in this order)",
+            {choice("fill", "RULE",
+                    "unite contours that overlap; the rule decides by the winding number where material is",
                     std::move(rules), target.fill),
              number("offset", "MM", "move contours outwards, or inwards by a negative number", target.offset),
-             choice("offset-corners", "SHAPE", "what joins sides that part at a corner when they are moved",
+             choice("offset-corners", "SHAPE", "how --offset joins sides that separate at a corner",
                     std::move(corners), target.offset_corners),
              flag("largest-only", "keep the largest body of each layer, with its holes", target.largest_only),
              row("min-area", ValueKind::number, "MM2", "drop bodies and holes of a smaller area",
                  [&target](const std::string& text) { target.min_area = parse_positive(text); }),
-             length("simplify", "leave out points; contours move by this much at most", target.simplify)}};
+             length("simplify", "drop points; contours move by at most this distance", target.simplify)}};
 }
 
 std::string changes_text(const LayerSteps& steps, const LayerChanges& changes) {

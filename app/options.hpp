@@ -65,7 +65,8 @@ struct PlacementOptions {
 /// Returns "mm", "inch"; the millimetres of a unit without a name.
 [[nodiscard]] std::string unit_name(double mm);
 [[nodiscard]] Option unit_option(std::string& target);
-[[nodiscard]] OptionGroup placement_options(PlacementOptions& target);
+/// Returns the options, followed by `more`.
+[[nodiscard]] OptionGroup placement_options(PlacementOptions& target, const std::vector<Option>& more = {});
 /// Returns the placement options for generated bodies, without unit and direction.
 [[nodiscard]] OptionGroup pose_options(PlacementOptions& target);
 

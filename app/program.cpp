@@ -17,6 +17,7 @@
 #include "standard_streams.hpp"
 #include "suggest.hpp"
 #include "system/program_ending.hpp"
+#include "system/program_start.hpp"
 #include "text_file.hpp"
 
 #include <fmt/format.h>
@@ -45,9 +46,9 @@ namespace {
         throw Error(ErrorKind::usage, fmt::format("there is no command \"{}\"; did you mean lamella {}?",
                                                   excerpt(word), meant));
     if (std::filesystem::exists(word, ignored))
-        throw Error(
-            ErrorKind::usage,
-            fmt::format("\"{}\" is a file; say what to do with it, such as: lamella info {}", word, word));
+        throw Error(ErrorKind::usage,
+                    fmt::format("\"{}\" is a file; say what to do with it, such as: lamella view {}", word,
+                                quoted_for_shell(word)));
     throw Error(ErrorKind::usage,
                 fmt::format("there is no command \"{}\"; lamella --help lists them", excerpt(word)));
 }
@@ -108,7 +109,7 @@ int run(std::vector<Command>& commands, const std::vector<std::string>& words, M
     const bool asks_help = !words.empty() && (words[0] == "--help" || words[0] == "-h");
     const bool asks_about_command = asks_help && words.size() > 1 && !words[1].starts_with('-');
     if (words.empty() || (asks_help && !asks_about_command)) {
-        messages.result(program_help(commands));
+        messages.result(program_help(commands, help_width()));
         return 0;
     }
     // Comparable programs have one or another of these words; a command has none of these letters.
@@ -124,7 +125,7 @@ int run(std::vector<Command>& commands, const std::vector<std::string>& words, M
         refuse_command(words[0], commands);
     switch (parse(*command, std::span(words).subspan(1), messages)) {
     case Wish::help:
-        messages.result(command_help(*command));
+        messages.result(command_help(*command, help_width()));
         return 0;
     case Wish::dump_config:
         messages.result(config_text(*command));
@@ -170,6 +171,10 @@ int run_program(std::vector<Command> commands, const std::vector<std::string>& w
         static_cast<void>(
             std::fflush(stdout)); // flushed here while signals are still handled; the run has failed already
     }
+    // Without a command, the program was perhaps started by a click on it, or by files dropped on it.
+    if (words.empty() || std::none_of(commands.begin(), commands.end(),
+                                      [&](const Command& command) { return command.name == words[0]; }))
+        keep_window_open();
     return code;
 }
 

@@ -12,16 +12,18 @@ namespace lamella::app {
 
 OptionGroup repair_options(RepairPolicies& target) {
     return {
-        "What is mended first",
-        {length("weld-tolerance", "join vertices that are no further apart, the closest pairs first",
+        "repair",
+        "Repair of the mesh",
+        {length("weld-tolerance", "join vertices that are at most this far apart, the closest pairs first",
                 target.weld_tolerance_mm),
          flag("drop-duplicates",
-              "of triangles with the same corners keep one; those that run opposite ways cancel in pairs",
+              "keep one of several triangles with the same corners; pairs of opposite orientation cancel",
               target.drop_duplicates),
          flag("orient",
-              "turn triangles so that neighbours agree, and shells outward, or inward where they are voids",
+              "flip triangles so that neighbours agree, then make bodies face outward and cavities inward",
               target.orient),
-         length("close-gaps", "join ends of open contours that are no further apart, the closest first",
+         length("close-gaps",
+                "join ends of open contours that are at most this far apart, the closest pairs first",
                 target.close_gaps_mm)}};
 }
 

@@ -70,18 +70,18 @@ Option field_option(ScanArguments& target, const std::string& name,
                     std::vector<Rule*> (*rules)(ScanStrategy&)) {
     ScanStrategy preset;
     const StrategyField<Rule>& field = field_of(fields, member);
-    Option option =
-        row(name, std::is_same_v<Value, double> ? ValueKind::number : ValueKind::count,
-            placeholder_of(field.unit),
-            fmt::format("{}; {} by default", field.help, preset_text(rules(preset).front()->*member)),
-            [&target, name, member, rules](const std::string& text) {
-                Value value{};
-                parse(text, value);
-                target.changes.emplace_back(name, [member, rules, value](ScanStrategy& strategy) {
-                    for (Rule* const rule : rules(strategy))
-                        rule->*member = value;
-                });
-            });
+    Option option = row(name, std::is_same_v<Value, double> ? ValueKind::number : ValueKind::count,
+                        placeholder_of(field.unit),
+                        fmt::format(std::is_enum_v<Value> ? "{}, {} by default" : "{} (default: {})",
+                                    field.help, preset_text(rules(preset).front()->*member)),
+                        [&target, name, member, rules](const std::string& text) {
+                            Value value{};
+                            parse(text, value);
+                            target.changes.emplace_back(name, [member, rules, value](ScanStrategy& strategy) {
+                                for (Rule* const rule : rules(strategy))
+                                    rule->*member = value;
+                            });
+                        });
     if constexpr (std::is_enum_v<Value>) {
         option.kind = ValueKind::choice;
         option.placeholder = "NAME";
@@ -111,10 +111,12 @@ ScanStrategy ScanArguments::strategy() const {
 }
 
 OptionGroup scan_options(ScanArguments& target, std::vector<Option> first) {
-    OptionGroup group{"Scan vectors; hatch options apply to all regions, unlike those of a strategy",
-                      std::move(first)};
+    OptionGroup group{"scan", "Scan vectors", std::move(first),
+                      "These options change the strategy. Those of the hatch apply to all regions except "
+                      "supports."};
     group.options.push_back(input_file(
-        "strategy", "a file of contours, hatches, skins and powers; see lamella strategy show", target.file));
+        "strategy", "TOML file of contours, hatches, skins, supports and powers; see lamella strategy",
+        target.file));
     const auto add = [&](const std::string& name, auto fields, auto member, auto rules) {
         group.options.push_back(field_option(target, name, fields, member, rules));
     };

@@ -133,7 +133,7 @@ Command read_command() {
                               [arguments](const std::string& text) {
                                   arguments->input = text;
                               }}},
-            .groups = {{"Input", {unit_option(arguments->placement.unit)}},
+            .groups = {{"input", "Input", {unit_option(arguments->placement.unit)}},
                        run_options(arguments->run, {include_option(arguments->limits),
                                                     max_triangles_option(arguments->limits)}),
                        common_options(false)},

@@ -1,5 +1,6 @@
 """Words on the command line, help, and configuration files."""
 
+import json
 import re
 
 from program import ON_WINDOWS, ProgramTest, main, needs_posix
@@ -105,6 +106,44 @@ class CommandLine(ProgramTest):
         self.fail_with(2, "lamella --help", "zzzzzz")
         self.fail_with(2, "say what to do with it", "box.stl")
 
+    @needs_posix("quotes of its shell")
+    def test_a_command_with_a_file_can_be_copied(self):
+        for name, quoted in [("box.stl", "box.stl"), ("my box.stl", "'my box.stl'"), ("it's.stl", "'it'\\''s.stl'"), ("$HOME.stl", "'$HOME.stl'")]:
+            self.box(name)
+            result = self.fail_with(2, "is a file; say what to do with it, such as: lamella view", name)
+            self.assertTrue(result.err.endswith(f"such as: lamella view {quoted}\n"), result.err)
+
+    def test_text_files_in_utf_16(self):
+        """As redirections of Windows PowerShell write them."""
+        self.box("Gehäuse.stl")
+        self.box("歯車𝄞.stl")
+        for encoding in ["utf-16-le", "utf-16-be", "utf-8"]:
+            def text(name, content):
+                self.write(name, ("\ufeff" + content).encode(encoding))
+
+            with self.subTest(encoding):
+                text("list.txt", "Gehäuse.stl\r\n# not this one\r\n歯車𝄞.stl\r\n")
+                lines = self.succeed("slice", "--batch", "list.txt", "-o", "out", "--format", "cli", "--layer-height", "5").text.splitlines()
+                self.assertEqual([json.loads(line)["path"] for line in lines], ["Gehäuse.stl", "歯車𝄞.stl"])
+                text("z.txt", "1.5\r\n2.5\r\n")
+                text("job.toml", 'label = "Gehäuse"\r\nz-list = "z.txt"\r\n')
+                stats = self.succeed("slice", "Gehäuse.stl", "--config", "job.toml", "--stats", "-").json()
+                self.assertEqual([layer["z"] for layer in stats["layers"]], [1.5, 2.5])
+                text("strategy.toml", self.succeed("strategy", "show").text)
+                self.succeed("strategy", "check", "strategy.toml")
+        self.write("z.txt", "\ufeff1\n".encode("utf-16-le") + b"\x00\xd8\x00")  # half a pair, and half a unit
+        self.fail_with(2, "z.txt:2: ", "slice", "Gehäuse.stl", "--z-list", "z.txt", "--stats", "-")
+
+    def test_the_format_of_images_and_of_a_batch(self):
+        self.box()
+        self.fail_with(2, r"'s\.png': images go into a folder, one for each layer; give the path of a folder and the --format png",
+                       "slice", "box.stl", "-o", "s.png")
+        self.fail_with(2, "'s' has no extension that determines the format; choose another, or a --format", "slice", "box.stl", "-o", "s")
+        self.fail_with(2, "the extension of 's.xyz' is that of no format", "slice", "box.stl", "-o", "s.xyz")
+        self.fail_with(2, "out becomes a folder with a file for each mesh; choose their format, such as --format cli",
+                       "slice", "--batch", ".", "-o", "out")
+        self.succeed("slice", "--batch", ".", "-o", "out", "--format", "cli", "--layer-height", "5")
+
     def test_values_follow_a_blank_or_an_equals_sign(self):
         self.box()
         layers = [self.succeed("slice", "box.stl", "--stats", "-", *words).json()["layers"]
@@ -124,7 +163,7 @@ class CommandLine(ProgramTest):
         self.fail_with(2, "needs FILE", "slice", "-o", "a.cli")
         self.fail_with(2, "needs OUT", "convert", "a.cli")
         self.fail_with(2, "needs BODY.*rook", "make")
-        self.fail_with(2, '"b.stl"', "info", "box.stl", "b.stl")
+        self.fail_with(2, '"b.stl"', "view", "box.stl", "b.stl")
         self.fail_with(2, "-o needs a value", "slice", "box.stl", "-o")
         self.fail_with(2, "-o needs a value", "slice", "box.stl", "-o", "--strict")
         self.fail_with(2, "neither true nor false", "slice", "box.stl", "--strict=perhaps")

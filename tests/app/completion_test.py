@@ -31,9 +31,30 @@ class Completion(ProgramTest):
     def test_fish_takes_the_script(self):
         self.check_syntax("fish")
 
+    def test_powershell_gets_a_script_of_matched_brackets_and_quotes(self):
+        """Where PowerShell is installed, its own parser says so, too."""
+        script = self.succeed("completion", "powershell").text
+        self.assertTrue(script.isascii())
+        # A string in single quotes contains anything but these, which are doubled in it.
+        code = re.sub(r"'(?:[^'\n]|'')*'|\"[^\"\n]*\"|#.*", "", script)
+        self.assertNotRegex(code, "['\"]")
+        opened = []
+        for character in code:
+            if character in "([{":
+                opened.append(character)
+            elif character in ")]}":
+                self.assertEqual(opened.pop() + character, {")": "()", "]": "[]", "}": "{}"}[character])
+        self.assertEqual(opened, [])
+        if shutil.which("pwsh") is not None:
+            path = self.write("lamella.ps1", script)
+            check = ("$errors = $null; [void][System.Management.Automation.Language.Parser]::ParseFile("
+                     f"'{path}', [ref]$null, [ref]$errors); $errors; exit $errors.Count")
+            done = subprocess.run(["pwsh", "-NoProfile", "-Command", check], capture_output=True, timeout=120)
+            self.assertEqual(done.returncode, 0, done.stdout)
+
     def test_every_option_is_in_every_script_and_in_the_man_page(self):
         manual = self.succeed("help", "--man").text.replace("\\-", "-")
-        scripts = {shell: self.succeed("completion", shell).text for shell in ["bash", "zsh", "fish"]}
+        scripts = {shell: self.succeed("completion", shell).text for shell in ["bash", "zsh", "fish", "powershell"]}
         for command in COMMANDS:
             options = self.options(command)
             self.assertIn("--help", options)
@@ -42,6 +63,7 @@ class Completion(ProgramTest):
                 self.assertIn(option, scripts["bash"])
                 self.assertIn(option, scripts["zsh"])
                 self.assertIn(f"-l {option[2:]} ", scripts["fish"])
+                self.assertIn(f"Name = '{option}'; ", scripts["powershell"])
 
     def complete(self, *words):
         """What bash offers for the last word."""
@@ -61,6 +83,7 @@ class Completion(ProgramTest):
         self.assertEqual(self.complete("make", "ro"), ["rook"])
         self.assertIn("sweep", self.complete("slice", "--engine", ""))
         self.assertEqual(self.complete("help", "ver"), ["verify"])
+        self.assertEqual(self.complete("help", "slice", "sc"), ["scan"])
         self.assertEqual(self.complete("strategy", ""), ["show", "check"])
         self.assertEqual(self.complete("strategy", "check", ""), [])  # files, which bash finds by itself
 
@@ -76,6 +99,7 @@ class Completion(ProgramTest):
 
         self.assertEqual(complete("make ro"), ["rook"])
         self.assertEqual(complete("help ver"), ["verify"])
+        self.assertEqual(complete("help slice sc"), ["scan"])
         self.assertEqual(sorted(complete("strategy ")), ["check", "show"])
         self.assertIn("s.toml", complete("strategy check "))
         self.assertNotIn("show", complete("strategy check "))

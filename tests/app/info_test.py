@@ -1,5 +1,6 @@
 """lamella info, of meshes and of slice files."""
 
+import json
 import zipfile
 
 from program import ProgramTest, binary_stl, box_triangles, main, open_box
@@ -27,6 +28,19 @@ class Info(ProgramTest):
         self.assertAlmostEqual(found["area_mm2"], 2200, places=3)
         self.assertTrue(found["closed"])
         self.assertEqual(set(found["defects"].values()), {0})
+
+    def test_several_files_are_described_one_after_the_other(self):
+        one, other = self.box("a.stl"), self.box("b.stl", size="1,2,3")
+        self.succeed("slice", one, "-o", "a.cli")
+        texts = [self.succeed("info", name).text for name in [one, "a.cli", other]]
+        self.assertEqual(self.succeed("info", one, "a.cli", other).text, "".join(texts))
+        lines = self.succeed("info", "--json", one, other).text.splitlines()
+        self.assertEqual([json.loads(line)["path"] for line in lines], [one, other])
+        result = self.run_program("info", "none.stl", one, self.write("open.stl", binary_stl(open_box(1, 1, 1))), "--strict")
+        self.assertEqual(result.code, 3)
+        self.assertIn("a.stl", result.text)
+        self.assertRegex(result.err, r"error: none\.stl: there is no such file\nlamella: error: .*open\.stl: the mesh has defects\n$")
+        self.fail_with(2, "several files and --report contradict", "info", one, other, "--report", "page.html")
 
     def test_supports_are_included_where_they_are_asked_for(self):
         corners = [(x + dx, y, z) for dx in (0, 10) for x, y, z in [(0, 0, 0), (3, 0, 0), (0, 3, 0), (0, 0, 3)]]

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """A program for another system, in an emulator: the bytes of its files are those of the program for this system."""
 
+import json
 import os
 import re
 import subprocess
@@ -94,6 +95,59 @@ class OtherSystem(ProgramTest):
         self.path("box.cli").chmod(0o444)
         self.fail_with(6, "'box.cli'.*write-protected", "slice", "box.stl", "-o", "box.cli")
         self.assertEqual(self.bytes_of("box.cli"), before)
+
+    @unittest.skipUnless(ON_WINDOWS, "this is no program for Windows")
+    def test_a_pattern_stands_for_the_files_that_it_matches(self):
+        self.path("teile").mkdir()
+        for name in ["teile/B.STL", "teile/a.stl", "teile/ä b.stl", "teile/.hidden.stl", "teile/a.stlx", "teile/c.stl.txt"]:
+            self.box("box.stl")
+            self.path("box.stl").rename(self.path(name))
+        self.path("teile/folder.stl").mkdir()
+
+        def described(*words):
+            return [json.loads(line)["path"] for line in self.succeed("info", "--json", *words).text.splitlines()]
+
+        self.assertEqual(described("teile/*.stl"), ["teile/a.stl", "teile/B.STL", "teile/ä b.stl"])
+        self.assertEqual(described(r"teile\?.stl"), [r"teile\a.stl", r"teile\B.STL"])
+        self.assertEqual(described("teile/? b.s*", "teile/*.stlx"), ["teile/ä b.stl", "teile/a.stlx"])
+        self.assertEqual(described(windows_path(self.path("teile")) + r"\**l"),
+                         [windows_path(self.path(f"teile/{name}")) for name in ["a.stl", "B.STL", "ä b.stl"]])
+        self.assertEqual(json.loads(self.succeed("info", "--json", "teile/.*.stl").text)["path"], "teile/.hidden.stl")
+        parts = self.succeed("slice", "teile/*.stl", "--stats", "-", "--layer-height", "5").json()["parts"]
+        self.assertEqual(len(parts), 3)
+        for words in [["info", "*.stl"], ["slice", "nowhere/*.stl", "-o", "a.cli"]]:
+            self.fail_with(2, r"no file has a name of this form; only the last part of a path may have \* and \?", *words)
+        self.fail_with(3, r"\*/a.stl: there is no such file", "info", "*/a.stl")
+        self.fail_with(2, "takes one argument", "view", "teile/*.stl")
+
+    @unittest.skipUnless(ON_WINDOWS, "this is no program for Windows")
+    def test_names_of_devices_are_refused_as_outputs(self):
+        self.box()
+        for name in ["aux.cli", "NUL.cli", "con.svg.gz", "COM1.cli", "lpt9.x.json", "com¹.cli", r"out\prn.cli", "Aux .cli"]:
+            with self.subTest(name):
+                self.fail_with(6, "stand for a device of this system; choose another name", "slice", "box.stl", "-o", name,
+                               "--layer-height", "5")
+        self.fail_with(6, "stand for a device", "slice", "box.stl", "-o", "aux", "--format", "png", "--layer-height", "5")
+        self.fail_with(6, "stand for a device", "make", "box", "-o", "aux.stl")
+        for name in ["auxiliary.cli", "com.cli", "com10.cli", "my.aux.cli"]:
+            self.succeed("slice", "box.stl", "-o", name, "--layer-height", "5")
+            self.assertTrue(self.path(name).is_file())
+        self.succeed("slice", "box.stl", "-o", "NUL", "--format", "cli", "--layer-height", "5")
+
+    @unittest.skipUnless(ON_WINDOWS, "this is no program for Windows")
+    def test_a_network_folder_that_cannot_be_reached_is_named(self):
+        self.box()
+        self.fail_with(6, r"cannot write '\\\\nohost\\share\\x.cli': the network folder '\\\\nohost\\share' cannot be reached; "
+                          "check its name and the network", "slice", "box.stl", "-o", r"\\nohost\share\x.cli")
+        self.fail_with(6, "the folder 'nowhere' does not exist; create it first", "slice", "box.stl", "-o", "nowhere/x.cli")
+
+    @unittest.skipUnless(ON_WINDOWS, "this is no program for Windows")
+    def test_a_command_with_a_file_can_be_copied(self):
+        self.path("Jürgen Müller").mkdir()
+        self.box("Jürgen Müller/Teil 1.stl")
+        name = windows_path(self.path("Jürgen Müller/Teil 1.stl"))
+        result = self.fail_with(2, "is a file; say what to do with it", name)
+        self.assertIn(f'such as: lamella view "{name}"', result.err)
 
     def test_lists_with_crlf(self):
         self.box("a.stl")

@@ -92,7 +92,7 @@ class ProgramTest(unittest.TestCase):
     def engines(self):
         """The names of all engines, as the help has them."""
         text = " ".join(self.succeed("slice", "--help").text.split())
-        return re.search(r"--engine NAME the algorithm: (.*?) \[", text)[1].split(", ")
+        return re.search(r"--engine NAME the slicing algorithm: (.*?) \(default", text)[1].split(", ")
 
     def fail_with(self, code, pattern, *arguments, **keywords):
         """One line of error, nothing on standard output, no file that was not there before."""

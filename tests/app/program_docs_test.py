@@ -30,7 +30,9 @@ class ProgramDocs(ProgramTest):
                 self.assertEqual(real - told - shared, set())
 
     def test_the_exit_codes(self):
-        codes = re.findall(r"^ +(\d+)  (.*)$", self.succeed("--help").text, re.MULTILINE)
+        listed = self.succeed("--help").text.partition("Exit codes:\n")[2]
+        codes = [(code, " ".join(text.split())) for code, text in
+                 re.findall(r"^ +(\d+)  (.*(?:\n {7}.*)*)$", listed, re.MULTILINE)]
         self.assertEqual(len(codes), 9)
         page = self.page.replace("`", "")
         for code, text in codes:

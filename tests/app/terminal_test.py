@@ -9,8 +9,9 @@ import struct
 import subprocess
 import termios
 import time
+import unittest
 
-from program import COMMAND, ProgramTest, main, needs_posix
+from program import COMMAND, ON_WINDOWS, ProgramTest, main, needs_posix
 
 
 class Terminal(ProgramTest):
@@ -64,6 +65,24 @@ class Terminal(ProgramTest):
             lines = [line for line in text.split("\r") if line.startswith("slic")]
             self.assertTrue(any(re.search(bar, line) for line in lines), text)
             self.assertLess(max(len(line) for line in lines if "\n" not in line), columns, text)
+
+    @unittest.skipUnless(ON_WINDOWS, "this is no program for Windows")
+    def test_a_window_that_shows_a_dropped_file_waits_for_a_key(self):
+        """The console is the program's own, as if Explorer had made it."""
+        self.box()
+        for words, shown in [(["box.stl"], 'lamella view "box.stl"'), ([], "lamella make rook")]:
+            code, text = self.run_in_terminal(*words, typed=b"x", after="Press a key to close this window.")
+            self.assertIn(shown, text)
+            self.assertIn("Press a key", text)
+            self.assertEqual(code, 2 if words else 0, text)
+
+    @needs_posix("a size of the terminal")
+    def test_help_is_as_wide_as_the_terminal(self):
+        for columns, longest in [(40, 40), (64, 64), (90, 90), (200, 100)]:
+            _, text = self.run_in_terminal("slice", "--help", columns=columns)
+            widths = [len(line) for line in text.replace("\r", "").splitlines()]
+            self.assertLessEqual(max(widths), longest)
+            self.assertGreater(max(widths), longest - 8)
 
     def test_errors_are_shown(self):
         code, text = self.run_in_terminal("info", "Gehäuse.stl")

@@ -73,7 +73,7 @@ class Texts(ProgramTest):
 
     def test_values_of_options_are_quoted_up_to_200_characters(self):
         long = "x" * 5000
-        for arguments in [[long], ["info", "a", long], ["slice", "a.stl", "--layer-height", long],
+        for arguments in [[long], ["view", "a", long], ["slice", "a.stl", "--layer-height", long],
                           ["slice", "a.stl", "--format", long, "-o", "b"], ["slice", "a.stl", "--max-memory", long],
                           ["slice", "a.stl", "--translate", long], ["slice", "a.stl", "--heights", long],
                           ["slice", "a.stl", "--progress=" + long], ["slice", "a.stl", "--direction", long]]:
@@ -110,15 +110,6 @@ class Texts(ProgramTest):
                 errors = [one for one in objects if "error" in one]
                 self.assertEqual(len(errors), 1, objects)
                 self.assertEqual(errors[0]["exit_code"], result.code)
-
-    def test_help_says_what_is_checked_and_joined_in_whole_sentences(self):
-        verify = " ".join(self.succeed("verify", "--help").text.split())
-        self.assertIn("Scan vectors are checked alike. All must lie inside the mesh, or without --mesh inside the part's outermost "
-                      "contour. With --strategy or --scan: distance from the edge, missing contours, spacing, angle and length of "
-                      "hatch lines, and whether they fill the area.", verify)
-        merge = " ".join(self.succeed("merge", "--help").text.split())
-        self.assertIn("Files that overlap, leave gaps or come from different jobs are refused. An exposure may be missing in some; "
-                      "in ilt, ovf and 3mf-toolpath a whole part.", merge)
 
     @unittest.skipIf("LAMELLA_SANITIZED" in os.environ, "a sanitizer needs more address space")
     def test_copies_that_exhaust_memory_are_named_as_what_to_reduce(self):
