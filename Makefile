@@ -112,14 +112,15 @@ packages-windows: packages-viewer
 	@tools/install_packages.sh tools/packages-windows.txt
 	@tools/build_libraries.sh mingw
 
-# The archive contains the installed folder.
-windows: packages-windows  ## build the program and the libraries for Windows: a zip archive in build-windows/
+# The playground is in the archive of the program if `make web` has built it.
+windows: packages-windows  ## build the program and the libraries for Windows: two zip archives in build-windows/
 	cmake --preset windows -D LAMELLA_TESTS=OFF
 	cmake --build build-windows --target lamella lamella-io lamella_app lamella_app_files
 	@rm -rf build-windows/package
 	cmake --install build-windows --strip --prefix build-windows/package >/dev/null
-	cd build-windows/package && cmake -E tar cf ../lamella-$(VERSION)-windows-x86_64.zip --format=zip .
-	@ls -l build-windows/lamella.exe build-windows/lamella-$(VERSION)-windows-x86_64.zip
+	/usr/bin/python3 -B tools/windows/make_archives.py build-windows/package build-windows/app/lamella.ps1 \
+	    build/web/playground.html $(VERSION) build-windows
+	python3 -B tests/project/windows_archives_test.py build-windows
 
 # Built here, not run: the workflow runs the tests on macOS. The program for this system prints the man page and the
 # completions.
@@ -133,7 +134,7 @@ macos-arm64 macos-x86_64:
 	@tools/build_libraries.sh $@
 	cmake --preset $@
 	cmake --build build-$@ --target lamella lamella-io lamella_app
-	cp build/app/lamella.1 build/app/lamella.bash build/app/_lamella build/app/lamella.fish build-$@/app/
+	cp build/app/lamella.1 build/app/lamella.bash build/app/_lamella build/app/lamella.fish build/app/lamella.ps1 build-$@/app/
 	@rm -rf build-$@/package
 	cmake --install build-$@ --prefix build-$@/package >/dev/null
 	cd build-$@/package && cmake -E tar czf ../lamella-$(VERSION)-$@.tar.gz --format=gnutar .
