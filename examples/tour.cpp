@@ -45,7 +45,7 @@ void tour() {
             std::cout << "  " << found.*kind.count << " " << kind.words.many << ": " << kind.words.meaning
                       << "\n";
     const OrientedMesh oriented = orient(welded, execution);
-    std::cout << "  " << oriented.flipped_triangles << " triangle turned round\n";
+    std::cout << "  " << oriented.flipped_triangles << " triangle flipped\n";
 
     // Place the mesh, plan the layers and slice it.
     const Mesh mesh = Mesh(oriented.mesh).transformed(compose(translation(100, 50, 0), rotation('z', 30)));
@@ -73,7 +73,7 @@ void tour() {
               << compare(layer, smaller).distance_mm << " mm away\n";
     const PixelGrid grid{.width = 64, .height = 48, .ux = 2, .u0 = -184, .vy = 2, .v0 = -96};
     const GreyImage image = paint({&layer, 1}, grid);
-    std::cout << "  a picture of " << image.width << " x " << image.height << " pixels\n";
+    std::cout << "  an image of " << image.width << " x " << image.height << " pixels\n";
 
     // The name of a format selects the writer, the content of a file the reader. Then check that the layers
     // are sound and what volume they have.

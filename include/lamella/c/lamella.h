@@ -165,7 +165,7 @@ LAMELLA_C_API const char* lamella_warnings(void);
 /* Reads all meshes of a file as one mesh. */
 LAMELLA_C_API lamella_status lamella_read_mesh(const char* path, const lamella_settings* settings,
                                                lamella_mesh** mesh);
-/* Reads a copy of a file in memory; `name` is used in error messages. */
+/* Reads a mesh from the contents of a file in memory; `name` is used in error messages. */
 LAMELLA_C_API lamella_status lamella_read_mesh_bytes(const void* bytes, size_t size, const char* name,
                                                      const lamella_settings* settings, lamella_mesh** mesh);
 /* Copies arrays: x, y and z of each vertex, and three indices for each triangle, counter-clockwise seen
@@ -214,7 +214,7 @@ LAMELLA_C_API void lamella_free_slicer(lamella_slicer* slicer);
    it. */
 LAMELLA_C_API lamella_status lamella_read_layers(const char* path, const lamella_settings* settings,
                                                  lamella_layers** layers);
-/* Reads a copy of a slice file in memory; `name` is used in error messages. */
+/* Reads layers from the contents of a slice file in memory; `name` is used in error messages. */
 LAMELLA_C_API lamella_status lamella_read_layers_bytes(const void* bytes, size_t size, const char* name,
                                                        const lamella_settings* settings,
                                                        lamella_layers** layers);
