@@ -80,7 +80,7 @@ export class LayerView {
     this.order = hasVectors(page.head) ? new OrderBar(page, store, orderPlayer) : null;
     this.tools = this.#tools();
     this.readout = element('output', { className: 'readout', 'aria-hidden': true });
-    this.told = element('output', { className: 'told', 'aria-live': 'polite', hidden: true });
+    this.answer = element('output', { className: 'answer', 'aria-live': 'polite', hidden: true });
     this.legend = element('div', { className: 'legend', hidden: true });
     this.scaleText = element('span');
     this.scale = element('div', { className: 'scale', 'aria-hidden': true }, this.scaleText, element('i'));
@@ -91,7 +91,7 @@ export class LayerView {
       this.tools,
       this.scale,
       this.legend,
-      this.told,
+      this.answer,
       this.readout,
       ...(this.order ? [this.order.node] : []),
       element('p', { id: 'keys-of-layer', className: 'unseen' }, 'Plus and minus zoom, shift and arrows move, 0 shows all.'),
@@ -313,8 +313,8 @@ export class LayerView {
     let text = '';
     if (measuring) text = ['Click where the distance begins', 'Click where it ends'][this.#ends.length] ?? distanceText(...this.#ends);
     else if (this.#picked) text = pickText(this.#picked, this.#layer, this.#vectors, this.#page.head.parts);
-    this.told.value = text;
-    this.told.hidden = text === '';
+    this.answer.value = text;
+    this.answer.hidden = text === '';
   }
 
   zoomBy(factor) {
