@@ -11,8 +11,9 @@
 LAMELLA_API_BEGIN
 namespace lamella {
 
-/// Returns the text as one line of valid UTF-8: controls, also bidirectional, malformed bytes, U+FFFE and
-/// U+FFFF become \xNN. Text of more than `max_bytes` bytes is cut after a whole character and ends in "...".
+/// Returns the text as one line of valid UTF-8. Control characters (also of bidirectional text), malformed
+/// bytes, U+FFFE and U+FFFF become \xNN. Text of more than `max_bytes` bytes is cut after a whole character
+/// and ends in "...".
 [[nodiscard]] std::string printable(std::string_view text, std::size_t max_bytes = std::string_view::npos);
 
 /// Returns whether the text is valid UTF-8.

@@ -25,17 +25,17 @@ namespace lamella {
 
 /// Reference for the checks of layers or scan vectors.
 struct VerifyOptions {
-    /// Reference mesh, which should be closed; repaired as the one that was sliced. The area and centroid of
-    /// each layer are compared with those of the mesh's section at the layer's z. Scan vectors must lie
-    /// within the section; without a mesh, within the outermost contour of their part.
+    /// Reference mesh. It should be closed, and repaired in the same way as the mesh that was sliced. The
+    /// area and centroid of each layer are compared with those of the mesh's section at the layer's z. Scan
+    /// vectors must lie within the section; without a mesh, within the outermost contour of their part.
     std::optional<Mesh> mesh = {};
     /// The plate that `mesh` was made from. Its negative volumes, if any, are subtracted.
     std::optional<Plate> plate = {};
     /// The rule by which the layers were cut; relevant only for planes through horizontal faces.
     PlaneRule rule = PlaneRule::section_above;
     double snap_mm = 0; ///< snap distance with which the layers were cut; see Plan
-    /// Gaps that were closed in the layers of each part; see close_gaps. Closed alike in the sections of
-    /// `plate`, or of `mesh` if there is none.
+    /// Distance up to which gaps were closed in the layers of each part; see close_gaps. The gaps in the
+    /// sections of `plate`, or of `mesh` if there is no plate, are closed in the same way.
     std::optional<double> close_gaps_mm = {};
     /// Steps applied to the layers of the mesh, as one part. Deviations by `simplify_mm` are tolerated. If
     /// neither gaps are closed nor steps taken, areas are computed with section_areas.

@@ -39,9 +39,9 @@ enum class InversionSearch : std::uint8_t {
 
 /// Returns the inverted rings of a layer in normal form. A ring does not count if it is so thin that
 /// `rounding`, or the single precision in which most meshes are stored, may have inverted it: see
-/// `orientation_is_lost`. Nor do rings count that cancel each other, because no area, or a film as thin as
-/// this rounding, is between them: a plane that touches a knife edge cuts such rings. All other decisions of
-/// a full search are exact, also for rings that touch and overlap.
+/// `orientation_is_lost`. Rings that cancel each other do not count either: there is no area between them, or
+/// a film as thin as this rounding, as where a plane touches a knife edge. All other decisions of a full
+/// search are exact, also for rings that touch and overlap.
 ///
 /// Throws the errors of `fill`. A quick search costs O(rings) if all rings run counter-clockwise, and O(n + c
 /// log c) if all c clockwise rings lie in material, for outer rings of n points. All other layers, and every

@@ -64,9 +64,9 @@ using RowSink = std::function<void(std::span<const PixelRun> row, std::uint32_t 
 struct RasterAreas {
     double covered = 0; ///< before coverage is rounded to values
     /// Material that no pixel shows. With anti-aliasing: the coverage of pixels whose value is 0. Without:
-    /// bodies, and fins of bodies, that lie between the lines through the centres of pixels, or between the
-    /// centres of at least two consecutive rows. What rounding to whole pixels takes from the edges of larger
-    /// bodies does not count.
+    /// bodies, and thin parts of bodies, that lie between the lines through the centres of pixels, or between
+    /// the centres of at least two consecutive rows. Area that the edges of larger bodies lose by rounding to
+    /// whole pixels does not count.
     double unseen = 0;
 };
 
