@@ -46,7 +46,7 @@ TEST(LayerImages, AHoleWhoseOuterContourIsOpenIsNoBody) {
         add_contour(builder, {{0, 0}, {20, 0}, {20, 20}, {0, 20}}, !torn);
         add_contour(builder, {{30, 0}, {34, 0}, {34, 5}, {30, 5}});
         const std::vector<Layer> parts{builder.finish(0, 0.5, 0, 1)};
-        return images.image(parts).covered;
+        return images.image(parts).areas.covered;
     };
     EXPECT_EQ(covered(false), 20 * 20 - 10 * 10 + 4 * 5);
     EXPECT_EQ(covered(true), 4 * 5) << "what is whole is drawn";
@@ -56,7 +56,7 @@ TEST(LayerImages, AHoleWhoseOuterContourIsOpenIsNoBody) {
     add_contour(builder, {{0, 0}, {0, 10}, {10, 10}, {10, 0}});
     add_contour(builder, {{30, 0}, {34, 0}, {34, 5}}, false);
     const std::vector<Layer> apart{builder.finish(0, 0.5, 0, 1)};
-    EXPECT_EQ(images.image(apart).covered, 10 * 10);
+    EXPECT_EQ(images.image(apart).areas.covered, 10 * 10);
 }
 
 } // namespace
