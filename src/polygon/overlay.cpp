@@ -101,7 +101,7 @@ class Filler {
         const Bundles bundles =
             of_both && closeness_ == Closeness::rounding ? Bundles::always : Bundles::when_many;
         const Arrangement arrangement = arranged(wound(group), around, *grid_, budget_, most_, bundles);
-        if (arrangement.sides.empty()) { // the rings cancel
+        if (arrangement.sides.empty() && !material_(around)) { // the rings cancel
             for (const std::uint32_t ring : group)
                 fates_[ring] = Fate::dropped;
             return;

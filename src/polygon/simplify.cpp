@@ -187,9 +187,9 @@ bool refine_crossings(Thinned& thinned, const Layer& layer, const LayerLimits& l
     const Crossings some = find_crossings(layer, at_once, std::max(room, room + 1), limits);
     if (refine(some))
         return true;
+    budget.need(some.count, bytes, "crossings of contours"); // throws if the search ended there
     if (some.count <= at_once)
         return false;
-    budget.need(some.count, bytes, "crossings of contours");
     return refine(find_crossings(layer, some.count, some.count, limits)); // the first may all be old ones
 }
 
