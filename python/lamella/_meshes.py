@@ -230,7 +230,7 @@ def _arrays_of(name: str, thing: Any) -> Optional[Tuple[Any, Any]]:
     if points is not None and cells is not None:
         return points, _triangles_of_cells(name, cells)
     vectors = _attribute(thing, "vectors")
-    if vectors is not None and np.ndim(vectors) == 3:
+    if vectors is not None and np.shape(vectors)[1:] == (3, 3):
         corners = np.asarray(vectors)
         return corners.reshape(-1, 3), np.arange(len(corners) * 3).reshape(-1, 3)
     return _arrays_of_vtk(name, thing)

@@ -134,7 +134,9 @@ def test_something_must_be_mended():
 @pytest.mark.filterwarnings("ignore::lamella.DefectWarning")
 def test_the_program_checks_with_the_same_options(program, tmp_path):
     part = tmp_path / "part.obj"
-    lamella.write(part, lamella.Mesh(*damaged()))
+    vertices, faces = damaged()
+    faces[6] = faces[6, ::-1]  # of a wall, so that areas of sections are wrong
+    lamella.write(part, lamella.Mesh(vertices, faces))
     options = ["--weld-tolerance", "0.01", "--drop-duplicates", "--orient"]
     program.succeed("slice", part, "--layer-height", "0.7", *options, "-o", tmp_path / "part.cli")
     program.succeed("verify", tmp_path / "part.cli", "--mesh", part, *options)

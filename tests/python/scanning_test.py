@@ -193,18 +193,14 @@ def test_supports_have_rules_of_their_own():
         lamella.scan(layers, support="yes")
 
 
+@pytest.mark.filterwarnings("ignore:.*parameters of scan vectors")
 def test_files_of_vectors_are_verified(tmp_path):
     strategy = {"contours": {"count": 2}}
     layers = [square(10, z=0.05 + 0.1 * i, index=i) for i in range(5)]
     scanned = list(lamella.scan(layers, strategy))
     path = tmp_path / "job.cli"
 
-    def write(vectors):
-        names = [f"part {exposure.name}" for exposure in vectors[0].exposures]
-        stacks = [lamella.Stack([layer.layers[k] for layer in vectors], name) for k, name in enumerate(names)]
-        lamella.write(path, stacks)
-
-    write(scanned)
+    lamella.write(path, scanned)
     cube = tmp_path / "cube.stl"
     corners = np.array([(x, y, z) for z in (0, 0.5) for y in (0, 10) for x in (0, 10)], float)
     faces = [(0, 2, 1), (1, 2, 3), (4, 5, 6), (5, 7, 6), (0, 1, 4), (1, 5, 4),
