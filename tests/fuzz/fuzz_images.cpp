@@ -77,7 +77,7 @@ bool close_to_an_edge(const Layer& layer, double x, double y) {
 
 double covered(const Layer& layer, const RasterOptions& options) {
     std::uint32_t rows = 0;
-    const double result =
+    const RasterAreas areas =
         rasterise({&layer, 1}, {.width = width, .height = height}, options,
                   [&](std::span<const PixelRun> row, std::uint32_t times) {
                       require(times > 0 && !row.empty() && row.front().end > 0 && row.back().end == width);
@@ -86,7 +86,7 @@ double covered(const Layer& layer, const RasterOptions& options) {
                       rows += times;
                   });
     require(rows == height);
-    return result;
+    return areas.covered;
 }
 
 } // namespace
