@@ -678,9 +678,11 @@ lamella_status lamella_close_gaps(const lamella_layers* layers, double distance,
                                   lamella_layers** result) {
     return give(result, "result", [&] {
         std::uint64_t joins = 0;
+        const Execution execution = execution_of(settings);
+        const LayerLimits limits = layer_limits(execution);
         lamella_layers made =
-            changed(required(layers, "layers"), execution_of(settings), [&](std::size_t, const Layer& layer) {
-                ClosedGaps found = close_gaps(layer, distance);
+            changed(required(layers, "layers"), execution, [&](std::size_t, const Layer& layer) {
+                ClosedGaps found = close_gaps(layer, distance, limits);
                 joins += found.joins.size();
                 return std::move(found.layer);
             });

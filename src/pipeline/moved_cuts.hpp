@@ -115,14 +115,15 @@ inline LayerStack sections_of(const VerifyOptions& options, const Plan& plan, co
                                    : slice(*options.mesh, plan, {.execution = execution});
     LayerStack layers;
     const double within = *options.close_gaps_mm;
+    const LayerLimits limits = layer_limits(execution);
     if (!options.plate) {
         for (const Layer& layer : slice(*options.mesh, plan, {.execution = execution}))
-            layers.push_back(close_gaps(layer, within).layer);
+            layers.push_back(close_gaps(layer, within, limits).layer);
         return layers;
     }
     const LayerSink keep = appending_to(layers);
     const PlateSink of_parts{.prepare = [&](std::span<const Layer> bodies) {
-        const ClosedPlane closed = close_gaps_on_plane(bodies, within);
+        const ClosedPlane closed = close_gaps_on_plane(bodies, within, limits);
         return keep.prepare(merged(material_of(closed.layers, options.plate->negatives).parts));
     }};
     slice_to(of_parts, *options.plate, plan, {.execution = execution});
