@@ -148,10 +148,10 @@ void compare_areas(std::span<const Layer> layers, std::span<const CheckedLayer> 
         // only on one side of the origin, the centroid moves farther than if all mitres or none were
         // truncated.
         double undecided_mm2 = 0;
-        const std::size_t cuts = sections[i].size() / limits.size();
-        for (std::size_t k = cuts; k < sections[i].size(); ++k)
-            undecided_mm2 =
-                std::max(undecided_mm2, std::abs(sections[i][k].area_mm2 - sections[i][k % cuts].area_mm2));
+        const std::size_t of_one_limit = sections[i].size() / limits.size();
+        for (std::size_t k = of_one_limit; k < sections[i].size(); ++k)
+            undecided_mm2 = std::max(
+                undecided_mm2, std::abs(sections[i][k].area_mm2 - sections[i][k % of_one_limit].area_mm2));
         largest_error = std::max(largest_error, std::abs(moments.area_mm2 - sections[i].front().area_mm2));
         const double tolerance = checks[i].own.tolerance;
         if (beyond(&AreaMoments::area_mm2) > tolerance) {
