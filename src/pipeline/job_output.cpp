@@ -78,6 +78,14 @@ void write_at(const std::string& path, std::uint64_t position, const ByteStore& 
 
 } // namespace
 
+Rounding OutputFiles::rounding() const noexcept {
+    Rounding rounding = format == nullptr ? Rounding{} : format->rounding.value_or(Rounding{});
+    if ((rounding.step_mm > 0 && format->units) ||
+        (format != nullptr && format->short_form && write.short_form))
+        rounding = {.step_mm = write.units_mm};
+    return rounding;
+}
+
 JobOutput::JobOutput(const OutputFiles& files, LayerFileInfo info, PlaneRange mine, Communicator& processes,
                      std::uint64_t most_in_memory)
     : processes_(processes), path_(files.path), most_bytes_(files.write.most_bytes),

@@ -28,6 +28,9 @@ struct OutputFiles {
     LayerWriteOptions write = {};
     std::string page_path = {}; ///< "" if there is no page
     PageOptions page = {};
+
+    /// Returns the rounding of coordinates in the slice file; none if it does not store contours.
+    [[nodiscard]] Rounding rounding() const noexcept;
 };
 
 /// The slice file of a job, and the page beside it. A single process writes while it slices. If there are

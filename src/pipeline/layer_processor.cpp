@@ -5,6 +5,7 @@
 
 #include "core/naming.hpp"
 #include "core/stopwatch.hpp"
+#include "pipeline/part_overlaps.hpp"
 #include "pipeline/plane_scan.hpp"
 #include "pipeline/plate_slicing.hpp"
 
@@ -55,6 +56,11 @@ Commit LayerProcessor::prepare(std::uint32_t plane, std::span<const Layer> parts
         material = material_of(parts, job_.negatives, job_.steps, job_.limits, job_.names);
         count(stepping, step_nanoseconds_);
         parts = material.parts;
+    }
+    UnitedParts united;
+    if (job_.scan && parts.size() > 1) {
+        united = unite_overlapping_parts(parts, job_.objects, job_.supports, job_.limits);
+        parts = united.parts;
     }
     if (mine_.begin <= plane && plane < mine_.end)
         totals_.add(plane - mine_.begin, parts, std::move(closed.joins), material.changes, inverted,
@@ -108,7 +114,8 @@ std::vector<InvertedRings> LayerProcessor::inverted_of(std::span<const Layer> bo
 
 ScanVectors LayerProcessor::vectors_of(const PlaneLayers& plane) {
     const Stopwatch scanning;
-    PlaneVectors vectors = scan_plane(plane, job_.supports, job_.names, *job_.scan, caches_, job_.limits);
+    PlaneVectors vectors =
+        scan_plane(plane, job_.supports, job_.names, *job_.scan, job_.written, caches_, job_.limits);
     count(scanning, scan_nanoseconds_);
     if (job_.steps.any() || !job_.negatives.empty())
         vectors.inverted.clear(); // counted by inverted_of

@@ -38,7 +38,7 @@ std::vector<Exposure> plane_exposures(const std::vector<bool>& supports, const S
 
 PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
                         std::span<const std::string> names, const ScanStrategy& strategy,
-                        std::vector<InsetCache>& caches, const LayerLimits& limits) {
+                        const Rounding& written, std::vector<InsetCache>& caches, const LayerLimits& limits) {
     assert(supports.size() == plane.parts.size() && caches.size() == plane.parts.size());
     assert(names.size() == plane.parts.size());
     const std::vector<Exposure> each = plane_exposures(supports, strategy);
@@ -51,7 +51,7 @@ PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& suppo
     LayerLimits left = limits;
     std::optional<Point2> beam;
     for (std::size_t part = 0; part < plane.parts.size(); ++part) {
-        const ScanOptions options{.cache = &caches[part], .limits = left};
+        const ScanOptions options{.cache = &caches[part], .limits = left, .written = written};
         ScannedLayer scanned = naming(names[part], [&] {
             return supports[part] ? scan_support(plane.parts[part], strategy, options)
                                   : scan(plane.parts[part], layers_of(part, plane.below),

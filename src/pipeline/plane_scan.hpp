@@ -40,9 +40,10 @@ struct PlaneVectors {
 
 /// Computes the scan vectors of all parts on a plane; see `scan`. The beam exposes one part after the other.
 /// `caches` and `names` have an entry for each part. Error messages begin with the name, which may be "".
-/// `limits` apply to all parts together.
+/// `written` is the rounding of the output. `limits` apply to all parts together.
 [[nodiscard]] PlaneVectors scan_plane(const PlaneLayers& plane, const std::vector<bool>& supports,
                                       std::span<const std::string> names, const ScanStrategy& strategy,
-                                      std::vector<InsetCache>& caches, const LayerLimits& limits);
+                                      const Rounding& written, std::vector<InsetCache>& caches,
+                                      const LayerLimits& limits);
 
 } // namespace lamella

@@ -182,8 +182,10 @@ Plate PlateBuilder::finish() {
     for (const Instance& instance : instances_) {
         if (instance.negative)
             continue;
-        bodies_[{instance.input, instance.copy, instance.body}].push_back(plate_.parts.size());
+        std::vector<std::size_t>& body = bodies_[{instance.input, instance.copy, instance.body}];
+        body.push_back(plate_.parts.size());
         PlatePart& part = plate_.parts.emplace_back();
+        part.object = body.front();
         part.label = labels.of(!instance.label.empty() ? instance.label
                                : parts == 1            ? "part"
                                                        : stem_of(plate_.files[instance.input].path));

@@ -52,22 +52,24 @@ FileResult scan_planes(const std::string& path, const LayerFormat& format, std::
     Executor executor(execution);
     FileResult result;
     result.threads = executor.workers();
+    const OutputFiles files{.path = path, .format = &format, .write = options};
     LayerJob job{.names = names_of(info, name),
                  .rounding = rounding,
+                 .written = files.rounding(),
                  .of_mesh = false,
                  .scan = strategy,
                  .statistics = true,
                  .limits = layer_limits(execution, max_memory, executor.workers())};
     for (const PartInfo& part : info.parts) {
         job.supports.push_back(part.support);
+        job.objects.push_back(static_cast<std::uint32_t>(job.objects.size()));
         result.parts.push_back({.label = part.label, .box = part.box});
     }
     std::vector<PlannedLayer> planes;
     for (const Layer& layer : heights)
         planes.push_back({layer.index, layer.z, layer.bottom, layer.top});
     const PlaneRange all{0, static_cast<std::uint32_t>(planes.size())};
-    JobOutput output({.path = path, .format = &format, .write = options}, with_exposures(info, strategy),
-                     all);
+    JobOutput output(files, with_exposures(info, strategy), all);
     LayerProcessor processor(std::move(job), planes, all, all, output);
 
     ProgressMeter progress(execution, Stage::write, all.size());

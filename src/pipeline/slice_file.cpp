@@ -74,6 +74,7 @@ OutputFiles output_files(const FileJob& job) {
 LayerJob layer_job(const FileJob& job, const Plate& plate, const LayerLimits& limits) {
     LayerJob layers{.names = names_of_parts(plate),
                     .negatives = plate.negatives,
+                    .written = output_files(job).rounding(),
                     .close_gaps_mm = job.repair.close_gaps_mm,
                     .steps = job.steps,
                     .scan = job.scan,
@@ -84,6 +85,7 @@ LayerJob layer_job(const FileJob& job, const Plate& plate, const LayerLimits& li
     };
     for (const PlatePart& part : plate.parts) {
         layers.supports.push_back(part.support);
+        layers.objects.push_back(static_cast<std::uint32_t>(part.object));
         add_file(part.shape);
     }
     for (const PlateNegative& negative : plate.negatives)

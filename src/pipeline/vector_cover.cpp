@@ -6,6 +6,7 @@
 #include "contour/distance.hpp"
 #include "pipeline/length_around.hpp"
 #include "scan/hatch.hpp"
+#include "scan/support.hpp"
 #include "scan/unreached.hpp"
 
 #include <algorithm>
@@ -70,8 +71,8 @@ Layer moved_inwards(const Layer& section, double depth, const OffsetCorners& cor
                       : offset(section, -depth, {.corners = corners});
 }
 
-void check_cover(const PlaneGroup& group, const MaterialBounds& bounds,
-                 const ScanStrategy& strategy, double tolerance, PlaneFindings& found) {
+void check_cover(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
+                 double tolerance, PlaneFindings& found) {
     Slack slack;
     double shallow = std::numeric_limits<double>::infinity();
     double deep = -shallow;
@@ -137,27 +138,33 @@ void check_cover(const PlaneGroup& group, const MaterialBounds& bounds,
     found.filled_mm2 += to_fill.area_mm2;
 }
 
-void check_reach(const PlaneGroup& group, const MaterialBounds& bounds,
-                 const ScanStrategy& strategy, double tolerance, PlaneFindings& found) {
-    const ScanRegion region = group.front().exposure.region;
-    const ContourRule& contours = contours_of(strategy, region);
-    const HatchRule& hatch = region == ScanRegion::support ? strategy.support.hatch : strategy.hatch;
-    std::vector<Stroke> strokes;
+void check_reach(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
+                 const Rounding& rounding, double moved_edges, PlaneFindings& found) {
+    const bool support = group.front().exposure.region == ScanRegion::support;
+    const FillDepths depths(support ? without_skins(strategy.support, strategy.seed) : strategy);
+    double largest = 0;
+    for (const PlaneExposure& part : group)
+        largest = std::max(
+            {largest, largest_coordinate(part.polylines.points.span()), largest_coordinate(part.hatches)});
+    Reached reached;
+    for (const PlaneExposure& part : group) {
+        const ContourRule& contours = contours_of(strategy, part.exposure.region);
+        reached.add(part.polylines, part.hatches,
+                    moved_point(largest, rounding) + moved_edges +
+                        (part.exposure.kind == VectorKind::hatch
+                             ? hatch_reach(contours, hatch_of(strategy, part.exposure.region))
+                             : contour_reach(contours)));
+    }
     double least = std::numeric_limits<double>::infinity();
     Point2 at;
     for (const Layer& section : bounds.sections) {
-        const Layer positions = narrow_points(moved_inwards(section, 0), bounds.depth, contours, hatch);
-        if (positions.rings > 0 && strokes.empty())
-            for (const PlaneExposure& part : group)
-                add_strokes(part.polylines, part.hatches,
-                            2 * tolerance +
-                                (part.exposure.kind == VectorKind::hatch
-                                     ? hatch_of(strategy, part.exposure.region).distance
-                                     : contour_reach(contours_of(strategy, part.exposure.region))),
-                            strokes);
-        if (const double left = unreached_area(positions, strokes); left < least) {
+        const Layer material = moved_inwards(section, 0);
+        const double left =
+            unreached_area(material, reached, MeasuringLines(material, reached, depths.least_reach),
+                           wide_points(material, bounds.depth, depths), depths.tip_mm2);
+        if (left < least) {
             least = left;
-            at = positions.points.empty() ? Point2{} : positions.points[0];
+            at = material.points.empty() ? Point2{} : material.points[0];
         }
     }
     if (least > strategy.accepted_mm2)

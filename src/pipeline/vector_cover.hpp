@@ -3,6 +3,7 @@
 // Checks that scan vectors fill the material.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/polygon/offset.hpp"
 #include "lamella/scan/strategy.hpp"
 
@@ -17,11 +18,12 @@ namespace lamella {
 
 /// Compares the area that hatch lines cover with the area that they must fill. `tolerance` is that of edges
 /// of the material.
-void check_cover(const PlaneGroup& group, const MaterialBounds& bounds,
-                 const ScanStrategy& strategy, double tolerance, PlaneFindings& found);
+void check_cover(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
+                 double tolerance, PlaneFindings& found);
 
 /// Measures the material of each possible section that no vector reaches, and keeps the smallest result.
-void check_reach(const PlaneGroup& group, const MaterialBounds& bounds,
-                 const ScanStrategy& strategy, double tolerance, PlaneFindings& found);
+/// Vectors are rounded; the edges of the material may have moved by `moved_edges`.
+void check_reach(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
+                 const Rounding& rounding, double moved_edges, PlaneFindings& found);
 
 } // namespace lamella

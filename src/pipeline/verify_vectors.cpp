@@ -62,7 +62,8 @@ class VectorCheck {
         find_outside(group, bounds, found);
         if (options_.strategy) {
             check_cover(group, bounds, *options_.strategy, tolerance_, found);
-            check_reach(group, bounds, *options_.strategy, tolerance_, found);
+            check_reach(group, bounds, *options_.strategy, options_.granted(), options_.steps.simplify_mm,
+                        found);
         }
     }
 

@@ -340,79 +340,6 @@ std::uint64_t count_pieces(const std::vector<HatchLines>& lines, const HatchRule
     return pieces;
 }
 
-/// Returns whether line i exists and has a sufficiently long piece between two positions.
-bool has_piece(const HatchLines& lines, std::int64_t i, double from, double to, const HatchRule& rule) {
-    if (i < 0 || i >= static_cast<std::int64_t>(lines.size()))
-        return false;
-    const std::span<const double> ends = lines.ends(static_cast<std::size_t>(i));
-    auto k =
-        static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), from) - ends.begin()) / 2 * 2;
-    for (; k < ends.size() && ends[k] <= to; k += 2)
-        if (is_long_enough(ends[k], ends[k + 1], rule))
-            return true;
-    return false;
-}
-
-/// Returns the area of pieces that are too short for hatch lines and have no hatch line beside them.
-double too_short(const HatchLines& lines, const HatchRule& rule, const LayerBudget& budget) {
-    double length = 0;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-        budget.check();
-        const std::span<const double> ends = lines.ends(i);
-        for (std::size_t k = 0; k < ends.size(); k += 2) {
-            if (is_long_enough(ends[k], ends[k + 1], rule))
-                continue;
-            const auto line = static_cast<std::int64_t>(i);
-            bool beside = false;
-            for (const std::int64_t other : {line - 1, line, line + 1})
-                beside = beside ||
-                         has_piece(lines, other, ends[k] - rule.distance, ends[k + 1] + rule.distance, rule);
-            if (!beside)
-                length += ends[k + 1] - ends[k];
-        }
-    }
-    return length * rule.distance;
-}
-
-/// Returns an estimate, by perpendicular lines, of the area that lies between two lines and has no hatch line
-/// beside it.
-double between_lines(const HatchArea& area, const HatchLines& lines, const HatchRule& rule,
-                     const LayerBudget& budget) {
-    const double apart = 5 * rule.distance;
-    const CosSin angle = lines.frame().angle;
-    const HatchLines across = lines_in(area, {-angle.sin, angle.cos}, apart, 0, budget);
-    double length = 0;
-    for (std::size_t i = 0; i < across.size(); ++i) {
-        budget.check();
-        const double u = -across.v(i);
-        const std::span<const double> ends = across.ends(i);
-        for (std::size_t k = 0; k < ends.size(); k += 2) {
-            if (ends[k + 1] - ends[k] >= rule.distance)
-                continue;
-            const double number = std::ceil(ends[k] / rule.distance); // number of the first line above
-            if (number * rule.distance <= ends[k + 1])
-                continue;
-            const std::int64_t line = static_cast<std::int64_t>(number) - lines.first();
-            if (!has_piece(lines, line - 1, u - rule.distance, u + rule.distance, rule) &&
-                !has_piece(lines, line, u - rule.distance, u + rule.distance, rule))
-                length += ends[k + 1] - ends[k];
-        }
-    }
-    return length * apart;
-}
-
-/// Returns whether there may be bare spots. If there are several directions, lines of the others cover the
-/// area between two lines of one direction.
-bool may_leave_bare(const HatchArea& area, const std::vector<HatchLines>& lines, const HatchRule& rule,
-                    const LayerBudget& budget) {
-    double bare = 0;
-    for (const HatchLines& one : lines)
-        bare += too_short(one, rule, budget);
-    if (lines.size() == 1)
-        bare += between_lines(area, lines.front(), rule, budget);
-    return bare > rule.distance * rule.distance / 4;
-}
-
 } // namespace
 
 std::vector<CosSin> line_angles(const HatchRule& rule, std::uint64_t layer) {
@@ -438,7 +365,7 @@ double surely_hatched(const HatchRule& rule) noexcept {
     return std::sqrt(rule.shortest * rule.shortest + rule.distance * rule.distance);
 }
 
-PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed, bool* bare,
+PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed,
                  const LayerBudget& budget) {
     const bool one_by_one = rule.pattern == HatchPattern::lines || rule.pattern == HatchPattern::meander;
     if (!one_by_one)
@@ -449,8 +376,6 @@ PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t see
         lines.push_back(lines_in(area, angle, rule.distance, line_phase(rule.pattern), left));
         left = left.without(lines.back().bytes());
     }
-    if (bare != nullptr)
-        *bare = may_leave_bare(area, lines, rule, left);
     if (one_by_one)
         return PointArray(line_by_line(lines.front(), rule, left));
     Islands islands(count_pieces(lines, rule, left), left);

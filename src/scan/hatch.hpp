@@ -32,14 +32,11 @@ struct HatchArea {
 [[nodiscard]] double line_phase(HatchPattern pattern) noexcept;
 
 /// Returns the hatch lines, two points each, as in ScanVectors::hatches. The index of `within` defines the
-/// rotation of the lines and, with the seed, the order of islands. `bare`, if given, is set to true if there
-/// may be spots without a hatch line within the line distance. Such spots are narrower than `surely_hatched`:
-/// pieces that are too short have no lines, and narrow strips may lie between two lines. Spots do not count
-/// if their total area is at most the square of half the line distance. Throws the errors of HatchLines, and
+/// rotation of the lines and, with the seed, the order of islands. Throws the errors of HatchLines, and
 /// Error{limit} for more than 2^28 stripes or islands in a row, 2^22 pieces of lines or 2^21 islands, or more
 /// pieces or islands than the budget allows.
 [[nodiscard]] PointArray hatch(const HatchArea& area, const HatchRule& rule, std::uint64_t seed,
-                               bool* bare = nullptr, const LayerBudget& budget = {});
+                               const LayerBudget& budget = {});
 
 /// Returns the width from which on material is hatched for any position of the lines.
 [[nodiscard]] double surely_hatched(const HatchRule& rule) noexcept;

@@ -4,6 +4,7 @@
 #include "lamella/contour/rounding.hpp"
 
 #include "contour/distance.hpp"
+#include "polygon/orientation.hpp"
 #include "scan/seeded.hpp"
 
 #include <algorithm>
@@ -108,6 +109,19 @@ class Outlines {
 
     [[nodiscard]] double step() const noexcept { return unit_ / 4; }
 
+    /// Returns whether a segment meets the outline.
+    [[nodiscard]] bool crossed_by(const Point2& a, const Point2& b) const {
+        const Point2 way = minus(b, a);
+        const double steps = 1 + std::floor(2 * std::sqrt(dot(way, way)) / unit_);
+        bool crosses = false;
+        for (double k = 0; k <= steps && !crosses; ++k)
+            cells_.around(along(a, way, k / steps), [&](std::uint32_t number) {
+                const Edge& edge = edges_[number];
+                crosses = crosses || meet(segment_between(a, b), segment_between(edge.a, edge.b));
+            });
+        return crosses;
+    }
+
     /// Returns the middle axes of the samples of each ring, in connected sections.
     [[nodiscard]] std::vector<Axis> axes() const {
         std::vector<Axis> all;
@@ -182,8 +196,16 @@ class Outlines {
         return std::nullopt;
     }
 
-    /// Divides the axis at samples without a circle, at samples far from the previous circle, and where the
-    /// axis turns back. It turns back at a round end, around which it is traversed twice.
+    /// Returns whether the line between two centres leaves the area.
+    [[nodiscard]] bool leaves_area(const Touching& one, const Touching& other) const {
+        const Point2 way = minus(other.middle, one.middle);
+        const double within = one.radius + other.radius;
+        return dot(way, way) > within * within && crossed_by(one.middle, other.middle);
+    }
+
+    /// Divides the axis at samples without a circle, at samples far from the previous circle, where it would
+    /// leave the area, and where it turns back. It turns back at a round end, around which it is traversed
+    /// twice.
     void add_axes(const std::vector<std::optional<Touching>>& found, std::vector<Axis>& all) const {
         const std::size_t count = found.size();
         std::vector<bool> cut(count, false);
@@ -193,7 +215,7 @@ class Outlines {
             const std::optional<Touching>& before = found[(i == 0 ? count : i) - 1];
             const Point2 to = before && found[i] ? minus(found[i]->middle, before->middle) : Point2{};
             const double squared = dot(to, to);
-            if (!before || !found[i] || squared > 4 * step() * step()) {
+            if (!before || !found[i] || squared > 4 * step() * step() || leaves_area(*before, *found[i])) {
                 cut[i] = true;
                 way = {};
             } else if (squared > step() * step() / 16) {
@@ -286,8 +308,9 @@ std::vector<Axis> without_copies(std::vector<Axis> axes, double near) {
 }
 
 /// Removes points that are within the tolerance of the segment between the remaining points (Douglas,
-/// Peucker).
-std::vector<Point2> straightened(const std::vector<Point2>& points, double tolerance) {
+/// Peucker), if the segment stays within the area.
+std::vector<Point2> straightened(const std::vector<Point2>& points, double tolerance,
+                                 const Outlines& outlines) {
     std::vector<bool> kept(points.size(), false);
     kept.front() = kept.back() = true;
     std::vector<std::pair<std::size_t, std::size_t>> open{{0, points.size() - 1}};
@@ -302,8 +325,11 @@ std::vector<Point2> straightened(const std::vector<Point2>& points, double toler
                 most = away;
                 farthest = i;
             }
-        if (farthest == first)
-            continue;
+        if (farthest == first) {
+            if (last == first + 1 || !outlines.crossed_by(points[first], points[last]))
+                continue;
+            farthest = (first + last) / 2;
+        }
         kept[farthest] = true;
         open.emplace_back(first, farthest);
         open.emplace_back(farthest, last);
@@ -345,7 +371,7 @@ std::vector<std::vector<Point2>> middle_lines(const Layer& positions, double wid
         std::vector<Point2> points;
         for (const Touching& point : axis.points)
             points.push_back(point.middle);
-        points = straightened(points, straight * width);
+        points = straightened(points, straight * width, outlines);
         if (!axis.closed) {
             lengthen(points, axis.points.front().radius, true);
             lengthen(points, axis.points.back().radius, false);

@@ -1,10 +1,13 @@
 #include "lamella/scan/scan.hpp"
 
+#include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/fill.hpp"
+#include "lamella/polygon/nesting.hpp"
 #include "lamella/polygon/offset.hpp"
 
+#include "contour/distance.hpp"
 #include "polygon/clipping_grid.hpp"
 #include "polygon/collinear_points.hpp"
 #include "polygon/overlay.hpp"
@@ -21,6 +24,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <utility>
 
 namespace lamella {
@@ -38,6 +42,10 @@ Layer with_header_of(const Layer& header, Layer layer) {
 /// Areas wider than the reach of contours from both sides by this factor get a line in the middle.
 constexpr double more_than_reached = 1.01;
 
+/// A contour narrower than this part of the beam's offset would be exposed twice along the same line, and
+/// formats might not store it. A line in the middle of its wall replaces it.
+constexpr double narrowest_contour = 1.0 / 50;
+
 /// Returns the distances by which the material of a layer is offset, the smallest first.
 std::vector<double> distances_of(const ScanStrategy& strategy) {
     std::vector<double> distances;
@@ -53,8 +61,37 @@ std::vector<double> distances_of(const ScanStrategy& strategy) {
         want(hatch_depth(contours, strategy.upskin.hatch));
     if (strategy.downskin.layers > 0)
         want(hatch_depth(contours, strategy.downskin.hatch));
+    const FillDepths depths(strategy);
+    want(depths.filled + depths.half_width);
     std::sort(distances.begin(), distances.end(), std::greater<>());
     return distances;
+}
+
+/// Returns the layer without the bodies that are on average narrower than `width`.
+Layer without_slivers(const Layer& layer, double width) {
+    LayerBuilder kept;
+    std::size_t rings = 0;
+    for (const Polygon& body : polygons(nesting(layer))) {
+        double area = 0;
+        double length = 0;
+        const auto for_rings = [&](const auto& visit) {
+            visit(layer.contour(body.outer));
+            for (const std::uint32_t hole : body.holes)
+                visit(layer.contour(hole));
+        };
+        for_rings([&](std::span<const Point2> ring) {
+            area += ring_area(ring);
+            for (std::size_t i = 0; i < ring.size(); ++i)
+                length += quick_distance(ring[i == 0 ? ring.size() - 1 : i - 1], ring[i]);
+        });
+        if (area < width / 2 * length)
+            continue;
+        for_rings([&](std::span<const Point2> ring) {
+            kept.add_contour(ring, true);
+            ++rings;
+        });
+    }
+    return rings == layer.rings ? layer : kept.finish(layer.index, layer.z, layer.bottom, layer.top);
 }
 
 } // namespace
@@ -62,57 +99,94 @@ std::vector<double> distances_of(const ScanStrategy& strategy) {
 /// The material of a layer, offset inwards by several distances; each offset is computed once.
 struct InsetCache::Insets {
     Insets(Layer of, const ScanStrategy& strategy, std::vector<double> by, const LayerLimits& limits)
-        : layer(std::move(of)), distances(std::move(by)), contours(strategy.contours),
-          filled(hatch_depth(contours, strategy.hatch)),
-          moved(offsets(layer, distances, {.limits = limits})) {
+        : layer(std::move(of)), distances(std::move(by)), contours(strategy.contours), depths(strategy),
+          reach(contour_reach(strategy.contours)), moved(offsets(layer, distances, {.limits = limits})) {
         for (std::size_t i = 0; i < distances.size(); ++i)
             if (distances[i] == 0) // offsets() skips 0, and rings without collinear points may touch again
                 moved[i] = united(layer, limits);
-        double depth = 0;
-        const auto step_to = [&](double next) {
-            narrow.push_back(narrow_points(depth == 0 ? layer : at(depth), at(next), next - depth, limits));
-            depth = next;
-        };
-        for (std::uint32_t i = 1; i <= contours.count; ++i)
-            step_to(contour_depth(contours, i));
-        step_to(filled);
-        const LayerBudget budget(limits, layer.index, layer.z);
-        if (contours.thin_walls == ThinWalls::line)
-            for (std::uint32_t i = 0; i < contours.count; ++i)
-                lines.push_back(
-                    i == 0 ? middle_lines(narrow[i], 2 * contours.beam_offset, contours.thinnest, budget)
-                           : middle_lines(narrow[i], 2 * contours.distance,
-                                          2 * contour_reach(contours) * more_than_reached, budget));
+        narrow.resize(contours.count + 1);
         lines.resize(contours.count);
+        const double deepest = depths.filled + depths.half_width;
+        const Layer bodies = narrow_bodies(layer, at(deepest), deepest);
+        if (bodies.rings == 0)
+            return;
+        for (std::uint32_t i = 1; i <= contours.count; ++i) {
+            Layer& inset = moved[index_of(contour_depth(contours, i))];
+            inset = without_slivers(inset, contours.beam_offset * narrowest_contour);
+        }
+        find_narrow(bodies, limits);
     }
 
     /// Returns whether these insets are also those of another layer.
     [[nodiscard]] bool fit(const Layer& other, const ScanStrategy& strategy,
                            std::span<const double> by) const {
         const ContourRule& rule = strategy.contours;
-        return same_contours(layer, other) && filled == hatch_depth(rule, strategy.hatch) &&
+        const FillDepths others(strategy);
+        return same_contours(layer, other) && depths.filled == others.filled &&
+               depths.half_width == others.half_width && reach == contour_reach(rule) &&
                std::equal(distances.begin(), distances.end(), by.begin(), by.end()) &&
                contours.count == rule.count && contours.beam_offset == rule.beam_offset &&
                contours.distance == rule.distance && contours.thin_walls == rule.thin_walls &&
                contours.thinnest == rule.thinnest;
     }
-    [[nodiscard]] const Layer& at(double depth) const {
-        const auto found = std::find(distances.begin(), distances.end(), -depth);
-        assert(found != distances.end());
-        return moved[static_cast<std::size_t>(found - distances.begin())];
+    [[nodiscard]] const Layer& at(double depth) const { return moved[index_of(depth)]; }
+    /// Returns the material within the innermost contour, or all of it.
+    [[nodiscard]] const Layer& within_contours() const {
+        return contours.count == 0 ? layer : at(contour_depth(contours, contours.count));
     }
 
     Layer layer;
     std::vector<double> distances;
     ContourRule contours;
-    double filled; ///< depth from which on the hatch of the core fills the material
+    FillDepths depths;
+    double reach; ///< of contours
     std::vector<Layer> moved;
-    /// For each contour, from the outermost one on, the area that is within the previous contour but too
-    /// narrow for this one. The last entry is the same for the hatch of the core.
+    /// For each contour, from the outermost one on, the area within the previous contour that this contour
+    /// and the previous one may not reach, because it is too narrow. The last entry is the same for the
+    /// hatches: the area that they should fill and that is narrower than `surely_hatched`.
     std::vector<Layer> narrow;
+    /// The area within the innermost contour that is too narrow for a hatch.
+    Layer strips;
     /// For each contour, the lines along the middle of areas that are too narrow for it and that the previous
     /// contours do not reach.
     std::vector<std::vector<std::vector<Point2>>> lines;
+
+  private:
+    [[nodiscard]] std::size_t index_of(double depth) const {
+        const auto found = std::find(distances.begin(), distances.end(), -depth);
+        assert(found != distances.end());
+        return static_cast<std::size_t>(found - distances.begin());
+    }
+
+    /// Finds the narrow areas of bodies that may have some.
+    void find_narrow(const Layer& bodies, const LayerLimits& limits) {
+        const LayerBudget budget(limits, layer.index, layer.z);
+        const bool line = contours.thin_walls == ThinWalls::line;
+        const double sliver = contours.beam_offset * narrowest_contour;
+        Layer outer = bodies;
+        for (std::uint32_t i = 1; i <= contours.count; ++i) {
+            const double depth = contour_depth(contours, i);
+            const double step = i == 1 ? depth : contours.distance;
+            Layer inner = without_slivers(offset(bodies, -depth, {.limits = limits}), sliver);
+            // Between two contours, each one reaches half of the distance.
+            narrow[i - 1] = i == 1 ? narrow_points(outer, inner, step, limits)
+                                   : narrow_points(offset(bodies, step / 2 - depth, {.limits = limits}),
+                                                   inner, step / 2, limits);
+            if (line && narrow[i - 1].rings > 0)
+                lines[i - 1] = middle_lines(
+                    i == 1 ? narrow[0] : narrow_points(outer, inner, step, limits), 2 * (step + sliver),
+                    i == 1 ? contours.thinnest : 2 * reach * more_than_reached, budget);
+            outer = std::move(inner);
+        }
+        const Layer wide = wide_points(bodies, 0, depths, limits);
+        narrow.back() = combine(offset(bodies, -depths.filled, {.limits = limits}), wide,
+                                BooleanOperation::subtract, limits);
+        if (narrow.back().rings > 0 && line && contours.count > 0) {
+            const double deepest = depths.filled + depths.half_width;
+            strips = narrow_points(outer, offset(bodies, -deepest, {.limits = limits}),
+                                   deepest - contour_depth(contours, contours.count), limits);
+        }
+    }
 };
 
 std::shared_ptr<const InsetCache::Insets> InsetCache::last() const {
@@ -156,49 +230,109 @@ PointArray pieces_of(const std::vector<std::vector<Point2>>& lines) {
     return PointArray(std::move(pieces));
 }
 
-/// Returns all vectors of a layer, exposure by exposure.
-std::vector<Stroke> strokes_of(const ScanVectors& vectors, std::span<const Exposure> all,
-                               const ScanStrategy& strategy, const LayerBudget& budget) {
+/// Returns what all vectors of a layer reach in the file that stores them.
+Reached reached_by(const ScanVectors& vectors, std::span<const Exposure> all, const ScanStrategy& strategy,
+                   const Rounding& written, const LayerBudget& budget) {
     std::uint64_t count = 0;
-    for (std::size_t i = 0; i < vectors.exposures(); ++i)
-        count += vectors.polylines[i].points.size() + vectors.hatches[i].size() / 2;
+    double largest = 0;
+    for (std::size_t i = 0; i < vectors.exposures(); ++i) {
+        count += 3 * vectors.polylines[i].points.size() + vectors.hatches[i].size() / 2;
+        largest = std::max({largest, largest_coordinate(vectors.polylines[i].points.span()),
+                            largest_coordinate(vectors.hatches[i].span())});
+    }
     budget.need(count, sizeof(Stroke), "scan vectors");
-    std::vector<Stroke> strokes;
-    strokes.reserve(count);
+    Reached reached;
     for (std::size_t i = 0; i < vectors.exposures(); ++i)
-        add_strokes(vectors.polylines[i], vectors.hatches[i].span(),
-                    all[i].kind == VectorKind::hatch ? hatch_of(strategy, all[i].region).distance
-                                                     : contour_reach(strategy.contours),
-                    strokes);
-    return strokes;
+        reached.add(vectors.polylines[i], vectors.hatches[i].span(),
+                    moved_point(largest, written) +
+                        (all[i].kind == VectorKind::hatch
+                             ? hatch_reach(strategy.contours, hatch_of(strategy, all[i].region))
+                             : contour_reach(strategy.contours)),
+                    written);
+    return reached;
 }
 
-/// Returns lines along the middle of areas that are too narrow for a hatch. Areas count only if hatch lines
-/// and contours leave more than a negligible part of them bare.
-std::vector<std::vector<Point2>> lines_amid_bare(const Layer& positions, std::span<const Stroke> strokes,
-                                                 const ContourRule& contours, const HatchRule& hatch,
-                                                 const LayerBudget& budget) {
-    const double border = hatch_depth(contours, hatch) - contour_depth(contours, contours.count);
-    const double widest = std::max(2 * border, surely_hatched(hatch));
-    return middle_lines(bare_points(positions, strokes, budget), widest * more_than_reached,
-                        contour_reach(contours) * (more_than_reached - 1), budget);
-}
+/// The regions of a layer. Area in both skins belongs to the downskin.
+struct Regions {
+    const Skin& downskin;
+    const Skin& upskin;
+    const LayerLimits& limits;
 
-/// Returns the part of an area that belongs to a region. Area in both skins belongs to the downskin.
-Layer in_region(const Layer& positions, ScanRegion region, const Skin& downskin, const Skin& upskin,
-                const LayerLimits& limits) {
-    const auto cut = [&limits](const Layer& layer, const Skin& skin, bool inside) {
+    /// Returns the region of the whole layer, unless there are several.
+    [[nodiscard]] std::optional<ScanRegion> only() const {
+        if (downskin.whole())
+            return ScanRegion::downskin;
+        if (downskin.area().rings > 0)
+            return std::nullopt;
+        if (upskin.whole())
+            return ScanRegion::upskin;
+        return upskin.area().rings > 0 ? std::nullopt : std::optional(ScanRegion::core);
+    }
+    /// Returns the part of an area that belongs to a region.
+    [[nodiscard]] Layer part(const Layer& area, ScanRegion region) const {
+        if (const std::optional<ScanRegion> one = only())
+            return region == *one ? area : Layer{};
+        if (region == ScanRegion::downskin)
+            return cut(area, downskin, true);
+        const Layer rest = cut(area, downskin, false);
+        return cut(rest, upskin, region == ScanRegion::upskin);
+    }
+
+  private:
+    [[nodiscard]] Layer cut(const Layer& area, const Skin& skin, bool inside) const {
         if (skin.whole())
-            return inside ? layer : Layer{};
-        if (skin.area().rings == 0)
-            return inside ? Layer{} : layer;
-        return combine(layer, skin.area(), inside ? BooleanOperation::intersect : BooleanOperation::subtract,
+            return inside ? area : Layer{};
+        if (skin.area().rings == 0 || area.rings == 0)
+            return inside ? Layer{} : area;
+        return combine(area, skin.area(), inside ? BooleanOperation::intersect : BooleanOperation::subtract,
                        limits);
+    }
+};
+
+/// Returns lines along the middle of strips that are too narrow for a hatch. Strips count only if hatch lines
+/// and contours leave more than a negligible part of them bare.
+std::vector<std::vector<Point2>> lines_amid(const Layer& strips, const Reached& reached,
+                                            const MeasuringLines& lines, const FillDepths& depths,
+                                            const ScanStrategy& strategy, const LayerBudget& budget) {
+    const ContourRule& rule = strategy.contours;
+    const double width = 2 * (depths.filled + depths.half_width - contour_depth(rule, rule.count));
+    return middle_lines(bare_points(strips, reached, lines, depths.least_reach, budget),
+                        width * more_than_reached, contour_reach(rule) * (more_than_reached - 1), budget);
+}
+
+/// Returns the unreached area of each exposure: that between a contour and the previous one, or that of a
+/// region within all contours. Examines narrow material only, or everything.
+std::vector<double> unreached_by_exposure(const InsetCache::Insets& insets, std::span<const Exposure> all,
+                                          const Regions& regions, const Reached& reached,
+                                          const MeasuringLines& lines, bool everywhere,
+                                          const LayerBudget& budget) {
+    const ContourRule& rule = insets.contours;
+    const auto measured = [&](const Layer& area, const Layer& wide) {
+        return unreached_area(area, reached, lines, wide, insets.depths.tip_mm2, budget);
     };
-    if (region == ScanRegion::downskin)
-        return cut(positions, downskin, true);
-    const Layer rest = cut(positions, downskin, false);
-    return cut(rest, upskin, region == ScanRegion::upskin);
+    const auto amid = [&](std::uint32_t contour) { // between this contour and the previous one
+        if (!everywhere)
+            return insets.narrow[contour - 1];
+        const Layer& outer = contour == 1 ? insets.layer : insets.at(contour_depth(rule, contour - 1));
+        return combine(outer, insets.at(contour_depth(rule, contour)), BooleanOperation::subtract,
+                       budget.limits());
+    };
+    const Layer& filled = everywhere ? insets.within_contours() : insets.narrow.back();
+    const double of_hatches =
+        measured(filled, everywhere ? wide_points(insets.layer, 0, insets.depths, budget.limits()) : Layer{});
+    // A spot may lie in several regions, so these share the area of all spots.
+    std::vector<double> unreached;
+    double shared = 0;
+    for (const Exposure& exposure : all) {
+        const bool hatch = exposure.kind == VectorKind::hatch;
+        unreached.push_back(hatch ? of_hatches > 0 ? measured(regions.part(filled, exposure.region), {}) : 0
+                                  : measured(amid(exposure.contour), {}));
+        shared += hatch ? unreached.back() : 0;
+    }
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (all[i].kind == VectorKind::hatch)
+            unreached[i] = shared > 0 ? unreached[i] * (of_hatches / shared) : 0;
+    return unreached;
 }
 
 } // namespace
@@ -232,7 +366,7 @@ ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
     const auto inset = [&](double depth) {
         return with_header_of(layer, insets->at(depth));
     };
-    const auto hatched = [&](ScanRegion region, bool& bare) {
+    const auto hatched = [&](ScanRegion region) {
         const HatchRule& rule = hatch_of(strategy, region);
         const Skin* const own = region == ScanRegion::downskin ? &downskin
                                 : region == ScanRegion::upskin ? &upskin
@@ -252,7 +386,7 @@ ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
             if (other->area().rings > 0)
                 area.without.push_back(&other->area());
         }
-        return hatch(area, rule, strategy.seed, &bare, budget);
+        return hatch(area, rule, strategy.seed, budget);
     };
     const std::vector<Exposure> all = exposures(strategy, {});
     ScanVectors result;
@@ -262,58 +396,40 @@ ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
         budget = budget.without(vector_bytes(polylines, hatches));
         result.add(std::move(polylines), std::move(hatches));
     };
-    std::vector<Layer> bare(all.size()); // areas that each exposure may not reach
-    std::size_t innermost =
-        all.size(); // index of the innermost contour, which gets lines where hatches leave areas bare
+    std::size_t innermost = all.size(); // index of the contour that gets lines in what hatches leave bare
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Exposure& exposure = all[i];
-        if (exposure.kind == VectorKind::contour) {
-            const Layer rings = inset(contour_depth(strategy.contours, exposure.contour));
-            add(followed(rings, strategy.contours, exposure.contour, strategy.seed),
-                pieces_of(insets->lines[exposure.contour - 1]));
-            bare[i] = insets->narrow[exposure.contour - 1];
-            if (exposure.contour == strategy.contours.count &&
-                strategy.contours.thin_walls == ThinWalls::line)
-                innermost = i;
+        if (exposure.kind == VectorKind::hatch) {
+            add(with_header_of(layer, {}), hatched(exposure.region));
             continue;
         }
-        bool may_be_bare = false;
-        PointArray lines = hatched(exposure.region, may_be_bare);
-        add(with_header_of(layer, {}), std::move(lines));
-        Layer positions = insets->narrow.back();
-        if (may_be_bare) {
-            const HatchRule& rule = hatch_of(strategy, exposure.region);
-            const Layer& within = insets->at(hatch_depth(strategy.contours, rule));
-            const double half = surely_hatched(rule) / 2;
-            const Layer narrow = narrow_points(within, offset(within, -half, {.limits = budget.limits()}),
-                                               half, budget.limits());
-            positions = combine(positions, narrow, BooleanOperation::unite, budget.limits());
-        }
-        if (positions.rings > 0)
-            bare[i] = in_region(positions, exposure.region, downskin, upskin, budget.limits());
+        add(followed(inset(contour_depth(strategy.contours, exposure.contour)), strategy.contours,
+                     exposure.contour, strategy.seed),
+            pieces_of(insets->lines[exposure.contour - 1]));
+        if (exposure.contour == strategy.contours.count && strategy.contours.thin_walls == ThinWalls::line)
+            innermost = i;
     }
-    std::vector<Stroke> strokes;
-    if (std::any_of(bare.begin(), bare.end(), [](const Layer& positions) { return positions.rings > 0; }))
-        strokes = strokes_of(result, all, strategy, budget);
-    if (innermost < all.size()) {
-        std::vector<std::vector<Point2>> lines;
-        for (std::size_t i = 0; i < all.size(); ++i)
-            if (all[i].kind == VectorKind::hatch && bare[i].rings > 0)
-                for (auto& line : lines_amid_bare(bare[i], strokes, strategy.contours,
-                                                  hatch_of(strategy, all[i].region), budget))
-                    lines.push_back(std::move(line));
-        if (!lines.empty()) {
-            std::vector<std::vector<Point2>> walls = insets->lines[strategy.contours.count - 1];
-            walls.insert(walls.end(), lines.begin(), lines.end());
+    const Regions regions{downskin, upskin, limits};
+    const bool everywhere = layer.rings > 0 && (!insets->depths.dense || !regions.only());
+    if (!everywhere && std::all_of(insets->narrow.begin(), insets->narrow.end(),
+                                   [](const Layer& area) { return area.rings == 0; }))
+        return {std::move(result), std::vector<double>(all.size(), 0)};
+    Reached reached = reached_by(result, all, strategy, options.written, budget);
+    const MeasuringLines lines(layer, reached, insets->depths.least_reach);
+    if (innermost < all.size() && insets->strips.rings > 0) {
+        auto walls = insets->lines[strategy.contours.count - 1];
+        for (const Exposure& exposure : all)
+            if (exposure.kind == VectorKind::hatch)
+                for (auto& line : lines_amid(regions.part(insets->strips, exposure.region), reached, lines,
+                                             insets->depths, strategy, budget))
+                    walls.push_back(std::move(line));
+        if (walls.size() > insets->lines[strategy.contours.count - 1].size()) {
             result.hatches[innermost] = pieces_of(walls);
-            strokes = strokes_of(result, all, strategy, budget);
+            reached = reached_by(result, all, strategy, options.written, budget);
         }
     }
-    std::vector<double> unreached;
-    for (const Layer& area : bare)
-        unreached.push_back(unreached_area(area, strokes, budget));
-    assert(result.exposures() == all.size() && unreached.size() == all.size());
-    return {std::move(result), std::move(unreached)};
+    return {std::move(result),
+            unreached_by_exposure(*insets, all, regions, reached, lines, everywhere, budget)};
 }
 
 // A support is scanned as a part without skins, by the rules for supports.

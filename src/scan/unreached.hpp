@@ -1,32 +1,30 @@
 #pragma once
 
-// Finds narrow areas of material, and measures the part of them that no vector reaches.
+// Measures the material that no vector reaches, and finds narrow material, where alone there can be any.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/contour/rounding.hpp"
 #include "lamella/core/layer_limits.hpp"
+#include "lamella/core/unit_circle.hpp"
 #include "lamella/scan/strategy.hpp"
 
 #include "core/layer_budget.hpp"
 
+#include <array>
 #include <span>
 #include <vector>
 
 namespace lamella {
 
-/// Returns the material that is not reached when its inset is grown by `by` mm, which is the material
-/// narrower than twice `by`. `inset` is the result of `offset`. Returns an empty layer if the area is
-/// negligible. This is usually found without boolean operations, in O(points).
-[[nodiscard]] Layer narrow_points(const Layer& material, const Layer& inset, double by,
-                                  const LayerLimits& limits = {});
-
-/// Returns the narrow areas for all contours and the hatch together, including areas narrower than
-/// `surely_hatched`. The outline of `material` lies `depth` inside of the outline of the part.
-[[nodiscard]] Layer narrow_points(const Layer& material, double depth, const ContourRule& contours,
-                                  const HatchRule& hatch);
-
 /// Returns the distance from contours, and from lines along the middle of walls, within which material counts
-/// as reached. Lines of a hatch reach as far as their distance.
+/// as reached.
 [[nodiscard]] double contour_reach(const ContourRule& rule) noexcept;
+/// Returns the distance from hatch lines within which material counts as reached.
+[[nodiscard]] double hatch_reach(const ContourRule& contours, const HatchRule& rule) noexcept;
+
+/// The corners of material up to this limit of mitres, which is that of 30 degrees, count as reached by the
+/// rings around them, although a beam rounds them off.
+inline constexpr double reached_mitre = 3.8637;
 
 /// A vector and the distance from it within which material is reached.
 struct Stroke {
@@ -35,20 +33,68 @@ struct Stroke {
     double reach = 0;
 };
 
-/// Appends the vectors of a layer.
-void add_strokes(const Layer& polylines, std::span<const Point2> hatches, double reach,
-                 std::vector<Stroke>& strokes);
+/// What the vectors of a layer reach.
+struct Reached {
+    std::vector<Stroke> strokes;
+    /// The corner pieces that join the strips beside the sides of rings, as `offset` makes them: two ends of
+    /// strips, and one or two points between them.
+    std::vector<std::array<Point2, 4>> corners;
 
-/// Returns the area of these rings that no stroke reaches, mm^2, measured along lines half of the shortest
-/// reach apart. The result is exact if nothing or everything is reached. O(points + lines), plus for each
-/// stroke the lines close to it.
-[[nodiscard]] double unreached_area(const Layer& positions, std::span<const Stroke> strokes,
+    /// Appends vectors: rings with their corners, chains, and lines of two points each. Coordinates are
+    /// rounded first.
+    void add(const Layer& polylines, std::span<const Point2> lines, double reach,
+             const Rounding& rounding = {});
+};
+
+/// The rules by which the vectors of a strategy fill material, as far as they define what is narrow.
+struct FillDepths {
+    /// For supports, see `without_skins`.
+    explicit FillDepths(const ScanStrategy& strategy);
+
+    double filled = 0;     ///< depth from which on all hatches fill the material
+    double half_width = 0; ///< half of the width from which on material is hatched for any position of lines
+    double least_reach = 0;
+    /// Largest unreached spot that does not count within material that is wide enough for the hatch: the tip
+    /// of a corner, in which lines are too short.
+    double tip_mm2 = 0;
+    /// Whether the vectors of the strategy reach everything, except in narrow material.
+    bool dense = true;
+};
+
+/// Returns the part of the material that is wide enough to be hatched for any position of the lines. The
+/// outline of the material lies `depth` inside of that of the part.
+[[nodiscard]] Layer wide_points(const Layer& material, double depth, const FillDepths& depths,
+                                const LayerLimits& limits = {});
+
+/// Returns the bodies that may have material narrower than twice `by`, or corners below 30 degrees. Of the
+/// other bodies, each ring is in the inset with its sides moved, but for sides of rounded corners. `inset` is
+/// the result of `offset`. O(points), plus the nesting of rings if there are such bodies.
+[[nodiscard]] Layer narrow_bodies(const Layer& material, const Layer& inset, double by);
+
+/// Returns the part of the material that is not in the inset grown by `by` mm.
+[[nodiscard]] Layer narrow_points(const Layer& material, const Layer& inset, double by,
+                                  const LayerLimits& limits = {});
+
+/// The parallel lines along which areas are measured: at multiples of a distance from the origin. The angle
+/// is oblique to most sides and vectors, because strips along the lines would be measured badly.
+struct MeasuringLines {
+    MeasuringLines(const Layer& material, const Reached& reached, double least_reach);
+
+    CosSin angle;
+    double distance;
+};
+
+/// Returns the area of these rings that nothing reaches, mm^2: their area times the unreached share of the
+/// lines across them. So it is exact if nothing or everything is reached. The area within `wide` counts in
+/// spots above `tip_mm2` only. O(points + lines), plus for each vector the lines close to it.
+[[nodiscard]] double unreached_area(const Layer& positions, const Reached& reached,
+                                    const MeasuringLines& lines, const Layer& wide = {}, double tip_mm2 = 0,
                                     const LayerBudget& budget = {});
 
 /// Returns the bodies with an unreached area of more than 1/32 of the square of the shortest reach. The
 /// bodies include their holes; the result is in normal form. Takes the time of `unreached_area`, plus a pass
-/// for each body over the strokes close to any body.
-[[nodiscard]] Layer bare_points(const Layer& positions, std::span<const Stroke> strokes,
-                                const LayerBudget& budget = {});
+/// for each body over the vectors close to any body.
+[[nodiscard]] Layer bare_points(const Layer& positions, const Reached& reached, const MeasuringLines& lines,
+                                double least_reach, const LayerBudget& budget = {});
 
 } // namespace lamella

@@ -57,8 +57,10 @@ Planes stairs(std::size_t count) {
 
 LayerJob job_of(std::size_t parts) {
     LayerJob job{.supports = std::vector<bool>(parts)};
-    for (std::size_t i = 0; i < parts; ++i)
+    for (std::size_t i = 0; i < parts; ++i) {
         job.names.push_back("file, part " + std::to_string(i));
+        job.objects.push_back(static_cast<std::uint32_t>(i));
+    }
     return job;
 }
 

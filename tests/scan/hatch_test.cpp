@@ -326,12 +326,12 @@ TEST(Hatch, IsRefusedBeforeItTakesMoreMemoryThanThereIsForTheLayer) {
     for (const HatchPattern pattern : patterns)
         test::expect_error(ErrorKind::limit, {"layer 7 at z = 0.5 mm", "`max_memory`", "`hatch.distance`"},
                            [&] {
-                               static_cast<void>(hatch(square, bare(pattern, 0.01, 5), 1, nullptr,
+                               static_cast<void>(hatch(square, bare(pattern, 0.01, 5), 1,
                                                        LayerBudget({.memory = 500'000}, 7, 0.5)));
                            });
     // Cells of one line each take more than their lines.
     test::expect_error(ErrorKind::limit, {"stripes or islands take", "a larger `hatch.cell`"}, [&] {
-        static_cast<void>(hatch(square, bare(HatchPattern::hexagons, 1, 0.5), 1, nullptr,
+        static_cast<void>(hatch(square, bare(HatchPattern::hexagons, 1, 0.5), 1,
                                 LayerBudget({.memory = 40'000'000}, 7, 0.5)));
     });
 }
@@ -346,7 +346,7 @@ TEST(Hatch, FitsWhereThereIsRoomForItsVectors) {
             const PointArray vectors = hatch(layer, rule, 1);
             constexpr std::uint64_t of_vector = 250;
             const PointArray again =
-                hatch(layer, rule, 1, nullptr, LayerBudget({.memory = of_vector * vectors.size() / 2}, 0, 0));
+                hatch(layer, rule, 1, LayerBudget({.memory = of_vector * vectors.size() / 2}, 0, 0));
             EXPECT_TRUE(std::equal(vectors.begin(), vectors.end(), again.begin(), again.end()));
         }
     }
@@ -357,7 +357,7 @@ TEST(Hatch, HearsARequestToStop) {
     stop.request();
     for (const HatchPattern pattern : patterns)
         test::expect_error(ErrorKind::cancelled, {}, [&] {
-            static_cast<void>(hatch(layer_of({rectangle(0, 0, 10, 10)}), bare(pattern, 0.1, 5), 1, nullptr,
+            static_cast<void>(hatch(layer_of({rectangle(0, 0, 10, 10)}), bare(pattern, 0.1, 5), 1,
                                     LayerBudget({.cancel = &stop}, 0, 0)));
         });
 }

@@ -49,7 +49,8 @@ std::vector<Stroke> strokes_of(const Lines& lines) {
 
 /// Of its area what no line reaches.
 double bare(const Layer& layer, const Lines& lines) {
-    return unreached_area(layer, strokes_of(lines));
+    const Reached reached{.strokes = strokes_of(lines), .corners = {}};
+    return unreached_area(layer, reached, MeasuringLines(layer, reached, width / 2));
 }
 
 double distance_to(const Lines& lines, const Point2& p) {
@@ -88,7 +89,7 @@ TEST(MiddleLines, OfAFinRunAlongItFromEndToEnd) {
         for (const Point2& end : ends.points)
             EXPECT_LT(distance_to(lines, end), 0.6 * thick);
         EXPECT_LT(bare(fin, lines), 2e-3);
-        EXPECT_NEAR(unreached_area(fin, {}), thick * length, 1e-9);
+        EXPECT_NEAR(bare(fin, {}), thick * length, 1e-9);
     }
 }
 

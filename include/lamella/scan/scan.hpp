@@ -59,16 +59,21 @@ class InsetCache {
 struct ScanOptions {
     InsetCache* cache = nullptr; ///< cache of the part, or null
     LayerLimits limits = {};
+    Rounding written = {}; ///< of the file that will store the vectors
 };
 
 /// The scan vectors of one layer of a part, for each of the strategy's `exposures`.
 struct ScannedLayer {
     /// Contours are rings in scanning order, each from its start point.
     ScanVectors vectors;
-    /// Area of the material of each exposure that no vector reaches, mm^2. Such material is narrow; its
-    /// distance from hatch lines exceeds their spacing, and its distance from contours and from lines of
-    /// `ThinWalls` exceeds the beam's offset. If there are several contours, half of their distance counts if
-    /// it is larger than the beam's offset.
+    /// Area that no vector reaches, mm^2, for each exposure: between a contour and the previous one, or
+    /// within all contours in the region of a hatch. Vectors are those of the file (`ScanOptions::written`).
+    /// A contour, and a line in the middle of a wall, reaches the beam's offset to either side; if there are
+    /// several contours, half of their distance if it is larger. Rings reach corners of 30 degrees and more.
+    /// A hatch line reaches the hatch distance. No vector reaches farther than four times the beam's offset,
+    /// or twice the spot if that is larger. In material that is wide enough for the hatch at any position of
+    /// its lines, only spots above the square of the shortest line plus half of the square of the reach
+    /// count.
     std::vector<double> unreached_mm2;
 };
 

@@ -1,0 +1,243 @@
+"""The area that no vector reaches, of `slice`, of `verify` and of Shapely (GEOS), which shares no code with them.
+
+A tower of prisms has a shape on each layer: walls, tapers, wedges, fins and bent walls of all angles and thicknesses. Shapely
+grows the vectors in the file by what docs/strategies.md says that they reach.
+"""
+
+import json
+import math
+import os
+import random
+import sys
+import unittest
+from pathlib import Path
+
+try:
+    from shapely.geometry import LineString, MultiLineString, Polygon
+    from shapely.ops import unary_union
+except ImportError:
+    unary_union = None
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "app"))
+from program import ProgramTest, main  # noqa: E402
+
+LARGE = os.environ.get("LAMELLA_LARGE_SAMPLE") == "1"
+LAYERS = 60 if LARGE else 20
+HEIGHT = 0.05
+MITRE = 2  # of Shapely's join styles
+ROUND_CHORDS = 32
+SHARPEST = 30  # degrees, of corners that count as reached
+PATTERNS = ["lines", "meander", "stripes", "chessboard", "hexagons"]
+
+
+def wall_along(line, thick):
+    """A wall along a line, with a thickness at each point."""
+    left, right = [], []
+    for i, (x, y) in enumerate(line):
+        (ax, ay), (bx, by) = line[max(0, i - 1)], line[min(i + 1, len(line) - 1)]
+        length = math.hypot(bx - ax, by - ay)
+        nx, ny = -(by - ay) / length * thick[i] / 2, (bx - ax) / length * thick[i] / 2
+        left.append((x + nx, y + ny))
+        right.append((x - nx, y - ny))
+    return right + left[::-1]
+
+
+def wall(numbers):
+    return wall_along([(0, 0), (numbers.uniform(1, 6), 0)], [numbers.uniform(0.1, 0.4)] * 2)
+
+
+def taper(numbers):
+    return wall_along([(0, 0), (numbers.uniform(1, 6), 0)], [numbers.uniform(0.1, 0.4), numbers.uniform(0.02, 0.4)])
+
+
+def wedge(numbers):
+    angle = math.radians(numbers.choice([1, 3, 8, 15, 25, 29, 31, 45, 80]))
+    length = numbers.uniform(1, 6)
+    return [(0, 0), (length, 0), (length * math.cos(angle), length * math.sin(angle))]
+
+
+def fin(numbers):
+    """A block with a fin that may taper to nothing."""
+    base, tip, out = numbers.uniform(0.1, 0.5), numbers.uniform(0, 0.4), numbers.uniform(1, 4)
+    return [(0, 0), (2, 0), (2, 1), (2 + out, 1 + (base - tip) / 2), (2 + out, 1 + (base + tip) / 2 + 1e-6), (2, 1 + base),
+            (2, 2), (0, 2)]
+
+
+def bent_wall(numbers):
+    line, way = [(0, 0)], 0
+    for _ in range(numbers.randint(2, 4)):
+        way += numbers.uniform(-1.1, 1.1)
+        x, y = line[-1]
+        line.append((x + 1.5 * math.cos(way), y + 1.5 * math.sin(way)))
+    thick = numbers.uniform(0.1, 0.4)
+    return wall_along(line, [thick * numbers.uniform(0.8, 1.2) for _ in line])
+
+
+SHAPES = [wall, taper, wedge, fin, bent_wall]
+
+
+def turned(ring, numbers):
+    angle, x0, y0 = numbers.uniform(0, 2 * math.pi), numbers.uniform(-20, 20), numbers.uniform(-20, 20)
+    c, s = math.cos(angle), math.sin(angle)
+    return [(x * c - y * s + x0, x * s + y * c + y0) for x, y in ring]
+
+
+def random_shape(numbers, kind):
+    """A ring that does not cross itself, turned and moved, with the coordinates that the mesh file has."""
+    while True:
+        ring = [(round(x, 5), round(y, 5)) for x, y in turned(kind(numbers), numbers)]
+        if Polygon(ring).is_valid and Polygon(ring).area > 0.01:
+            return ring
+
+
+def cross(o, a, b):
+    return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0])
+
+
+def triangles(ring):
+    """Ear by ear: indices of the corners."""
+    rest, result = list(range(len(ring))), []
+    while len(rest) > 3:
+        for k in range(len(rest)):
+            a, b, c = rest[k - 1], rest[k], rest[(k + 1) % len(rest)]
+            inside = any(all(cross(ring[p], ring[q], ring[other]) >= 0 for p, q in ((a, b), (b, c), (c, a)))
+                         for other in rest if other not in (a, b, c))
+            if cross(ring[a], ring[b], ring[c]) > 0 and not inside:
+                result.append((a, b, c))
+                del rest[k]
+                break
+        else:
+            raise ValueError("no ear")
+    return [*result, tuple(rest)]
+
+
+def tower(rings):
+    """An OBJ file with a prism of each ring, one on the other."""
+    vertices, faces = [], []
+    for layer, ring in enumerate(rings):
+        first, n = len(vertices) + 1, len(ring)
+        for z in (layer * HEIGHT, (layer + 1) * HEIGHT):
+            vertices += [(x, y, z) for x, y in ring]
+        for a, b, c in triangles(ring):
+            faces += [(first + a, first + c, first + b), (first + n + a, first + n + b, first + n + c)]
+        for i in range(n):
+            k = (i + 1) % n
+            faces += [(first + i, first + k, first + n + k), (first + i, first + n + k, first + n + i)]
+    return "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in vertices) + "".join("f %d %d %d\n" % face for face in faces)
+
+
+def corner_piece(before, p, after, reach):
+    """What a ring reaches beside a corner, besides the strips along its sides and a circle."""
+    u = (p[0] - before[0], p[1] - before[1])
+    v = (after[0] - p[0], after[1] - p[1])
+    lu, lv = math.hypot(*u), math.hypot(*v)
+    turn = math.atan2(u[0] * v[1] - u[1] * v[0], u[0] * v[0] + u[1] * v[1])
+    side = -reach if turn > 0 else reach
+    a = (p[0] - side * u[1] / lu, p[1] + side * u[0] / lu)
+    b = (p[0] - side * v[1] / lv, p[1] + side * v[0] / lv)
+    corner = math.pi - abs(turn)
+    far = reach * math.tan(abs(turn) / (2 if corner >= math.radians(SHARPEST) else 4))
+    return Polygon([p, a, (a[0] + far * u[0] / lu, a[1] + far * u[1] / lu), (b[0] - far * v[0] / lv, b[1] - far * v[1] / lv), b])
+
+
+def reached(contours, lines_of_contours, hatches, contour_reach, hatch_reach):
+    pieces = []
+    for ring in contours:
+        pieces.append(LineString([*ring, ring[0]]).buffer(contour_reach, ROUND_CHORDS))
+        pieces += [corner_piece(ring[i - 1], ring[i], ring[(i + 1) % len(ring)], contour_reach) for i in range(len(ring))]
+    if lines_of_contours:
+        pieces.append(MultiLineString(lines_of_contours).buffer(contour_reach, ROUND_CHORDS))
+    pieces += [LineString(line).buffer(hatch_reach, ROUND_CHORDS) for line in hatches]
+    return unary_union([piece.buffer(0) for piece in pieces])
+
+
+class Rule:
+    """The numbers of a strategy."""
+
+    def __init__(self, numbers, pattern):
+        self.pattern = pattern
+        self.distance = numbers.choice([0.05, 0.08, 0.1, 0.12, 0.15, 0.17])
+        self.angle = numbers.uniform(0, 180)
+        self.contours = numbers.choice([1, 1, 2, 3])
+        self.overlap = numbers.choice([0, 0.1])
+        self.thin_walls = numbers.choice(["line", "leave out"])
+        self.beam_offset, self.contour_distance, self.border, self.shortest, self.spot = 0.05, 0.1, 0.05, 0.1, 0.08
+
+    def text(self):
+        return f"""[contours]
+count = {self.contours}
+beam_offset = {self.beam_offset}
+distance = {self.contour_distance}
+thin_walls = "{self.thin_walls}"
+[hatch]
+pattern = "{self.pattern}"
+distance = {self.distance}
+angle_degrees = {self.angle!r}
+border = {self.border}
+shortest = {self.shortest}
+overlap = {self.overlap}
+"""
+
+    def unreached(self, shape, vectors):
+        """The area of the shape that the vectors do not reach."""
+        farthest = max(4 * self.beam_offset, 2 * self.spot)
+        of_contours = max(self.beam_offset, self.contour_distance / 2) if self.contours > 1 else self.beam_offset
+        of_hatches = min(self.distance, farthest)
+        bare = shape.difference(reached(*vectors, min(of_contours, farthest), of_hatches))
+        inside = self.beam_offset + (self.contours - 1) * self.contour_distance + self.border
+        half = math.hypot(self.shortest, self.distance) / 2
+        wide = shape.buffer(-inside - half, join_style=MITRE, mitre_limit=2).buffer(half, join_style=MITRE, mitre_limit=3.8637)
+        spots = bare.intersection(wide)
+        largest_tip = self.shortest ** 2 + of_hatches ** 2 / 2
+        return bare.difference(wide).area + sum(spot.area for spot in getattr(spots, "geoms", [spots])
+                                                if spot.area > largest_tip)
+
+
+def vectors_of(layers):
+    """Of each layer: contours, lines of contours, hatch lines."""
+    result = {}
+    for part in layers["parts"]:
+        hatch = part["kind"] == "hatch"
+        for layer in part["layers"]:
+            contours, lines, hatches = result.setdefault(layer["index"], ([], [], []))
+            contours += [[tuple(p) for p in contour["points"]] for contour in layer["contours"] if contour["closed"]]
+            ends = [tuple(p) for p in layer.get("hatches", [])]
+            (hatches if hatch else lines).extend(zip(ends[::2], ends[1::2]))
+    return result
+
+
+@unittest.skipUnless(unary_union, "Shapely is not installed")
+class UnreachedTest(ProgramTest):
+    def compare(self, seed, kind, pattern):
+        numbers = random.Random(seed)
+        rule = Rule(numbers, pattern)
+        rings = [random_shape(numbers, kind) for _ in range(LAYERS)]
+        self.write("tower.obj", tower(rings))
+        self.write("rule.toml", rule.text())
+        name = f"{kind.__name__}, {pattern}, seed {seed}"
+        self.succeed("slice", "tower.obj", "--layer-height", HEIGHT, "--strategy", "rule.toml", "-o", "v.json", "--stats", "s.json")
+        stats = json.loads(self.bytes_of("s.json"))
+        vectors = vectors_of(json.loads(self.bytes_of("v.json")))
+        total = 0
+        for index, ring in enumerate(rings):
+            shape = Polygon(ring)
+            found = stats["layers"][index]["scan"]["unreached_mm2"]
+            expected = rule.unreached(shape, vectors.get(index, ([], [], [])))
+            total += expected
+            self.assertAlmostEqual(found, expected, delta=1e-3 * shape.area + 2e-4, msg=f"{name}, layer {index}")
+        checked = self.run_program("verify", "v.json", "--strategy", "rule.toml", "--mesh", "tower.obj", "--json").json()
+        found = checked["vectors"]["unreached_mm2"]
+        self.assertAlmostEqual(found, total, delta=1e-3 * sum(Polygon(ring).area for ring in rings), msg=name)
+
+    def test_slice_verify_and_shapely_agree(self):
+        seeds = range(1000, 1040 if LARGE else 1001)
+        for seed in seeds:
+            for i, pattern in enumerate(PATTERNS):
+                kinds = SHAPES if LARGE else [SHAPES[i]]
+                for kind in kinds:
+                    with self.subTest(seed=seed, pattern=pattern, kind=kind.__name__):
+                        self.compare(seed, kind, pattern)
+
+
+if __name__ == "__main__":
+    main()
