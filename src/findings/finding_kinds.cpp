@@ -111,6 +111,13 @@ constexpr std::array kinds{
                            "contours or smaller values of beam_offset, border, shortest or thinnest reach "
                            "more; accepted_mm2 of the strategy says how much of a layer may be left",
                        .unit = "mm2"},
+    FindingDescription{.kind = FindingKind::overlapping_parts,
+                       .name = "overlapping_parts",
+                       .many =
+                           "parts overlap in {amount} mm2 {on_layers}, where the material is exposed more "
+                           "than once: move them apart, or make them components of one object of a 3MF "
+                           "file, which are united",
+                       .unit = "mm2"},
 };
 
 } // namespace

@@ -49,7 +49,7 @@ Commit LayerProcessor::prepare(std::uint32_t plane, std::span<const Layer> parts
         closed = close_gaps_on_plane(parts, *job_.close_gaps_mm, job_.limits);
         parts = closed.layers;
     }
-    const std::vector<InvertedRings> inverted = inverted_of(parts);
+    std::vector<InvertedRings> inverted = inverted_of(parts);
     PlateMaterial material;
     if (job_.steps.any() || !job_.negatives.empty()) {
         const Stopwatch stepping;
@@ -57,14 +57,20 @@ Commit LayerProcessor::prepare(std::uint32_t plane, std::span<const Layer> parts
         count(stepping, step_nanoseconds_);
         parts = material.parts;
     }
+    const std::span<const Layer> bodies = material.bodies.empty() ? parts : material.bodies;
     UnitedParts united;
     if (job_.scan && parts.size() > 1) {
         united = unite_overlapping_parts(parts, job_.objects, job_.supports, job_.limits);
+        if (inverted.empty()) // unlike others, united parts lose these rings before they are scanned
+            inverted = inverted_of_united(parts, united);
         parts = united.parts;
     }
-    if (mine_.begin <= plane && plane < mine_.end)
-        totals_.add(plane - mine_.begin, parts, std::move(closed.joins), material.changes, inverted,
-                    material.bodies);
+    if (mine_.begin <= plane && plane < mine_.end) {
+        totals_.add(plane - mine_.begin, parts, std::move(closed.joins), material.changes, inverted, bodies);
+        for (std::size_t i = 0; i < united.overlaps_mm2.size(); ++i)
+            if (united.overlaps_mm2[i] > job_.scan->accepted_mm2)
+                totals_.add_overlap(plane - mine_.begin, i, united.overlaps_mm2[i]);
+    }
     return timed(job_.scan ? window_.prepare(plane, parts) : formatted(parts));
 }
 
@@ -109,6 +115,15 @@ std::vector<InvertedRings> LayerProcessor::inverted_of(std::span<const Layer> bo
         inverted.push_back(naming(i < job_.names.size() ? job_.names[i] : std::string(), [&] {
             return inverted_rings(bodies[i], job_.rounding, search, job_.limits);
         }));
+    return inverted;
+}
+
+std::vector<InvertedRings> LayerProcessor::inverted_of_united(std::span<const Layer> parts,
+                                                              const UnitedParts& united) const {
+    std::vector<InvertedRings> inverted(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        if (united.changed[i])
+            inverted[i] = inverted_rings(parts[i], job_.rounding, InversionSearch::full, job_.limits);
     return inverted;
 }
 

@@ -13,6 +13,7 @@
 #include "pipeline/layer_job.hpp"
 #include "pipeline/layer_totals.hpp"
 #include "pipeline/layer_window.hpp"
+#include "pipeline/part_overlaps.hpp"
 
 #include <atomic>
 #include <cstdint>
@@ -41,6 +42,8 @@ class LayerProcessor {
 
   private:
     [[nodiscard]] std::vector<InvertedRings> inverted_of(std::span<const Layer> bodies) const;
+    [[nodiscard]] std::vector<InvertedRings> inverted_of_united(std::span<const Layer> parts,
+                                                                const UnitedParts& united) const;
     [[nodiscard]] ScanVectors vectors_of(const PlaneLayers& plane);
     template <class Plane>
     [[nodiscard]] Commit formatted(const Plane& plane);

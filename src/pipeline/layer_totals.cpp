@@ -95,6 +95,13 @@ void LayerTotals::add(std::size_t plane, const PlaneVectors& vectors) {
         }
 }
 
+void LayerTotals::add_overlap(std::size_t plane, std::size_t part, double area_mm2) {
+    PlaneFinding overlap = finding(FindingKind::overlapping_parts, plane, part);
+    overlap.count = 1;
+    overlap.amount = area_mm2;
+    findings_.add(overlap);
+}
+
 PlaneFinding LayerTotals::finding(FindingKind kind, std::size_t plane, std::size_t body) const {
     return {.kind = kind,
             .file = files_[body],

@@ -34,6 +34,8 @@ class LayerTotals {
              std::span<const Layer> bodies = {});
     /// Adds a finding about a file on one of the planes, which every process knows; after `gather`.
     void add(const PlaneFinding& found) { findings_.add(found); }
+    /// Adds the overlap of a part with other parts on a plane. May be called from any thread.
+    void add_overlap(std::size_t plane, std::size_t part, double area_mm2);
     /// Adds the figures of the scan vectors of a plane, and the material without vectors. May be called from
     /// any thread, once for each plane.
     void add(std::size_t plane, const PlaneVectors& vectors);

@@ -44,7 +44,9 @@ std::vector<std::pair<std::size_t, std::size_t>> pairs_of(std::span<const Layer>
 
 UnitedParts unite_overlapping_parts(std::span<const Layer> parts, std::span<const std::uint32_t> objects,
                                     const std::vector<bool>& supports, const LayerLimits& limits) {
-    UnitedParts united{{parts.begin(), parts.end()}, std::vector<double>(parts.size(), 0)};
+    UnitedParts united{{parts.begin(), parts.end()},
+                       std::vector<double>(parts.size(), 0),
+                       std::vector<bool>(parts.size(), false)};
     std::vector<std::size_t> owners(parts.size()); // the part that has the material of each part
     std::iota(owners.begin(), owners.end(), std::size_t{0});
     const auto owner_of = [&owners](std::size_t part) {
@@ -64,6 +66,7 @@ UnitedParts unite_overlapping_parts(std::span<const Layer> parts, std::span<cons
         const std::size_t owner = owner_of(part);
         if (owner == part)
             continue;
+        united.changed[owner] = united.changed[part] = true;
         united.parts[owner] = combine(united.parts[owner], parts[part], BooleanOperation::unite, limits);
         united.parts[part] = {.index = parts[part].index,
                               .z = parts[part].z,

@@ -18,6 +18,7 @@ struct UnitedParts {
     std::vector<Layer> parts;
     /// Area of the overlaps of each part with the parts before it that stay separate, mm^2.
     std::vector<double> overlaps_mm2;
+    std::vector<bool> changed; ///< true for each part that was united with others
 };
 
 /// Unites overlapping parts with equal numbers in `objects`. Parts whose `supports` differ are neither united

@@ -28,6 +28,7 @@ enum class FindingKind : std::uint32_t {
     nothing_left,         ///< no contour is left after the steps
     no_contours,          ///< no layer has a contour, for another reason
     unreached_material,   ///< material that no scan vector reaches
+    overlapping_parts,    ///< material of several parts, which scan vectors expose several times
 };
 
 enum class Severity : std::uint8_t {
