@@ -60,7 +60,7 @@ Commit LayerProcessor::prepare(std::uint32_t plane, std::span<const Layer> parts
     const std::span<const Layer> bodies = material.bodies.empty() ? parts : material.bodies;
     UnitedParts united;
     if (job_.scan && parts.size() > 1) {
-        united = unite_overlapping_parts(parts, job_.objects, job_.supports, job_.limits);
+        united = unite_overlapping_parts(parts, job_.objects, job_.supports, job_.limits, job_.names);
         if (inverted.empty()) // unlike others, united parts lose these rings before they are scanned
             inverted = inverted_of_united(parts, united);
         parts = united.parts;
@@ -123,7 +123,9 @@ std::vector<InvertedRings> LayerProcessor::inverted_of_united(std::span<const La
     std::vector<InvertedRings> inverted(parts.size());
     for (std::size_t i = 0; i < parts.size(); ++i)
         if (united.changed[i])
-            inverted[i] = inverted_rings(parts[i], job_.rounding, InversionSearch::full, job_.limits);
+            inverted[i] = naming(job_.names[i], [&] {
+                return inverted_rings(parts[i], job_.rounding, InversionSearch::full, job_.limits);
+            });
     return inverted;
 }
 

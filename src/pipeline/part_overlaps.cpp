@@ -3,6 +3,7 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/polygon/boolean.hpp"
 
+#include "core/naming.hpp"
 #include "polygon/box2.hpp"
 
 #include <algorithm>
@@ -43,7 +44,8 @@ std::vector<std::pair<std::size_t, std::size_t>> pairs_of(std::span<const Layer>
 } // namespace
 
 UnitedParts unite_overlapping_parts(std::span<const Layer> parts, std::span<const std::uint32_t> objects,
-                                    const std::vector<bool>& supports, const LayerLimits& limits) {
+                                    const std::vector<bool>& supports, const LayerLimits& limits,
+                                    std::span<const std::string> names) {
     UnitedParts united{{parts.begin(), parts.end()},
                        std::vector<double>(parts.size(), 0),
                        std::vector<bool>(parts.size(), false)};
@@ -54,20 +56,24 @@ UnitedParts unite_overlapping_parts(std::span<const Layer> parts, std::span<cons
             part = owners[part] = owners[owners[part]];
         return part;
     };
-    const auto overlap = [&](const Layer& a, const Layer& b) {
-        return measure(combine(a, b, BooleanOperation::intersect, limits)).area_mm2;
+    const auto combined = [&](std::size_t part, const Layer& a, const Layer& b, BooleanOperation operation) {
+        return naming(part < names.size() ? names[part] : std::string(),
+                      [&] { return combine(a, b, operation, limits); });
+    };
+    const auto overlap = [&](std::size_t part, const Layer& a, const Layer& b) {
+        return measure(combined(part, a, b, BooleanOperation::intersect)).area_mm2;
     };
     const std::vector<std::pair<std::size_t, std::size_t>> pairs = pairs_of(parts, supports);
     for (const auto& [one, other] : pairs)
         if (objects[one] == objects[other] && owner_of(one) != owner_of(other) &&
-            overlap(parts[one], parts[other]) > 0)
+            overlap(other, parts[one], parts[other]) > 0)
             owners[std::max(owner_of(one), owner_of(other))] = std::min(owner_of(one), owner_of(other));
     for (std::size_t part = 0; part < parts.size(); ++part) {
         const std::size_t owner = owner_of(part);
         if (owner == part)
             continue;
         united.changed[owner] = united.changed[part] = true;
-        united.parts[owner] = combine(united.parts[owner], parts[part], BooleanOperation::unite, limits);
+        united.parts[owner] = combined(part, united.parts[owner], parts[part], BooleanOperation::unite);
         united.parts[part] = {.index = parts[part].index,
                               .z = parts[part].z,
                               .bottom = parts[part].bottom,
@@ -80,7 +86,7 @@ UnitedParts unite_overlapping_parts(std::span<const Layer> parts, std::span<cons
     std::sort(separate.begin(), separate.end());
     separate.erase(std::unique(separate.begin(), separate.end()), separate.end());
     for (const auto& [one, other] : separate)
-        united.overlaps_mm2[other] += overlap(united.parts[one], united.parts[other]);
+        united.overlaps_mm2[other] += overlap(other, united.parts[one], united.parts[other]);
     return united;
 }
 

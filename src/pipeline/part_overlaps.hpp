@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace lamella {
@@ -23,10 +24,12 @@ struct UnitedParts {
 
 /// Unites overlapping parts with equal numbers in `objects`. Parts whose `supports` differ are neither united
 /// nor do their overlaps count, because supports reach into parts on purpose. Parts that only touch stay as
-/// they are. O(n log n) for n parts, and what combining takes for each pair whose boxes overlap.
+/// they are. `names` are those of the parts for error messages, or empty. O(n log n) for n parts, and what
+/// combining takes for each pair whose boxes overlap.
 [[nodiscard]] UnitedParts unite_overlapping_parts(std::span<const Layer> parts,
                                                   std::span<const std::uint32_t> objects,
                                                   const std::vector<bool>& supports,
-                                                  const LayerLimits& limits = {});
+                                                  const LayerLimits& limits = {},
+                                                  std::span<const std::string> names = {});
 
 } // namespace lamella

@@ -141,19 +141,22 @@ void check_cover(const PlaneGroup& group, const MaterialBounds& bounds, const Sc
 void check_reach(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
                  const Rounding& rounding, double moved_edges, PlaneFindings& found) {
     const bool support = group.front().exposure.region == ScanRegion::support;
-    const FillDepths depths(support ? without_skins(strategy.support, strategy.seed) : strategy);
+    const FillDepths depths(support ? filling_supports(strategy.support, strategy.seed) : strategy);
     double largest = 0;
     for (const PlaneExposure& part : group)
         largest = std::max(
             {largest, largest_coordinate(part.polylines.points.span()), largest_coordinate(part.hatches)});
     Reached reached;
     for (const PlaneExposure& part : group) {
-        const ContourRule& contours = contours_of(strategy, part.exposure.region);
+        const ScanRegion region = part.exposure.region;
+        const ContourRule& contours = contours_of(strategy, region);
+        const HatchRule hatch = region == ScanRegion::support
+                                    ? filling_supports(strategy.support, strategy.seed).hatch
+                                    : hatch_of(strategy, region);
         reached.add(part.polylines, part.hatches,
                     moved_point(largest, rounding) + moved_edges +
-                        (part.exposure.kind == VectorKind::hatch
-                             ? hatch_reach(contours, hatch_of(strategy, part.exposure.region))
-                             : contour_reach(contours)));
+                        (part.exposure.kind == VectorKind::hatch ? hatch_reach(contours, hatch)
+                                                                 : contour_reach(contours)));
     }
     double least = std::numeric_limits<double>::infinity();
     Point2 at;

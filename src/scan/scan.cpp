@@ -435,7 +435,7 @@ ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
 // A support is scanned as a part without skins, by the rules for supports.
 ScannedLayer scan_support(const ScanLayer& layer, const ScanStrategy& strategy, const ScanOptions& options) {
     check_strategy(strategy); // so that errors name fields of supports
-    return scan(layer, {}, {}, without_skins(strategy.support, strategy.seed), options);
+    return scan(layer, {}, {}, filling_supports(strategy.support, strategy.seed), options);
 }
 
 } // namespace lamella

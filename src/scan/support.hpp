@@ -4,6 +4,7 @@
 
 #include "lamella/scan/strategy.hpp"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace lamella {
@@ -14,6 +15,15 @@ namespace lamella {
     strategy.contours = support.contours;
     strategy.hatch = support.hatch;
     strategy.seed = seed;
+    return strategy;
+}
+
+/// Returns the same strategy with a spot of the hatch that lets lines reach their whole distance. Supports
+/// need not be dense.
+[[nodiscard]] inline ScanStrategy filling_supports(const SupportRule& support, std::uint64_t seed) {
+    ScanStrategy strategy = without_skins(support, seed);
+    double& spot = strategy.hatch.parameters.spot_mm;
+    spot = std::max(spot, strategy.hatch.distance);
     return strategy;
 }
 

@@ -48,7 +48,7 @@ struct Reached {
 
 /// The rules by which the vectors of a strategy fill material, as far as they define what is narrow.
 struct FillDepths {
-    /// For supports, see `without_skins`.
+    /// For supports, see `filling_supports`.
     explicit FillDepths(const ScanStrategy& strategy);
 
     double filled = 0;     ///< depth from which on all hatches fill the material

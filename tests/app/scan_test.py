@@ -6,7 +6,7 @@ import zipfile
 
 from program import SOURCE, ProgramTest, binary_stl, box_triangles, main, open_box
 
-HATCHED = ["--hatch-distance", "0.5", "--contours", "2", "--skin-layers", "2"]
+HATCHED = ["--hatch-distance", "0.2", "--contours", "2", "--skin-layers", "2"]
 
 
 class Strategy(ProgramTest):
@@ -119,7 +119,7 @@ class Scan(ProgramTest):
 
     def test_a_job_of_vectors_is_read_back(self):
         result = self.succeed("slice", "part.stl", "--label", "bracket", "--layer-height", "1", "-o", "job.cli", "--scan", *HATCHED)
-        self.assertRegex(result.text, r"(?m)^scan     [\d,]+ vectors, [\d.]+ mm marked, [\d.]+ mm jumped, [\d.]+ s, [\d.]+ J$")
+        self.assertRegex(result.text, r"(?m)^scan     [\d,]+ vectors, [\d.]+ m marked, [\d.]+ mm jumped, [\d.]+ s, [\d.]+ J$")
         self.assertEqual(result.err, self.without_parameters("job.cli", 5))
         info = self.succeed("info", "job.cli").text
         self.assertIn("bracket core contour 1", info)
@@ -147,7 +147,7 @@ class Scan(ProgramTest):
         self.assertEqual(scan["contour_vectors"], 2 * 4 * 4, "where the beam need not stop at diagonals")
         self.assertEqual(list(scan["regions"]), ["core", "upskin", "downskin"])
         self.assertAlmostEqual(scan["energy_j_mm3"], scan["energy_j"] / 240)
-        self.assertEqual(scan["strategy"]["hatch"]["distance"], 0.5)
+        self.assertEqual(scan["strategy"]["hatch"]["distance"], 0.2)
         self.assertEqual(scan["strategy"]["upskin"]["layers"], 2)
         for key in ("contour_vectors", "hatch_vectors"):
             self.assertEqual(sum(region[key] for region in scan["regions"].values()), scan[key])

@@ -203,7 +203,8 @@ const Finding& unreached(const FileResult& result) {
 }
 
 TEST_F(ScanJob, MeasuresMaterialThatNoVectorReaches) {
-    FileJob scanned = job("job.cli"); // the outermost contour is at 0.05
+    FileJob scanned = job("job.cli");
+    scanned.scan->contours.beam_offset = 0.1; // no vector reaches farther than four times this
     write_stl(path("wall.stl"), make_box(0.08, 10, 2));
     scanned.inputs.push_back({.path = path("wall.stl"), .placement = translation(30, 0, -2)});
     EXPECT_EQ(unreached(slice_file(scanned)).layers, 0U) << "a line along its middle";

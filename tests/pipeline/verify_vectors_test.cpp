@@ -176,7 +176,9 @@ TEST_F(VerifyVectors, FindsContoursThatAreMissing) {
             EXPECT_EQ(found.wrong_contours, 10U) << name;
             EXPECT_FALSE(found.ok());
         }
-        const std::string text = with_all().findings.front();
+        std::string text;
+        for (const std::string& finding : with_all().findings)
+            text += finding + '\n';
         EXPECT_NE(text.find("contour " + std::string(1, name[13]) + " is missing on 10 layers"),
                   std::string::npos)
             << text;
@@ -232,7 +234,8 @@ TEST_F(VerifyVectors, GrantsTheRoundingOfTheFormat) {
         }
     EXPECT_FALSE(with_all().ok());
     EXPECT_TRUE(
-        verify_vectors(file_of(parts_), {.mesh = mesh_, .rounding = {.step_mm = 0.01}, .strategy = strategy_}).ok());
+        verify_vectors(file_of(parts_), {.mesh = mesh_, .rounding = {.step_mm = 0.01}, .strategy = strategy_})
+            .ok());
 }
 
 } // namespace
