@@ -4,7 +4,7 @@
 #include "lamella/polygon/boolean.hpp"
 
 #include "core/naming.hpp"
-#include "polygon/box2.hpp"
+#include "contour/box2.hpp"
 
 #include <algorithm>
 #include <numeric>
