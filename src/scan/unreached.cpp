@@ -59,14 +59,14 @@ struct Side {
 double cross(const Point2& a, const Point2& b) noexcept {
     return a.x * b.y - a.y * b.x;
 }
-double dot(const Point2& a, const Point2& b) noexcept {
+double dot_product(const Point2& a, const Point2& b) noexcept {
     return a.x * b.x + a.y * b.y;
 }
 
 /// Appends the piece that fills the gap between the strips beside two sides that meet at p.
 void add_corner(const Point2& p, const Side& before, const Side& after, double reach, Reached& reached) {
     const double turn = cross(before.way, after.way);
-    const double cosine = dot(before.way, after.way);
+    const double cosine = dot_product(before.way, after.way);
     if (turn == 0 && cosine > 0)
         return;
     const double by = turn > 0 ? -reach : reach; // the gap lies on the outer side of the turn
@@ -165,7 +165,7 @@ class InsetRings {
         const Point2& b = ring[i + 1 == ring.size() ? 0 : i + 1];
         const auto& [way, level] = sides_[moved];
         return std::abs(cross(way, a) - level) <= tolerance_ &&
-               std::abs(cross(way, b) - level) <= tolerance_ && dot(way, {b.x - a.x, b.y - a.y}) > 0;
+               std::abs(cross(way, b) - level) <= tolerance_ && dot_product(way, {b.x - a.x, b.y - a.y}) > 0;
     }
     /// Returns whether the sides of the ring are those moved, in their order, if its side 0 is `first`.
     [[nodiscard]] bool follows(std::span<const Point2> ring, std::size_t first) const {
@@ -196,8 +196,8 @@ class InsetRings {
         const Point2& one = sides_[side % sides_.size()].way;
         const Point2& other = sides_[next % sides_.size()].way;
         if (next == side + 1)
-            return cross(one, other) < 0 || dot(one, other) > sharpest;
-        return turns_left(next - 1, next) && cross(one, other) >= 0 && dot(one, other) > sharpest;
+            return cross(one, other) < 0 || dot_product(one, other) > sharpest;
+        return turns_left(next - 1, next) && cross(one, other) >= 0 && dot_product(one, other) > sharpest;
     }
 
     const Layer& inset_;
@@ -399,7 +399,7 @@ class Measured {
             return {within.from(), within.to()};
         }
         const Point2 to{p[1].x - p[0].x, p[1].y - p[0].y};
-        const double length = std::sqrt(dot(to, to));
+        const double length = std::sqrt(dot_product(to, to));
         const double share = length > 0 ? one.reach / length : 0;
         const Point2 left{-to.y * share, to.x * share};
         within.add_circle(p[0].x, v - p[0].y, one.reach);
