@@ -107,14 +107,14 @@ struct InsetCache::Insets {
         narrow.resize(contours.count + 1);
         lines.resize(contours.count);
         const double deepest = depths.filled + depths.half_width;
-        const Layer bodies = narrow_bodies(layer, at(deepest), deepest);
-        if (bodies.rings == 0)
+        const BodiesByWidth bodies = bodies_by_width(layer, at(deepest), deepest);
+        if (bodies.narrow.rings == 0)
             return;
+        find_narrow(bodies, limits);
         for (std::uint32_t i = 1; i <= contours.count; ++i) {
             Layer& inset = moved[index_of(contour_depth(contours, i))];
             inset = without_slivers(inset, contours.beam_offset * narrowest_contour);
         }
-        find_narrow(bodies, limits);
     }
 
     /// Returns whether these insets are also those of another layer.
@@ -135,6 +135,13 @@ struct InsetCache::Insets {
         return contours.count == 0 ? layer : at(contour_depth(contours, contours.count));
     }
 
+    /// Returns the area within the innermost contour that is too narrow for a hatch.
+    [[nodiscard]] Layer strips(const LayerLimits& limits) const {
+        return narrow_points(innermost, certainly_hatched,
+                             depths.filled + depths.half_width - contour_depth(contours, contours.count),
+                             limits);
+    }
+
     Layer layer;
     std::vector<double> distances;
     ContourRule contours;
@@ -145,8 +152,9 @@ struct InsetCache::Insets {
     /// and the previous one may not reach, because it is too narrow. The last entry is the same for the
     /// hatches: the area that they should fill and that is narrower than `surely_hatched`.
     std::vector<Layer> narrow;
-    /// The area within the innermost contour that is too narrow for a hatch.
-    Layer strips;
+    /// Of narrow bodies: the area within the innermost contour, and the middle of what is certainly hatched.
+    Layer innermost;
+    Layer certainly_hatched;
     /// For each contour, the lines along the middle of areas that are too narrow for it and that the previous
     /// contours do not reach.
     std::vector<std::vector<std::vector<Point2>>> lines;
@@ -158,34 +166,36 @@ struct InsetCache::Insets {
         return static_cast<std::size_t>(found - distances.begin());
     }
 
-    /// Finds the narrow areas of bodies that may have some.
-    void find_narrow(const Layer& bodies, const LayerLimits& limits) {
+    /// Finds the narrow areas of the narrow bodies.
+    void find_narrow(const BodiesByWidth& bodies, const LayerLimits& limits) {
         const LayerBudget budget(limits, layer.index, layer.z);
         const bool line = contours.thin_walls == ThinWalls::line;
         const double sliver = contours.beam_offset * narrowest_contour;
-        Layer outer = bodies;
+        const auto inset = [&](double depth) {
+            return depth == 0 ? bodies.narrow : inset_of_narrow(bodies, at(depth), depth, limits);
+        };
+        const auto lost = [&](const Layer& material, const Layer& within, double by) {
+            const Layer narrow_ones = bodies_by_width(material, within, by).narrow;
+            return narrow_ones.rings == 0 ? Layer{} : narrow_points(narrow_ones, within, by, limits);
+        };
+        Layer outer = bodies.narrow;
         for (std::uint32_t i = 1; i <= contours.count; ++i) {
             const double depth = contour_depth(contours, i);
             const double step = i == 1 ? depth : contours.distance;
-            Layer inner = without_slivers(offset(bodies, -depth, {.limits = limits}), sliver);
+            Layer inner = without_slivers(inset(depth), sliver);
             // Between two contours, each one reaches half of the distance.
-            narrow[i - 1] = i == 1 ? narrow_points(outer, inner, step, limits)
-                                   : narrow_points(offset(bodies, step / 2 - depth, {.limits = limits}),
-                                                   inner, step / 2, limits);
+            narrow[i - 1] =
+                i == 1 ? lost(outer, inner, step)
+                       : lost(offset(bodies.narrow, step / 2 - depth, {.limits = limits}), inner, step / 2);
             if (line && narrow[i - 1].rings > 0)
                 lines[i - 1] = middle_lines(
                     i == 1 ? narrow[0] : narrow_points(outer, inner, step, limits), 2 * (step + sliver),
                     i == 1 ? contours.thinnest : 2 * reach * more_than_reached, budget);
             outer = std::move(inner);
         }
-        const Layer wide = wide_points(bodies, 0, depths, limits);
-        narrow.back() = combine(offset(bodies, -depths.filled, {.limits = limits}), wide,
-                                BooleanOperation::subtract, limits);
-        if (narrow.back().rings > 0 && line && contours.count > 0) {
-            const double deepest = depths.filled + depths.half_width;
-            strips = narrow_points(outer, offset(bodies, -deepest, {.limits = limits}),
-                                   deepest - contour_depth(contours, contours.count), limits);
-        }
+        certainly_hatched = inset(depths.filled + depths.half_width);
+        narrow.back() = lost(inset(depths.filled), certainly_hatched, depths.half_width);
+        innermost = std::move(outer);
     }
 };
 
@@ -416,11 +426,13 @@ ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
         return {std::move(result), std::vector<double>(all.size(), 0)};
     Reached reached = reached_by(result, all, strategy, options.written, budget);
     const MeasuringLines lines(layer, reached, insets->depths.least_reach);
-    if (innermost < all.size() && insets->strips.rings > 0) {
+    if (innermost < all.size() && unreached_area(insets->narrow.back(), reached, lines, {}, 0, budget) >
+                                      negligible(insets->depths.least_reach)) {
+        const Layer strips = insets->strips(budget.limits());
         auto walls = insets->lines[strategy.contours.count - 1];
         for (const Exposure& exposure : all)
             if (exposure.kind == VectorKind::hatch)
-                for (auto& line : lines_amid(regions.part(insets->strips, exposure.region), reached, lines,
+                for (auto& line : lines_amid(regions.part(strips, exposure.region), reached, lines,
                                              insets->depths, strategy, budget))
                     walls.push_back(std::move(line));
         if (walls.size() > insets->lines[strategy.contours.count - 1].size()) {

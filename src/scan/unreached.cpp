@@ -132,6 +132,14 @@ class InsetRings {
                 return taken_[begin] = true;
         return false;
     }
+    /// Returns the rings that were not taken.
+    [[nodiscard]] Layer others() const {
+        std::vector<std::uint32_t> others;
+        for (std::uint32_t i = 0; i < inset_.rings; ++i)
+            if (!taken_[i])
+                others.push_back(i);
+        return rings_of(inset_, std::move(others));
+    }
     [[nodiscard]] bool all_taken() const {
         return std::find(taken_.begin(), taken_.end(), false) == taken_.end();
     }
@@ -527,6 +535,19 @@ void Reached::add(const Layer& polylines, std::span<const Point2> lines, double 
         strokes.push_back({rounded(lines[i], rounding), rounded(lines[i + 1], rounding), reach});
 }
 
+Reached Reached::near(const Layer& positions) const {
+    Occupied occupied(positions);
+    for (std::size_t i = 0; i < positions.rings; ++i)
+        occupied.add(box_of(positions.contour(i)));
+    Reached near;
+    std::copy_if(strokes.begin(), strokes.end(), std::back_inserter(near.strokes), [&](const Stroke& stroke) {
+        return occupied.any_within(Box2::of(stroke.from, stroke.to).grown(stroke.reach));
+    });
+    std::copy_if(corners.begin(), corners.end(), std::back_inserter(near.corners),
+                 [&](const std::array<Point2, 4>& corner) { return occupied.any_within(box_of(corner)); });
+    return near;
+}
+
 FillDepths::FillDepths(const ScanStrategy& strategy) {
     const ContourRule& contours = strategy.contours;
     const double reach = contour_reach(contours);
@@ -552,27 +573,43 @@ FillDepths::FillDepths(const ScanStrategy& strategy) {
     tip_mm2 = shortest * shortest + most * most / 2;
 }
 
-Layer wide_points(const Layer& material, double depth, const FillDepths& depths, const LayerLimits& limits) {
-    const double in = std::max(0.0, depths.filled - depth) + depths.half_width;
-    return offset(offset(material, -in, {.limits = limits}), depths.half_width * rounded_slivers,
-                  {.corners = {.mitre_limit = reached_mitre}, .limits = limits});
+Layer grown_to_corners(const Layer& inset, double by, const LayerLimits& limits) {
+    return offset(inset, by * rounded_slivers, {.corners = {.mitre_limit = reached_mitre}, .limits = limits});
 }
 
-Layer narrow_bodies(const Layer& material, const Layer& inset, double by) {
+Layer wide_points(const Layer& material, double depth, const FillDepths& depths, const LayerLimits& limits) {
+    const double in = std::max(0.0, depths.filled - depth) + depths.half_width;
+    return grown_to_corners(offset(material, -in, {.limits = limits}), depths.half_width, limits);
+}
+
+BodiesByWidth bodies_by_width(const Layer& material, const Layer& inset, double by) {
     InsetRings rings(inset, by);
     std::vector<bool> moved(material.rings, false);
     for (std::size_t i = 0; i < material.rings; ++i)
         moved[i] = rings.take(material.contour(i));
     const bool all = std::find(moved.begin(), moved.end(), false) == moved.end();
     if (all && rings.all_taken())
-        return {};
+        return {.narrow = {}, .wide = material};
     std::vector<std::uint32_t> narrow;
+    std::vector<std::uint32_t> wide;
     for (const Polygon& body : polygons(nesting(material))) {
         const std::vector<std::uint32_t> own = rings_of(body);
-        if (all || std::any_of(own.begin(), own.end(), [&](std::uint32_t ring) { return !moved[ring]; }))
-            narrow.insert(narrow.end(), own.begin(), own.end());
+        const bool is_narrow =
+            all || std::any_of(own.begin(), own.end(), [&](std::uint32_t ring) { return !moved[ring]; });
+        std::vector<std::uint32_t>& some = is_narrow ? narrow : wide;
+        some.insert(some.end(), own.begin(), own.end());
     }
-    return rings_of(material, std::move(narrow));
+    return {.narrow = rings_of(material, std::move(narrow)), .wide = rings_of(material, std::move(wide))};
+}
+
+Layer inset_of_narrow(const BodiesByWidth& bodies, const Layer& inset, double by, const LayerLimits& limits) {
+    if (bodies.wide.rings == 0)
+        return inset;
+    InsetRings rings(inset, by);
+    for (std::size_t i = 0; i < bodies.wide.rings; ++i)
+        if (!rings.take(bodies.wide.contour(i)))
+            return offset(bodies.narrow, -by, {.limits = limits});
+    return rings.others();
 }
 
 Layer narrow_points(const Layer& material, const Layer& inset, double by, const LayerLimits& limits) {
@@ -580,10 +617,7 @@ Layer narrow_points(const Layer& material, const Layer& inset, double by, const 
         return {};
     if (inset.rings == 0)
         return material;
-    return combine(
-        material,
-        offset(inset, by * rounded_slivers, {.corners = {.mitre_limit = reached_mitre}, .limits = limits}),
-        BooleanOperation::subtract, limits);
+    return combine(material, grown_to_corners(inset, by, limits), BooleanOperation::subtract, limits);
 }
 
 // Strips beside sides and lines are at least 7.5 degrees from the best of these directions, unless there are
@@ -623,13 +657,14 @@ double unreached_area(const Layer& positions, const Reached& reached, const Meas
 
 Layer bare_points(const Layer& positions, const Reached& reached, const MeasuringLines& lines,
                   double least_reach, const LayerBudget& budget) {
-    const double accepted = least_reach * least_reach / 32; // small, since many such areas are not negligible
+    const double accepted = negligible(least_reach);
     if (!(unreached_area(positions, reached, lines, {}, 0, budget) > accepted))
         return {};
+    const Reached near = reached.near(positions);
     std::vector<std::uint32_t> bare;
     for (const Polygon& body : polygons(nesting(positions))) {
         const std::vector<std::uint32_t> own = rings_of(body);
-        if (unreached_area(rings_of(positions, own), reached, lines, {}, 0, budget) > accepted)
+        if (unreached_area(rings_of(positions, own), near, lines, {}, 0, budget) > accepted)
             bare.insert(bare.end(), own.begin(), own.end());
     }
     return normal_form(rings_of(positions, std::move(bare)));

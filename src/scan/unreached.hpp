@@ -44,6 +44,8 @@ struct Reached {
     /// rounded first.
     void add(const Layer& polylines, std::span<const Point2> lines, double reach,
              const Rounding& rounding = {});
+    /// Returns what may reach one of these rings, and little else.
+    [[nodiscard]] Reached near(const Layer& positions) const;
 };
 
 /// The rules by which the vectors of a strategy fill material, as far as they define what is narrow.
@@ -61,15 +63,30 @@ struct FillDepths {
     bool dense = true;
 };
 
+/// Returns the inset grown by `by` mm, with its corners up to `reached_mitre`.
+[[nodiscard]] Layer grown_to_corners(const Layer& inset, double by, const LayerLimits& limits = {});
+
 /// Returns the part of the material that is wide enough to be hatched for any position of the lines. The
 /// outline of the material lies `depth` inside of that of the part.
 [[nodiscard]] Layer wide_points(const Layer& material, double depth, const FillDepths& depths,
                                 const LayerLimits& limits = {});
 
-/// Returns the bodies that may have material narrower than twice `by`, or corners below 30 degrees. Of the
-/// other bodies, each ring is in the inset with its sides moved, but for sides of rounded corners. `inset` is
-/// the result of `offset`. O(points), plus the nesting of rings if there are such bodies.
-[[nodiscard]] Layer narrow_bodies(const Layer& material, const Layer& inset, double by);
+/// The bodies of a layer that may have material narrower than a width, or corners below 30 degrees, and the
+/// other bodies.
+struct BodiesByWidth {
+    Layer narrow;
+    Layer wide;
+};
+
+/// Finds the bodies that are wider than twice `by`: each of their rings is in the inset with its sides moved,
+/// but for sides of rounded corners. `inset` is the result of `offset`. O(points), plus the nesting of rings
+/// if there are narrow bodies.
+[[nodiscard]] BodiesByWidth bodies_by_width(const Layer& material, const Layer& inset, double by);
+
+/// Returns the part of an inset of all bodies that belongs to the narrow ones. `by` is at most the distance
+/// by which they were found. O(points).
+[[nodiscard]] Layer inset_of_narrow(const BodiesByWidth& bodies, const Layer& inset, double by,
+                                    const LayerLimits& limits = {});
 
 /// Returns the part of the material that is not in the inset grown by `by` mm.
 [[nodiscard]] Layer narrow_points(const Layer& material, const Layer& inset, double by,
@@ -91,9 +108,15 @@ struct MeasuringLines {
                                     const MeasuringLines& lines, const Layer& wide = {}, double tip_mm2 = 0,
                                     const LayerBudget& budget = {});
 
-/// Returns the bodies with an unreached area of more than 1/32 of the square of the shortest reach. The
-/// bodies include their holes; the result is in normal form. Takes the time of `unreached_area`, plus a pass
-/// for each body over the vectors close to any body.
+/// Returns the unreached area for which no line is made: 1/32 of the square of the shortest reach. It is
+/// small, since many such areas are not negligible.
+[[nodiscard]] constexpr double negligible(double least_reach) noexcept {
+    return least_reach * least_reach / 32;
+}
+
+/// Returns the bodies with an unreached area that is not negligible. The bodies include their holes; the
+/// result is in normal form. Takes the time of `unreached_area`, plus a pass for each body over the vectors
+/// close to any body.
 [[nodiscard]] Layer bare_points(const Layer& positions, const Reached& reached, const MeasuringLines& lines,
                                 double least_reach, const LayerBudget& budget = {});
 

@@ -145,7 +145,7 @@ def grown_rings(rings, reach):
     for ring in rings:
         pieces.append(LineString([*ring, ring[0]]).buffer(reach, ROUND_CHORDS))
         pieces += [corner_piece(ring[i - 1], ring[i], ring[(i + 1) % len(ring)], reach).buffer(0) for i in range(len(ring))]
-    return unary_union([piece.buffer(0) for piece in pieces])
+    return unary_union([piece.buffer(0) for piece in pieces]).buffer(0)  # GEOS may leave shells within shells
 
 
 def reached(contours, lines_of_contours, hatches, contour_reach, hatch_reach):
@@ -153,7 +153,7 @@ def reached(contours, lines_of_contours, hatches, contour_reach, hatch_reach):
     if lines_of_contours:
         pieces.append(MultiLineString(lines_of_contours).buffer(contour_reach, ROUND_CHORDS))
     pieces += [LineString(line).buffer(hatch_reach, ROUND_CHORDS) for line in hatches]
-    return unary_union([piece.buffer(0) for piece in pieces])
+    return unary_union([piece.buffer(0) for piece in pieces]).buffer(0)  # GEOS may leave shells within shells
 
 
 class Rule:
@@ -193,7 +193,7 @@ overlap = {self.overlap}
         half = math.hypot(self.shortest, self.distance) / 2
         inset = shape.buffer(-inside - half, join_style=MITRE, mitre_limit=2).buffer(0)
         rings = [list(ring.coords)[:-1] for body in getattr(inset, "geoms", [inset]) for ring in [body.exterior, *body.interiors]]
-        wide = unary_union([inset, grown_rings([ring for ring in rings if ring], half)])
+        wide = unary_union([inset, grown_rings([ring for ring in rings if ring], half)]).buffer(0)
         spots = bare.intersection(wide)
         largest_tip = self.shortest ** 2 + of_hatches ** 2 / 2
         return bare.difference(wide).area + sum(spot.area for spot in getattr(spots, "geoms", [spots])

@@ -557,6 +557,7 @@ TEST(Scan, OfSupportsGoesByTheirRulesAlone) {
     ScanStrategy plain;
     plain.contours = strategy.support.contours;
     plain.hatch = strategy.support.hatch;
+    plain.hatch.parameters.spot_mm = plain.hatch.distance; // lines of supports reach as far
     for (int round = 0; round < rounds_within_reason(50); ++round) {
         Layer layer = test::random_material(random, 16);
         layer.index = static_cast<std::uint64_t>(round);

@@ -39,10 +39,10 @@ double bare_area(const Layer& layer, const std::vector<Stroke>& strokes, double 
 }
 
 Layer narrow_bodies(const Layer& layer) {
-    return lamella::narrow_bodies(layer, offset(layer, -0.15), 0.15);
+    return bodies_by_width(layer, offset(layer, -0.15), 0.15).narrow;
 }
 
-TEST(NarrowBodies, AreNoneWhereAllIsWide) {
+TEST(BodiesByWidth, AreNoneThatAreNarrowWhereAllIsWide) {
     for (const Contour& ring : {rectangle(0, 0, 10, 10), regular_polygon(300, 5), regular_polygon(5, 2)})
         EXPECT_EQ(narrow_bodies(normal_layer({ring})).rings, 0U);
     const Layer plate = normal_layer({rectangle(0, 0, 10, 10), reversed(regular_polygon(40, 1))});
@@ -50,7 +50,7 @@ TEST(NarrowBodies, AreNoneWhereAllIsWide) {
 }
 
 // A sharp corner has sides parallel to those of its inset, too.
-TEST(NarrowBodies, AreThoseWithThinWallsOrSharpCorners) {
+TEST(BodiesByWidth, AreNarrowWithThinWallsOrSharpCorners) {
     const Contour plate = rectangle(0, 0, 10, 10);
     const Contour wall = rectangle(20, 0, 20.29, 10);
     const Contour wedge{{30, 0}, {40, 0}, {30, 5}};
