@@ -89,7 +89,7 @@ class Vectors(ProgramTest):
 
     def test_holes_with_corners_of_60_degrees_that_were_rounded_are_right(self):
         # At the limit of mitres the last digit decides whether a tip is cut off, alike in holes that are turned alike.
-        options = ["--scan", "--contours", "3", "--contour-distance", "1"]
+        options = ["--scan", "--contours", "3", "--contour-distance", "0.3"]
         for angle in [0.6, 0.7, 0.9, 1.1]:
             triangles = list(walls([(-10, -10), (240, -10), (240, 10), (-10, 10)], 1))
             for hole in even_triangles(12, angle, 0):
@@ -145,7 +145,7 @@ class Vectors(ProgramTest):
     def test_regions_that_a_file_has_nothing_of_have_their_slack(self):
         self.succeed("make", "box", "--size", "3,0.3,0.1", "-o", "thin.stl")
         rule = 'distance = 0.05\nborder = {}\nshortest = 0\npattern = "meander"\n'
-        self.write("thin.toml", f"[hatch]\n{rule.format(0)}[downskin]\nlayers = 1\n[downskin.hatch]\n{rule.format(0.15)}")
+        self.write("thin.toml", f"accepted_mm2 = 1\n[hatch]\n{rule.format(0)}[downskin]\nlayers = 1\n[downskin.hatch]\n{rule.format(0.15)}")
         for name in ["job.json", "job.ovf"]:
             self.succeed("slice", "thin.stl", "--strategy", "thin.toml", "-o", name)
             self.verify(name, "--strategy", "thin.toml")
