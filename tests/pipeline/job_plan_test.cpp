@@ -149,7 +149,7 @@ TEST(JobPlan, RefusesAFlatPartAndNamesWhatTheReaderWarnsOf) {
     check_heights(plate);
     plate.parts[1].box.max.z = plate.parts[1].box.min.z;
     plate.files[1].warnings = {"all heights are equal"};
-    test::expect_error(ErrorKind::input, {"file 1: the mesh is flat", "(all heights are equal)"},
+    test::expect_error(ErrorKind::input, {"file 1: all heights are equal; the mesh that was read is flat"},
                        [&] { check_heights(plate); });
 }
 
