@@ -41,6 +41,7 @@ class Workflow(unittest.TestCase):
     def test_archives_have_the_names_that_the_makefile_gives_them(self):
         made = {path.replace("$@", processor) for processor in ("macos-arm64", "macos-x86_64")
                 for path in re.findall(r"(build-\S+?/)(?=lamella-\$\(VERSION\))", MAKEFILE)}
+        made |= {f"{path}/" for path in re.findall(r"make_archives\.py .*\\\n.* \$\(VERSION\) (\S+)", MAKEFILE)}
         named = set(re.findall(r"(build-\S+?/)(?=lamella-\*)", commands()))
         self.assertTrue(named)
         self.assertLessEqual(named, made)
