@@ -101,30 +101,29 @@ class Filler {
         const Bundles bundles =
             of_both && closeness_ == Closeness::rounding ? Bundles::always : Bundles::when_many;
         const Arrangement arrangement = arranged(wound(group), around, *grid_, budget_, most_, bundles);
-        if (arrangement.sides.empty() && !material_(around) && cancel_exactly(group)) {
+        if (arrangement.crossed || !stay(group, arrangement, most))
+            unite(group, arrangement);
+        else if (!material_(around) && cancel_exactly(group))
             for (const std::uint32_t ring : group)
                 fates_[ring] = Fate::dropped;
-            return;
-        }
-        if (!arrangement.crossed && stay(group, arrangement, most))
-            return;
-        unite(group, arrangement);
     }
 
-    /// Returns whether each side of the rings has a partner that runs the opposite way, as where a plane
-    /// touches a knife edge. Thin rings that only rounding to the grid makes cancel do not.
+    /// Returns whether each side of the rings that stay has a partner that runs the opposite way, as where a
+    /// plane touches a knife edge. Thin rings that only rounding to the grid makes cancel do not.
     [[nodiscard]] bool cancel_exactly(std::span<const std::uint32_t> group) const {
         std::vector<std::pair<Point2, Point2>> forwards;
         std::vector<std::pair<Point2, Point2>> backwards;
         for (const std::uint32_t ring : group) {
+            if (fates_[ring] == Fate::dropped)
+                continue;
             const std::span<const Point2> corners = layer_.contour(ring);
             for (std::size_t i = 0; i < corners.size(); ++i) {
                 const Point2& a = corners[i];
                 const Point2& b = corners[i + 1 < corners.size() ? i + 1 : 0];
-                if (a < b)
-                    forwards.emplace_back(a, b);
+                if ((a < b) == (fates_[ring] == Fate::kept))
+                    forwards.push_back(std::minmax(a, b));
                 else
-                    backwards.emplace_back(b, a);
+                    backwards.push_back(std::minmax(a, b));
             }
         }
         std::sort(forwards.begin(), forwards.end());
