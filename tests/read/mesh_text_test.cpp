@@ -1,3 +1,4 @@
+#include "container/text_position.hpp"
 #include "core/executor.hpp"
 #include "fixtures/random.hpp"
 #include "fixtures/rounds.hpp"
