@@ -192,9 +192,11 @@ int run_compare(const CompareArguments& arguments, const Context& context) {
     for (const LayerFile* file : {&first, &second})
         context.messages.warn_of(input_name(file->path), file->warnings);
 
-    const FileComparison files = compare_files(
-        first, second, {.tolerance_mm = arguments.tolerance, .area_difference = arguments.area_difference},
-        execution);
+    const FileComparison files = compare_files(first, second,
+                                               {.tolerance_mm = arguments.tolerance,
+                                                .area_difference = arguments.area_difference,
+                                                .max_memory = arguments.limits.max_memory.value_or(0)},
+                                               execution);
     const StackComparison& found = files.layers;
     if (found.cut_apart)
         context.messages.warn(cut_apart_text(first, second));

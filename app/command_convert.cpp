@@ -53,13 +53,14 @@ int run_convert(const ConvertArguments& arguments, const Context& context) {
     options.strict = arguments.strict;
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
+    const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
+    options.limits = layer_limits(execution, max_memory, 0);
     const LayerSteps steps = arguments.making.steps();
     LayerReadOptions reading = arguments.limits.of_layers();
     reading.layers = layers_kept(steps);
     LayerFile file = read_layers(arguments.input, reading, execution);
     options.page.title = title_of(arguments.input);
     warn_about(file, file.warnings, arguments.strict, context.messages);
-    const std::uint64_t max_memory = arguments.limits.max_memory.value_or(0);
     LayerChanges changes;
     if (steps.any())
         changes = take_steps(steps, file, arguments.strict, context.messages, execution, max_memory).all;

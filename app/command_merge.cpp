@@ -32,6 +32,7 @@ int run_merge(const MergeArguments& arguments, const Context& context) {
     options.page.title = title_of(arguments.output);
     const Execution execution = arguments.run.execution(context);
     arguments.limits.prepare_memory();
+    options.limits = layer_limits(execution, arguments.limits.max_memory.value_or(0), 0);
     check_stamps(arguments.shards, execution);
     const MergeResult result = merge_layer_files(
         arguments.shards, arguments.output,

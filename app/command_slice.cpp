@@ -106,7 +106,7 @@ OptionGroup output_options(SliceArguments& target) {
                     target.report, page_extensions()));
     group.options.push_back(output_file("stats",
                                         "write figures of the run and of every layer as JSON; - is standard "
-                                        "output; not in a folder that -o makes",
+                                        "output; FILE must not be in a folder that -o makes",
                                         target.stats));
     return group;
 }
@@ -160,7 +160,8 @@ OptionGroup input_options(SliceArguments& target) {
              "rules for supports",
              target.of_input.support));
     group.options.push_back(flag("negative",
-                                 "no part: subtract the bodies of the file from the parts of all other files",
+                                 "make no parts of the file: subtract its bodies from the parts of all "
+                                 "other files",
                                  target.of_input.negative));
     for (Option& option : group.options)
         option.of_each_file = true;
@@ -173,8 +174,8 @@ OptionGroup input_options(SliceArguments& target) {
 
 OptionGroup shard_options(SliceArguments& target) {
     Option resume = flag("resume",
-                         "exit at once if this shard, its --stats and its --report are already complete, as "
-                         "its stamp beside the slice file records",
+                         "exit at once if the stamp beside the slice file records that this shard, its "
+                         "--stats and its --report are complete",
                          target.resume);
     resume.goes_with = "shard";
     return {

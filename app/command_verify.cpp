@@ -248,15 +248,16 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
     if (arguments.strict)
         for (const std::string& warning : file.warnings)
             text += fmt::format("  {}\n", one_line(warning));
+    VerifyOptions options{.mesh = std::move(mesh),
+                          .plate = std::move(plate),
+                          .rule = rule,
+                          .snap_mm = arguments.snap.value_or(0),
+                          .close_gaps_mm = arguments.repair.close_gaps_mm,
+                          .steps = steps,
+                          .rounding = file.rounding,
+                          .tolerance_mm = arguments.tolerance,
+                          .max_memory = arguments.limits.max_memory.value_or(0)};
     if (!plain.parts.empty()) {
-        VerifyOptions options{.mesh = mesh,
-                              .plate = plate,
-                              .rule = rule,
-                              .snap_mm = arguments.snap.value_or(0),
-                              .close_gaps_mm = arguments.repair.close_gaps_mm,
-                              .steps = steps,
-                              .rounding = file.rounding,
-                              .tolerance_mm = arguments.tolerance};
         for (std::size_t i = 0; i < plain.parts.size(); ++i)
             options.hatch_lines += plain.hatch_lines(i);
         const Verification found = verify_file(plain, options, execution);
@@ -276,15 +277,8 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         text += verification_text(arguments.mesh, found, hint);
     }
     if (strategy || !vectors.parts.empty()) {
-        VerifyOptions options{.mesh = mesh,
-                              .plate = plate,
-                              .rule = rule,
-                              .snap_mm = arguments.snap.value_or(0),
-                              .close_gaps_mm = arguments.repair.close_gaps_mm,
-                              .steps = steps,
-                              .rounding = file.rounding,
-                              .tolerance_mm = arguments.tolerance,
-                              .strategy = strategy};
+        options.strategy = strategy;
+        options.rule = rule;
         const VectorVerification found = verify_vectors(vectors, options, execution);
         ok = ok && found.ok();
         object["vectors"] = vectors_json(strategy.has_value(), found);
@@ -323,9 +317,9 @@ Command verify_command() {
             "With --mesh, the area and the centre of every layer are compared with those of the section of "
             "that mesh, which is computed directly from its triangles; a layer that is rotated about its "
             "centre is not found. Scan vectors are checked, too: they must lie inside the mesh or, without "
-            "--mesh, inside the outermost contour of their part. With --strategy or --scan, also their "
-            "distance from the edge, missing contours, the spacing, angle and length of hatch lines, and "
-            "whether these fill the area. Exit code 4: the check failed.",
+            "--mesh, inside the outermost contour of their part. With --strategy or --scan, the check "
+            "also covers their distance from the edge, missing contours, the spacing, angle and length of "
+            "hatch lines, and whether these fill the area. Exit code 4: the check failed.",
         .operands = {{.placeholder = "FILE",
                       .help = "the slice file; - is standard input",
                       .set =

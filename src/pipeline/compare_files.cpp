@@ -293,6 +293,7 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
     result.layers.cut_apart = are_cut_apart(planes[0], planes[1], result.layers.planes);
     result.details.resize(result.layers.planes.size());
 
+    const LayerLimits limits = layer_limits(execution, options.max_memory, executor.workers());
     ProgressMeter progress(execution, Stage::polygon, result.details.size());
     executor.for_chunks(result.details.size(), 1, [&](std::uint64_t k, std::uint64_t, unsigned) {
         ComparedPlane& plane = result.layers.planes[k];
@@ -302,7 +303,8 @@ FileComparison compare_files(const LayerFile& first, const LayerFile& second,
         compare_layers(plane, of_first.contours, of_second.contours, tolerance.contours);
         if (options.area_difference && !plane.difference.same)
             details.area_difference_mm2 =
-                measure(combine(of_first.contours, of_second.contours, BooleanOperation::exclude)).area_mm2;
+                measure(combine(of_first.contours, of_second.contours, BooleanOperation::exclude, limits))
+                    .area_mm2;
         if (plane.first && plane.second) {
             // Differences of all contours together are reported anyway.
             if (plane.agree) {

@@ -4,11 +4,11 @@
 
 namespace lamella {
 
-LayerCheck check_layer(const Layer& layer, const Rounding& rounding) {
+LayerCheck check_layer(const Layer& layer, const Rounding& rounding, const LayerLimits& limits) {
     LayerCheck result;
     result.measure = measure(layer);
     result.open_gaps = open_gaps(layer);
-    const ContourDefects defects = contour_defects(layer, rounding, 1);
+    const ContourDefects defects = contour_defects(layer, rounding, 1, limits);
     for (const ContourDefect& defect : defects.found)
         result.found.of(defect.kind)
             .add(layer, defect.at, defect.kind == ContourDefectKind::crossing ? defects.crossings : 1);

@@ -43,7 +43,8 @@ struct LayerCheck {
     ContourFindings found;
 };
 
-[[nodiscard]] LayerCheck check_layer(const Layer& layer, const Rounding& rounding);
+[[nodiscard]] LayerCheck check_layer(const Layer& layer, const Rounding& rounding,
+                                     const LayerLimits& limits = {});
 
 /// "layer 12 (z 0.375 mm)"
 [[nodiscard]] std::string where(const Layer& layer);

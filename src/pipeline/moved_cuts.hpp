@@ -115,7 +115,7 @@ inline LayerStack sections_of(const VerifyOptions& options, const Plan& plan, co
                                    : slice(*options.mesh, plan, {.execution = execution});
     LayerStack layers;
     const double within = *options.close_gaps_mm;
-    const LayerLimits limits = layer_limits(execution);
+    const LayerLimits limits = layer_limits(execution, options.max_memory);
     if (!options.plate) {
         for (const Layer& layer : slice(*options.mesh, plan, {.execution = execution}))
             layers.push_back(close_gaps(layer, within, limits).layer);
@@ -124,7 +124,7 @@ inline LayerStack sections_of(const VerifyOptions& options, const Plan& plan, co
     const LayerSink keep = appending_to(layers);
     const PlateSink of_parts{.prepare = [&](std::span<const Layer> bodies) {
         const ClosedPlane closed = close_gaps_on_plane(bodies, within, limits);
-        return keep.prepare(merged(material_of(closed.layers, options.plate->negatives).parts));
+        return keep.prepare(merged(material_of(closed.layers, options.plate->negatives, {}, limits).parts));
     }};
     slice_to(of_parts, *options.plate, plan, {.execution = execution});
     return layers;
@@ -135,7 +135,9 @@ inline LayerStack layers_of(const VerifyOptions& options, const Plan& plan, cons
                             const Execution& execution) {
     std::vector<LayerStack> layers;
     layers.push_back(sections_of(options, plan, execution));
-    return std::move(take_steps(steps, std::move(layers), {.execution = execution}).parts.front());
+    return std::move(
+        take_steps(steps, std::move(layers), {.execution = execution, .max_memory = options.max_memory})
+            .parts.front());
 }
 
 } // namespace lamella

@@ -343,12 +343,14 @@ FileResult slice_job(const FileJob& job, Communicator& processes, const Executio
     for (const PlaneRange& part : division)
         sliced.push_back(with_neighbours(job, part, plan.layers.size()));
 
-    JobOutput output(output_files(job), file_info(job, plate, plan, all),
-                     {mine.begin - all.begin, mine.end - all.begin}, processes, feed.memory().of_output());
-    LayerProcessor processor(
-        layer_job(job, plate,
-                  layer_limits(execution, feed.memory().limit, feed.memory().asked ? result.threads : 1)),
-        plan.layers, sliced[processes.process()], mine, output);
+    const LayerLimits limits =
+        layer_limits(execution, feed.memory().limit, feed.memory().asked ? result.threads : 1);
+    OutputFiles files = output_files(job);
+    files.write.limits = limits;
+    JobOutput output(files, file_info(job, plate, plan, all), {mine.begin - all.begin, mine.end - all.begin},
+                     processes, feed.memory().of_output());
+    LayerProcessor processor(layer_job(job, plate, limits), plan.layers, sliced[processes.process()], mine,
+                             output);
     LayerTotals& totals = processor.totals();
     const Sliced done =
         slice_ranges(feed, plan, sliced, engine, processor,

@@ -66,13 +66,14 @@ double length_of(std::span<const Point2> hatches) {
 
 } // namespace
 
-Layer moved_inwards(const Layer& section, double depth, const OffsetCorners& corners) {
-    return depth == 0 ? fill(section, FillRule::positive).layer
-                      : offset(section, -depth, {.corners = corners});
+Layer moved_inwards(const Layer& section, double depth, const LayerLimits& limits,
+                    const OffsetCorners& corners) {
+    return depth == 0 ? fill(section, FillRule::positive, limits).layer
+                      : offset(section, -depth, {.corners = corners, .limits = limits});
 }
 
 void check_cover(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
-                 double tolerance, PlaneFindings& found) {
+                 double tolerance, const LayerLimits& limits, PlaneFindings& found) {
     Slack slack;
     double shallow = std::numeric_limits<double>::infinity();
     double deep = -shallow;
@@ -117,14 +118,14 @@ void check_cover(const PlaneGroup& group, const MaterialBounds& bounds, const Sc
     LayerMeasure largest;
     double least = std::numeric_limits<double>::infinity();
     for (const Layer& moved : bounds.sections) {
-        const LayerMeasure area = measure(offset(moved, -shallow));
+        const LayerMeasure area = measure(offset(moved, -shallow, {.limits = limits}));
         if (to_fill.area_mm2 == 0 && area.area_mm2 != 0) {
             to_fill = area;
             section = &moved;
         }
         largest.area_mm2 = std::max(largest.area_mm2, area.area_mm2);
         largest.perimeter_mm = std::max(largest.perimeter_mm, area.perimeter_mm);
-        least = std::min(least, measure(offset(moved, -deep)).area_mm2);
+        least = std::min(least, measure(offset(moved, -deep, {.limits = limits})).area_mm2);
     }
     const double moved_edges = tolerance * largest.perimeter_mm;
     LayerMeasure edges = largest; // including those of skins
@@ -139,7 +140,8 @@ void check_cover(const PlaneGroup& group, const MaterialBounds& bounds, const Sc
 }
 
 void check_reach(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
-                 const Rounding& rounding, double moved_edges, PlaneFindings& found) {
+                 const Rounding& rounding, double moved_edges, const LayerLimits& limits,
+                 PlaneFindings& found) {
     const bool support = group.front().exposure.region == ScanRegion::support;
     const FillDepths depths(support ? filling_supports(strategy.support, strategy.seed) : strategy);
     double largest = 0;
@@ -160,19 +162,24 @@ void check_reach(const PlaneGroup& group, const MaterialBounds& bounds, const Sc
     }
     double least = std::numeric_limits<double>::infinity();
     Point2 at;
+    const Layer& plane = group.front().polylines;
+    const LayerBudget budget(limits, plane.index, plane.z);
     for (const Layer& section : bounds.sections) {
-        const Layer material = moved_inwards(section, 0);
-        const double left =
-            unreached_area(material, reached, MeasuringLines(material, reached, depths.least_reach),
-                           wide_points(material, bounds.depth, depths), depths.tip_mm2);
+        const Layer material = moved_inwards(section, 0, limits);
+        const MeasuringLines lines(material, reached, depths.least_reach);
+        const WideMaterial wide{.points = [&] { return wide_points(material, bounds.depth, depths, limits); },
+                                .tip_mm2 = depths.tip_mm2,
+                                .accepted_mm2 = strategy.accepted_mm2};
+        const double left = unreached_area(material, reached, lines, wide, budget);
         if (left < least) {
             least = left;
             at = material.points.empty() ? Point2{} : material.points[0];
         }
     }
-    if (least > strategy.accepted_mm2)
-        found.unreached.add(group.front().polylines, at);
-    found.unreached_mm2 += least;
+    if (least > strategy.accepted_mm2) {
+        found.unreached.add(plane, at);
+        found.unreached_mm2 += least;
+    }
 }
 
 } // namespace lamella

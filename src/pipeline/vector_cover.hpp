@@ -14,16 +14,17 @@ namespace lamella {
 
 /// Returns the material at this distance from its edges. Overlapping bodies are united even if the depth is
 /// 0, as in `scan`.
-[[nodiscard]] Layer moved_inwards(const Layer& section, double depth, const OffsetCorners& corners = {});
+[[nodiscard]] Layer moved_inwards(const Layer& section, double depth, const LayerLimits& limits,
+                                  const OffsetCorners& corners = {});
 
 /// Compares the area that hatch lines cover with the area that they must fill. `tolerance` is that of edges
 /// of the material.
 void check_cover(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
-                 double tolerance, PlaneFindings& found);
+                 double tolerance, const LayerLimits& limits, PlaneFindings& found);
 
 /// Measures the material of each possible section that no vector reaches, and keeps the smallest result.
 /// Vectors are rounded; the edges of the material may have moved by `moved_edges`.
 void check_reach(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
-                 const Rounding& rounding, double moved_edges, PlaneFindings& found);
+                 const Rounding& rounding, double moved_edges, const LayerLimits& limits, PlaneFindings& found);
 
 } // namespace lamella

@@ -248,6 +248,7 @@ Verification verify_planes(std::span<const Layer> layers, const LayerAt& layer_a
     const AreaFrame frame = options.mesh ? frame_of(*options.mesh, execution) : AreaFrame();
     std::vector<CheckedLayer> checks(layers.size());
     Executor executor(execution);
+    const LayerLimits limits = layer_limits(execution, options.max_memory, executor.workers());
     std::vector<char> unsound(layers.size());
     ProgressMeter progress(execution, Stage::polygon, layers.size());
     executor.for_chunks(layers.size(), 1, [&](std::uint64_t i, std::uint64_t, unsigned) {
@@ -258,7 +259,7 @@ Verification verify_planes(std::span<const Layer> layers, const LayerAt& layer_a
             unsound[i] = 1;
             return;
         }
-        checks[i] = {check_layer(layer, options.granted())};
+        checks[i] = {check_layer(layer, options.granted(), limits)};
         if (options.mesh)
             checks[i].own = own_area(layer, checks[i].measure, frame, options);
         progress.add(1);

@@ -35,9 +35,10 @@ class VectorCheck {
   public:
     /// `before` is the number of layers of the plan before the first checked one. `rounding` is the tolerance
     /// of ends.
-    VectorCheck(const VerifyOptions& options, double rounding, std::uint64_t before)
+    VectorCheck(const VerifyOptions& options, double rounding, std::uint64_t before,
+                const LayerLimits& limits)
         : options_(options), rounding_(rounding), tolerance_(rounding + options.steps.simplify_mm),
-          before_(before) {}
+          before_(before), limits_(limits) {}
 
     void check(const PlaneGroup& group, const MaterialBounds& bounds, PlaneFindings& found) const {
         std::uint64_t all = 0;
@@ -61,9 +62,9 @@ class VectorCheck {
         }
         find_outside(group, bounds, found);
         if (options_.strategy) {
-            check_cover(group, bounds, *options_.strategy, tolerance_, found);
+            check_cover(group, bounds, *options_.strategy, tolerance_, limits_, found);
             check_reach(group, bounds, *options_.strategy, options_.granted(), options_.steps.simplify_mm,
-                        found);
+                        limits_, found);
         }
     }
 
@@ -93,7 +94,7 @@ class VectorCheck {
             for (const double limit : limits_of_mitres(OffsetCorners{}.mitre_limit, options_.granted())) {
                 for (const Layer& section : bounds.sections) {
                     const LayerMeasure expected = measure(moved_inwards(
-                        section, contour_depth(rule, number) - bounds.depth, {.mitre_limit = limit}));
+                        section, contour_depth(rule, number) - bounds.depth, limits_, {.mitre_limit = limit}));
                     const double slack = 4 * tolerance_ * (expected.perimeter_mm + row.perimeter_mm);
                     least = std::min(least, expected.area_mm2 - slack);
                     greatest = std::max(greatest, expected.area_mm2 + slack);
@@ -114,7 +115,7 @@ class VectorCheck {
     /// Returns findings about contours of one number. These must not cross, and none may lie within the
     /// material of another.
     [[nodiscard]] ContourFindings of_one_exposure(const Exposure& exposure, const Layer& vectors) const {
-        ContourFindings found = check_layer(vectors, options_.granted()).found;
+        ContourFindings found = check_layer(vectors, options_.granted(), limits_).found;
         found.misoriented.add(found.tangled);
         if (exposure.contour > 0)
             found.misoriented.add(found.overlapping);
@@ -152,9 +153,9 @@ class VectorCheck {
         // The material is grown a little, so that points on an edge are inside.
         Layer material = bounds.sections.front();
         for (std::size_t i = 1; i < bounds.sections.size(); ++i)
-            material = combine(material, bounds.sections[i], BooleanOperation::unite);
+            material = combine(material, bounds.sections[i], BooleanOperation::unite, limits_);
         const double grown = 2 * tolerance_;
-        const EdgeTree edges(offset(material, grown));
+        const EdgeTree edges(offset(material, grown, {.limits = limits_}));
         for (const PlaneExposure& part : group) {
             const double depth =
                 options_.strategy ? depth_of(part.exposure, *options_.strategy) - bounds.depth : 0;
@@ -228,6 +229,7 @@ class VectorCheck {
     double rounding_;  ///< tolerance of ends of lines
     double tolerance_; ///< tolerance of edges of the material, including simplification
     std::uint64_t before_;
+    LayerLimits limits_;
 };
 
 /// A kind of finding, its member in the checks of planes, and its count for the file.
@@ -316,9 +318,10 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
     // Tolerance of ends of lines and points of contours, each moved along both axes, and of arithmetic.
     const double rounding = std::sqrt(2.0) * options.granted().step_at(largest) + 0x1p-34 * largest;
 
+    const LayerLimits limits = layer_limits(execution, options.max_memory, executor.workers());
     const VectorCheck checked(
         options, rounding,
-        options.strategy ? layers_below(file, groups, *options.strategy, rounding, executor) : 0);
+        options.strategy ? layers_below(file, groups, *options.strategy, rounding, executor) : 0, limits);
     std::vector<PlaneFindings> checks(planes.size());
     ProgressMeter progress(execution, Stage::polygon, planes.size());
     std::vector<std::vector<Layer>> sections; // of a range of planes, with a mesh
@@ -341,7 +344,7 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
                           checks[i]);
         if (options.mesh) {
             const InvertedRings inverted =
-                inverted_rings(sections[i - first].front(), options.granted(), InversionSearch::full);
+                inverted_rings(sections[i - first].front(), options.granted(), InversionSearch::full, limits);
             if (inverted.rings > 0)
                 checks[i].inverted.add(planes[i], inverted.at, inverted.rings);
             checks[i].inverted_mm3 = inverted.area_mm2 * planes[i].thickness();

@@ -32,7 +32,8 @@ std::string_view contour_defect_name(ContourDefectKind kind) noexcept {
     return names[static_cast<std::size_t>(kind)];
 }
 
-ContourDefects contour_defects(const Layer& layer, const Rounding& rounding, std::size_t keep) {
+ContourDefects contour_defects(const Layer& layer, const Rounding& rounding, std::size_t keep,
+                               const LayerLimits& limits) {
     ContourDefects defects;
     const auto add = [&](ContourDefectKind kind, std::size_t contour) {
         defects.found.push_back({kind, contour, contour, layer.contour(contour).front()});
@@ -42,7 +43,8 @@ ContourDefects contour_defects(const Layer& layer, const Rounding& rounding, std
             add(ContourDefectKind::open, i);
     // Finding all crossings may take minutes, and so may the nesting of contours that cross so often.
     const std::uint64_t enough = most_crossings(layer.points.size());
-    const Crossings crossings = find_clear_crossings(layer, keep, enough, rounding_of_cut_points(layer));
+    const Crossings crossings =
+        find_clear_crossings(layer, keep, enough, rounding_of_cut_points(layer), limits);
     defects.crossings = crossings.count;
     for (const Crossing& crossing : crossings.first)
         defects.found.push_back(
@@ -51,12 +53,13 @@ ContourDefects contour_defects(const Layer& layer, const Rounding& rounding, std
         defects.or_more = true;
         return defects;
     }
-    const std::vector<RingKind> kinds = nesting(layer).kind;
+    const std::vector<RingKind> kinds = nesting(layer, limits).kind;
     // At the left end of a ring that rounding makes cross or touch itself, the winding number may be that of
     // a tiny loop. So the area that the rings of such a layer enclose the wrong way round decides.
     auto loses_nothing = [&, known = std::optional<bool>()]() mutable {
         if (!known)
-            known = crossings.count == 0 && inverted_rings(layer, rounding, InversionSearch::full).rings == 0;
+            known = crossings.count == 0 &&
+                    inverted_rings(layer, rounding, InversionSearch::full, limits).rings == 0;
         return *known;
     };
     for (std::size_t i = 0; i < kinds.size(); ++i) {

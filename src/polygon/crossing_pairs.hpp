@@ -25,7 +25,7 @@ crossing_pairs(std::span<const Segment> segments, std::uint64_t most, const Laye
 /// Finds crossings like `find_crossings`, but a pair of segments counts only if each end is farther than
 /// `clear_mm` from the line of the other segment.
 [[nodiscard]] Crossings find_clear_crossings(const Layer& layer, std::size_t keep, std::uint64_t enough,
-                                             double clear_mm);
+                                             double clear_mm, const LayerLimits& limits = {});
 
 /// A limit to the number of crossings between contours of a layer, by the number of sides.
 struct CrossingLimit {

@@ -385,8 +385,9 @@ Crossings find_crossings(const Layer& layer, std::size_t keep, std::uint64_t eno
     return found_in(layer, keep, enough, limits);
 }
 
-Crossings find_clear_crossings(const Layer& layer, std::size_t keep, std::uint64_t enough, double clear_mm) {
-    return found_in(layer, keep, enough, {}, clear_mm);
+Crossings find_clear_crossings(const Layer& layer, std::size_t keep, std::uint64_t enough, double clear_mm,
+                               const LayerLimits& limits) {
+    return found_in(layer, keep, enough, limits, clear_mm);
 }
 
 bool has_crossings(const Layer& layer) {

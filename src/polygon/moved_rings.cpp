@@ -25,7 +25,8 @@ namespace {
 // shrinking removes them.
 //
 // Loops (letters as in docs/algorithms/offset.md). Let P be a corner between sides s and t whose strips
-// overlap: P is concave on the side to which s and t move. Let A be the end of moved side s, B the beginning
+// overlap, because the corner is concave in the direction in which s and t move. Let A be the end of moved
+// side s, B the beginning
 // of moved side t, and M the intersection of both. Consider a ring that follows each moved side, goes around
 // each wedge, and goes A P B at each such corner. It winds around a point as often as the old ring, plus once
 // for each strip and wedge that contains the point (minus once, when shrinking). So the material is exactly
@@ -37,14 +38,15 @@ namespace {
 // strip of t. The sign of the winding stays right everywhere:
 // 1. A point loses at most what its strips have added, because the triangles within one strip do not overlap.
 // 2. A point q in strips or wedges, outside of the old material (inside, when shrinking), does not lose all
-//    of them. Let s be the side or corner nearest to q, whose strip or wedge then contains q. If s is a
-//    corner, its wedge keeps q, because no triangle is cut from a wedge. If s is a side and q were inside of
-//    PAM, then t would be nearer: let d be the offset distance, f the distance to t, and g the distance to
+//    of them: it keeps the strip or wedge of the nearest side or corner, which contains q. No triangle is cut
+//    from a wedge. So let s be the nearest side. If q were inside of PAM, then t would be nearer: let d be
+//    the offset distance, f the distance to t, and g the distance to
 //    the line of s. On PAM f is convex and g linear. At P, f = g = 0; at M, f = g = d; at A, f < g = d. So
 //    inside, f < g. The same holds for PMB with s and t exchanged.
 //
-// Short sides. A side can be too short for the lengths cut off at its ends, such as those of a fillet whose
-// radius is below the distance. Such a side is dropped, and its neighbours are extended to their intersection
+// Short sides. A side can be too short for the lengths cut off at its ends, as the sides of a fillet are if
+// its radius is below the distance. Such a side is dropped, and its neighbours are extended to their
+// intersection
 // X. This requires that X lies beyond the dropped side after its move. The strip of the dropped side is then
 // covered by the strips of its neighbours and the area between those and X. In a row of concave corners, one
 // pass with a stack finds the remaining sides, as for the lower envelope of lines. If that fails, the ring

@@ -2,6 +2,7 @@
 
 #include "lamella/polygon/nesting.hpp"
 
+#include "core/layer_budget.hpp"
 #include "polygon/boundary.hpp"
 
 #include <cstddef>
@@ -38,7 +39,7 @@ void add_loops(std::span<const Point2> ring, LayerBuilder& layer) {
 
 } // namespace
 
-std::vector<SimplePolygon> simple_polygons(const Layer& whole) {
+std::vector<SimplePolygon> simple_polygons(const Layer& whole, const LayerLimits& limits) {
     std::vector<std::span<const Point2>> rings;
     for (std::size_t i = 0; i < whole.rings; ++i)
         rings.push_back(whole.contour(i));
@@ -47,7 +48,8 @@ std::vector<SimplePolygon> simple_polygons(const Layer& whole) {
     const ClippingGrid grid =
         ClippingGrid::of_integers(whole.points.span().first(whole.offsets[whole.rings]));
     LayerBuilder builder;
-    for (const Ring& ring : filled(rings, FillRule::positive, grid))
+    for (const Ring& ring :
+         filled(rings, FillRule::positive, grid, LayerBudget(limits, whole.index, whole.z)))
         add_loops(ring, builder);
     const Layer loops = builder.finish(whole.index, whole.z, whole.bottom, whole.top);
     const auto ring_of = [&](std::uint32_t i) {
@@ -55,7 +57,7 @@ std::vector<SimplePolygon> simple_polygons(const Layer& whole) {
         return Ring(points.begin(), points.end());
     };
     std::vector<SimplePolygon> result;
-    for (const Polygon& polygon : polygons(nesting(loops))) {
+    for (const Polygon& polygon : polygons(nesting(loops, limits))) {
         SimplePolygon& simple = result.emplace_back(SimplePolygon{ring_of(polygon.outer), {}});
         for (const std::uint32_t hole : polygon.holes)
             simple.holes.push_back(ring_of(hole));

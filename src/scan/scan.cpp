@@ -317,8 +317,8 @@ std::vector<double> unreached_by_exposure(const InsetCache::Insets& insets, std:
                                           const MeasuringLines& lines, bool everywhere,
                                           const LayerBudget& budget) {
     const ContourRule& rule = insets.contours;
-    const auto measured = [&](const Layer& area, const Layer& wide) {
-        return unreached_area(area, reached, lines, wide, insets.depths.tip_mm2, budget);
+    const auto measured = [&](const Layer& area) {
+        return unreached_area(area, reached, lines, {}, budget);
     };
     const auto amid = [&](std::uint32_t contour) { // between this contour and the previous one
         if (!everywhere)
@@ -328,15 +328,23 @@ std::vector<double> unreached_by_exposure(const InsetCache::Insets& insets, std:
                        budget.limits());
     };
     const Layer& filled = everywhere ? insets.within_contours() : insets.narrow.back();
-    const double of_hatches =
-        measured(filled, everywhere ? wide_points(insets.layer, 0, insets.depths, budget.limits()) : Layer{});
+    WideMaterial wide;
+    if (everywhere)
+        wide = {.points = [&] { return wide_points(insets.layer, 0, insets.depths, budget.limits()); },
+                .tip_mm2 = insets.depths.tip_mm2};
+    const double of_hatches = unreached_area(filled, reached, lines, wide, budget);
     // A spot may lie in several regions, so these share the area of all spots.
+    const std::optional<ScanRegion> only = regions.only();
+    const auto of_region = [&](ScanRegion region) {
+        if (of_hatches == 0 || (only && region != *only))
+            return 0.0;
+        return only ? of_hatches : measured(regions.part(filled, region));
+    };
     std::vector<double> unreached;
     double shared = 0;
     for (const Exposure& exposure : all) {
         const bool hatch = exposure.kind == VectorKind::hatch;
-        unreached.push_back(hatch ? of_hatches > 0 ? measured(regions.part(filled, exposure.region), {}) : 0
-                                  : measured(amid(exposure.contour), {}));
+        unreached.push_back(hatch ? of_region(exposure.region) : measured(amid(exposure.contour)));
         shared += hatch ? unreached.back() : 0;
     }
     for (std::size_t i = 0; i < all.size(); ++i)
@@ -426,7 +434,7 @@ ScannedLayer scan(const ScanLayer& scanned, std::span<const ScanLayer> below,
         return {std::move(result), std::vector<double>(all.size(), 0)};
     Reached reached = reached_by(result, all, strategy, options.written, budget);
     const MeasuringLines lines(layer, reached, insets->depths.least_reach);
-    if (innermost < all.size() && unreached_area(insets->narrow.back(), reached, lines, {}, 0, budget) >
+    if (innermost < all.size() && unreached_area(insets->narrow.back(), reached, lines, {}, budget) >
                                       negligible(insets->depths.least_reach)) {
         const Layer strips = insets->strips(budget.limits());
         auto walls = insets->lines[strategy.contours.count - 1];

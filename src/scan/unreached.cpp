@@ -18,7 +18,9 @@
 #include <functional>
 #include <iterator>
 #include <limits>
+#include <memory>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -215,38 +217,73 @@ class InsetRings {
     std::vector<MovedSide> sides_; // of the ring that is looked for
 };
 
-/// The interval of a line that a convex piece reaches.
-class Within {
-  public:
-    void add(double u) noexcept {
-        from_ = std::min(from_, u);
-        to_ = std::max(to_, u);
-    }
-    /// Adds the intersection with a circle.
-    void add_circle(double u, double off, double radius) noexcept {
-        if (const double squared = radius * radius - off * off; squared >= 0) {
-            const double half = std::sqrt(squared);
-            add(u - half);
-            add(u + half);
-        }
-    }
-    /// Adds the intersection with the side from a to b, on a line at v; x is u and y is v.
-    void add_side(const Point2& a, const Point2& b, double v) noexcept {
-        if ((a.y <= v) != (b.y <= v))
-            add(a.x + (v - a.y) / (b.y - a.y) * (b.x - a.x));
-    }
-    [[nodiscard]] double from() const noexcept { return from_; }
-    [[nodiscard]] double to() const noexcept { return to_; }
-
-  private:
-    double from_ = std::numeric_limits<double>::infinity();
-    double to_ = -from_;
-};
-
 /// A piece of a line.
 struct Piece {
     double from;
     double to;
+};
+
+/// The strip around a vector, in the frame of lines across it: all points within its reach.
+class Strip {
+  public:
+    /// The points have u, along the lines, as x, and v as y.
+    Strip(const Point2& a, const Point2& b, double reach) noexcept
+        : low_(a.y <= b.y ? a : b), high_(a.y <= b.y ? b : a), squared_(reach * reach) {
+        const double du = high_.x - low_.x;
+        const double dv = high_.y - low_.y;
+        const double length = std::sqrt(du * du + dv * dv);
+        shift_ = length > 0 ? reach * (du / length) : 0;
+        slope_ = dv > 0 ? du / dv : 0;
+        half_ = dv > 0 ? reach * (length / dv) : 0;
+    }
+
+    /// Returns the piece of the line at v within the strip; its ends are in reverse order if there is none.
+    /// Beside the vector, an end lies on a straight side, elsewhere on a circle around an end of the vector.
+    [[nodiscard]] Piece on_line(double v) const noexcept {
+        const double middle = this->middle(v);
+        return {v < low_.y + shift_    ? low_.x - of_circle(v - low_.y)
+                : v > high_.y + shift_ ? high_.x - of_circle(v - high_.y)
+                                       : middle - half_,
+                v < low_.y - shift_    ? low_.x + of_circle(v - low_.y)
+                : v > high_.y - shift_ ? high_.x + of_circle(v - high_.y)
+                                       : middle + half_};
+    }
+
+    /// Returns the u of the vector on a line that it crosses.
+    [[nodiscard]] double middle(double v) const noexcept { return low_.x + slope_ * (v - low_.y); }
+    [[nodiscard]] double reach() const noexcept { return std::sqrt(squared_); }
+
+  private:
+    /// Returns half of the length of a chord at this distance from the centre.
+    [[nodiscard]] double of_circle(double off) const noexcept {
+        const double squared = squared_ - off * off;
+        return squared >= 0 ? std::sqrt(squared) : -std::numeric_limits<double>::infinity();
+    }
+
+    Point2 low_;
+    Point2 high_;
+    double squared_; ///< square of the reach
+    double shift_;   ///< of the v of the ends of the side with smaller u; the other side is shifted backwards
+    double slope_;   ///< of u over v
+    double half_;    ///< half of the length of pieces beside the vector
+};
+
+/// The piece that fills the gap at a corner, in the frame of lines.
+struct CornerPiece {
+    std::array<Point2, 4> points;
+
+    [[nodiscard]] Piece on_line(double v) const noexcept {
+        Piece piece{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+        for (std::size_t k = 0; k < points.size(); ++k) {
+            const Point2& a = points[k];
+            const Point2& b = points[(k + 1) % points.size()];
+            if ((a.y <= v) == (b.y <= v))
+                continue;
+            const double u = a.x + (v - a.y) / (b.y - a.y) * (b.x - a.x);
+            piece = {std::min(piece.from, u), std::max(piece.to, u)};
+        }
+        return piece;
+    }
 };
 
 /// Sums up pieces of lines: all of them in one area, and only large spots of them in another one. Pieces of
@@ -259,14 +296,13 @@ class BareSum {
     /// Adds a piece of a spot, after those of the lines before and those before it on its line.
     void add_to_spot(std::size_t line, Piece piece) {
         if (line != line_) {
-            before_ = line == line_ + 1 ? std::exchange(here_, {}) : std::vector<InSpot>();
-            here_.clear();
-            next_ = 0;
+            end_line();
+            if (line != line_ + 1)
+                end_line(); // all spots have ended
             line_ = line;
         }
-        const auto spot = static_cast<std::uint32_t>(parents_.size());
-        parents_.push_back(spot);
-        sizes_.push_back(piece.to - piece.from);
+        const auto spot = static_cast<std::uint32_t>(spots_.size());
+        spots_.push_back({spot, piece.to - piece.from});
         while (next_ < before_.size() && before_[next_].piece.to < piece.from)
             ++next_;
         for (std::size_t i = next_; i < before_.size() && before_[i].piece.from <= piece.to; ++i)
@@ -274,11 +310,9 @@ class BareSum {
         here_.push_back({piece, spot});
     }
     [[nodiscard]] double sum() {
-        double all = sum_;
-        for (std::uint32_t spot = 0; spot < parents_.size(); ++spot)
-            if (root(spot) == spot && sizes_[spot] > largest_tip_)
-                all += sizes_[spot];
-        return all;
+        end_line();
+        end_line();
+        return sum_;
     }
 
   private:
@@ -286,10 +320,14 @@ class BareSum {
         Piece piece;
         std::uint32_t spot;
     };
+    struct Spot {
+        std::uint32_t parent; ///< itself, or a spot that it was joined to
+        double size;
+    };
 
     std::uint32_t root(std::uint32_t spot) {
-        while (parents_[spot] != spot)
-            spot = parents_[spot] = parents_[parents_[spot]];
+        while (spots_[spot].parent != spot)
+            spot = spots_[spot].parent = spots_[spots_[spot].parent].parent;
         return spot;
     }
     void join(std::uint32_t one, std::uint32_t other) {
@@ -297,8 +335,28 @@ class BareSum {
         other = root(other);
         if (one == other)
             return;
-        parents_[other] = one;
-        sizes_[one] += sizes_[other];
+        spots_[other].parent = one;
+        spots_[one].size += spots_[other].size;
+    }
+    /// Makes the line the one before. Counts the spots that have no piece on it, and forgets them.
+    void end_line() {
+        std::vector<Spot> left;
+        for (InSpot& piece : here_) {
+            const std::uint32_t spot = root(piece.spot);
+            if (spots_[spot].size > 0) { // not yet moved to `left`
+                const auto number = static_cast<std::uint32_t>(left.size());
+                left.push_back({number, spots_[spot].size});
+                spots_[spot] = {spot, -static_cast<double>(number)};
+            }
+            piece.spot = static_cast<std::uint32_t>(-spots_[spot].size);
+        }
+        for (std::uint32_t spot = 0; spot < spots_.size(); ++spot)
+            if (spots_[spot].parent == spot && spots_[spot].size > largest_tip_)
+                sum_ += spots_[spot].size;
+        spots_ = std::move(left);
+        before_.swap(here_);
+        here_.clear();
+        next_ = 0;
     }
 
     double largest_tip_; ///< mm of lines
@@ -307,27 +365,25 @@ class BareSum {
     std::vector<InSpot> before_; ///< on the line before
     std::size_t next_ = 0;       ///< of these, the first one that further pieces may overlap
     std::vector<InSpot> here_;
-    std::vector<std::uint32_t> parents_;
-    std::vector<double> sizes_;
+    std::vector<Spot> spots_; ///< of both lines
 };
 
 /// The lines across an area, and what reaches their pieces.
 class Measured {
   public:
-    Measured(const Layer& positions, const Reached& reached, const MeasuringLines& how, const Layer& wide,
-             double tip_mm2, const LayerBudget& budget)
-        : area_(std::max(0.0, measure(positions).area_mm2)),
-          lines_(positions, how.angle, how.distance, 0, budget), distance_(how.distance),
-          budget_(budget.without(lines_.bytes())), wide_(wide, how.angle, how.distance, 0, budget_),
-          sum_(tip_mm2 / how.distance) {
+    Measured(const Layer& positions, const Reached& reached, const MeasuringLines& how, const WideMaterial& wide,
+             const LayerBudget& budget)
+        : area_(std::max(0.0, measure(positions).area_mm2)), how_(how),
+          lines_(positions, how.angle, how.distance, 0, budget), budget_(budget.without(lines_.bytes())),
+          wide_(wide), sum_(wide.tip_mm2 / how.distance) {
         find_near(positions, reached);
     }
 
     [[nodiscard]] double area() {
-        // Few lines at a time, so that the intervals that vectors reach take little memory.
-        const std::uint64_t most = std::min(std::uint64_t{1} << 19, budget_.room(2 * sizeof(Piece)));
-        for (std::size_t line = 0; line < lines_.size();) {
-            const std::size_t first = line;
+        // Few lines at a time, so that the pieces that vectors reach fit into the cache.
+        const std::uint64_t most = std::min(std::uint64_t{1} << 18, budget_.room(2 * sizeof(Piece)));
+        for (std::uint32_t line = 0; line < lines_.size();) {
+            const std::uint32_t first = line;
             for (std::uint64_t count = 0; line < lines_.size(); ++line) {
                 count += counts_[line];
                 if (line > first && count > most)
@@ -341,16 +397,36 @@ class Measured {
             for (std::size_t k = 0; k < ends.size(); k += 2)
                 all += ends[k + 1] - ends[k];
         }
+        for (const auto& [line, piece] : waiting_)
+            sum_.add(piece.to - piece.from);
         return all > 0 ? area_ * std::min(1.0, sum_.sum() / all) : 0;
     }
 
   private:
-    /// A vector or corner in the frame of the lines, and the lines that it may reach.
-    struct Near {
-        std::array<Point2, 4> points;
-        double reach; ///< of a vector, which has two points; 0 for a corner
-        std::uint32_t first;
-        std::uint32_t last; ///< the line beyond the last one
+    /// Consecutive lines.
+    struct Lines {
+        std::uint32_t begin = 0;
+        std::uint32_t end = 0;
+
+        [[nodiscard]] Lines common(const Lines& other) const noexcept {
+            const std::uint32_t from = std::max(begin, other.begin);
+            return {from, std::max(from, std::min(end, other.end))};
+        }
+    };
+    /// A corner, and the lines that it may reach.
+    struct NearCorner {
+        CornerPiece shape;
+        Lines lines;
+    };
+    /// A vector, the lines that it may reach, and those that it crosses. If it follows the vector before it,
+    /// as hatch lines do, the pieces of both overlap on all lines that both cross, and it lies on the side
+    /// that is `way`.
+    struct NearStrip {
+        Strip shape;
+        Lines lines;
+        Lines crossed;
+        bool follows = false;
+        bool way = false; ///< whether u ascends
     };
 
     void find_near(const Layer& positions, const Reached& reached) {
@@ -359,89 +435,170 @@ class Measured {
         Occupied occupied(positions); // most vectors are far from all rings
         for (std::size_t i = 0; i < positions.rings; ++i)
             occupied.add(box_of(positions.contour(i)));
-        std::vector<std::int64_t> begins(lines_.size() + 1, 0); // first differences of the counts
-        const auto add = [&](const Box2& around, std::array<Point2, 4> points, std::size_t count,
-                             double reach) {
-            budget_.check();
-            if (!box.meets(around) || !occupied.any_within(around))
-                return;
-            double low = std::numeric_limits<double>::infinity();
-            double high = -low;
-            for (std::size_t i = 0; i < count; ++i) {
-                points[i] = {lines_.frame().along(points[i]), lines_.frame().across(points[i])};
-                low = std::min(low, points[i].y);
-                high = std::max(high, points[i].y);
-            }
-            const auto line_number = [&](double v) {
+        const auto in_frame = [this](const Point2& p) {
+            return Point2{lines_.frame().along(p), lines_.frame().across(p)};
+        };
+        const auto lines_from = [this](double low, double high) {
+            const auto number = [this](double v) {
                 return static_cast<std::uint32_t>(
-                    std::clamp(std::floor(v / distance_) - static_cast<double>(lines_.first()), 0.0,
+                    std::clamp(std::ceil(v / how_.distance) - static_cast<double>(lines_.first()), 0.0,
                                static_cast<double>(lines_.size())));
             };
-            const Near one{points, reach, line_number(low - reach),
-                           line_number(high + reach + 2 * distance_)};
-            if (one.first >= one.last)
-                return;
-            if (near_.size() == near_.capacity())
-                budget_.need(2 * near_.size(), sizeof(Near), "vectors beside narrow material");
-            near_.push_back(one);
-            ++begins[one.first];
-            --begins[one.last];
+            return Lines{number(low), number(high)};
         };
-        for (const Stroke& stroke : reached.strokes)
-            add(Box2::of(stroke.from, stroke.to).grown(stroke.reach), {stroke.from, stroke.to, {}, {}}, 2,
-                stroke.reach);
-        for (const std::array<Point2, 4>& corner : reached.corners)
-            add(box_of(corner), corner, corner.size(), 0);
-        counts_.resize(lines_.size());
-        std::partial_sum(begins.begin(), begins.end() - 1, counts_.begin());
-    }
-
-    /// Returns the piece of line i that a vector or corner reaches.
-    [[nodiscard]] Piece piece_of(const Near& one, std::size_t i) const noexcept {
-        const double v = lines_.v(i);
-        const auto& p = one.points;
-        Within within;
-        if (one.reach == 0) {
-            for (std::size_t k = 0; k < p.size(); ++k)
-                within.add_side(p[k], p[(k + 1) % p.size()], v);
-            return {within.from(), within.to()};
-        }
-        const Point2 to{p[1].x - p[0].x, p[1].y - p[0].y};
-        const double length = std::sqrt(dot_product(to, to));
-        const double share = length > 0 ? one.reach / length : 0;
-        const Point2 left{-to.y * share, to.x * share};
-        within.add_circle(p[0].x, v - p[0].y, one.reach);
-        within.add_circle(p[1].x, v - p[1].y, one.reach);
-        within.add_side({p[0].x + left.x, p[0].y + left.y}, {p[1].x + left.x, p[1].y + left.y}, v);
-        within.add_side({p[0].x - left.x, p[0].y - left.y}, {p[1].x - left.x, p[1].y - left.y}, v);
-        return {within.from(), within.to()};
-    }
-
-    void measure_lines(std::size_t first, std::size_t last) {
-        std::vector<std::uint64_t> ends(last - first + 1, 0); // of the pieces on each line
-        for (std::size_t i = first; i < last; ++i)
-            ends[i - first + 1] = ends[i - first] + static_cast<std::uint64_t>(counts_[i]);
-        budget_.need(ends.back(), sizeof(Piece), "pieces of lines that vectors reach");
-        std::vector<Piece> pieces(ends.back());
-        std::vector<std::uint64_t> next(ends.begin(), ends.end() - 1);
-        for (const Near& one : near_) {
+        const auto add = [&](auto& list, const auto& near) {
+            if (near.lines.begin >= near.lines.end)
+                return;
+            if (list.size() == list.capacity())
+                budget_.need(2 * list.size(), sizeof near, "vectors beside narrow material");
+            list.push_back(near);
+        };
+        const auto is_near = [&](const Box2& around) {
             budget_.check();
-            for (std::size_t i = std::max<std::size_t>(one.first, first);
-                 i < std::min<std::size_t>(one.last, last); ++i) {
-                if (lines_.ends(i).empty())
-                    continue;
-                const Piece piece = piece_of(one, i);
-                if (piece.from < piece.to)
-                    pieces[next[i - first]++] = piece;
-            }
+            return box.meets(around) && occupied.any_within(around);
+        };
+        for (const Stroke& stroke : reached.strokes) {
+            if (!is_near(Box2::of(stroke.from, stroke.to).grown(stroke.reach)))
+                continue;
+            const Point2 from = in_frame(stroke.from);
+            const Point2 to = in_frame(stroke.to);
+            const auto [low, high] = std::minmax(from.y, to.y);
+            NearStrip near{Strip(from, to, stroke.reach), lines_from(low - stroke.reach, high + stroke.reach),
+                           lines_from(low, high)};
+            if (!strips_.empty())
+                follow(strips_.back(), near);
+            add(strips_, near);
         }
-        for (std::size_t i = first; i < last; ++i) {
-            const std::span<Piece> here =
-                std::span(pieces).subspan(ends[i - first], next[i - first] - ends[i - first]);
-            std::sort(here.begin(), here.end(), [](const Piece& a, const Piece& b) {
+        for (const std::array<Point2, 4>& corner : reached.corners) {
+            if (!is_near(box_of(corner)))
+                continue;
+            CornerPiece piece{};
+            std::transform(corner.begin(), corner.end(), piece.points.begin(), in_frame);
+            const auto [low, high] =
+                std::minmax_element(piece.points.begin(), piece.points.end(),
+                                    [](const Point2& a, const Point2& b) { return a.y < b.y; });
+            add(corners_, NearCorner{piece, lines_from(low->y, high->y)});
+        }
+        count_pieces();
+    }
+
+    /// Sets whether a vector follows the one before.
+    void follow(const NearStrip& before, NearStrip& near) const {
+        const Lines common = before.crossed.common(near.crossed);
+        if (common.begin == common.end)
+            return;
+        const auto step = [&](std::uint32_t line) {
+            const double v = lines_.v(line);
+            return near.shape.middle(v) - before.shape.middle(v);
+        };
+        // On a line that a vector crosses, it reaches at least its reach to either side.
+        const double most = before.shape.reach() + near.shape.reach();
+        const double first = step(common.begin);
+        const double last = step(common.end - 1);
+        near.way = first > 0;
+        near.follows = std::abs(first) <= most && std::abs(last) <= most && near.way == (last > 0) &&
+                       (!before.follows || before.way == near.way);
+    }
+
+    /// Calls visit(lines) for the lines on which pieces of a vector begin, which may be none.
+    template <class Visit>
+    void for_begun(std::size_t strip, const Visit& visit) const {
+        const NearStrip& near = strips_[strip];
+        visit(Lines{near.lines.begin, near.crossed.begin});
+        visit(Lines{near.crossed.end, near.lines.end});
+        for_lines_without(near.crossed, near.follows ? strips_[strip - 1].crossed : Lines{}, visit);
+    }
+    template <class Visit>
+    static void for_lines_without(const Lines& lines, const Lines& others, const Visit& visit) {
+        const Lines common = lines.common(others);
+        if (common.begin == common.end) {
+            visit(lines);
+            return;
+        }
+        visit(Lines{lines.begin, common.begin});
+        visit(Lines{common.end, lines.end});
+    }
+
+    /// Counts the pieces that may begin on each line.
+    void count_pieces() {
+        counts_.assign(lines_.size() + 1, 0); // first differences, to begin with
+        const auto count = [this](const Lines& lines) {
+            if (lines.begin < lines.end) {
+                ++counts_[lines.begin];
+                --counts_[lines.end];
+            }
+        };
+        for (std::size_t i = 0; i < strips_.size(); ++i)
+            for_begun(i, count);
+        for (const NearCorner& corner : corners_)
+            count(corner.lines);
+        std::partial_sum(counts_.begin(), counts_.end(), counts_.begin());
+    }
+
+    /// The pieces of a line that vectors reach: space for all that there can be, and those found so far.
+    struct PiecesOfLine {
+        Piece* begin;
+        Piece* end;
+
+        /// Neighbouring vectors follow one another, so most pieces extend the one before.
+        void add(const Piece& piece) noexcept {
+            if (end != begin && piece.from <= end[-1].to && end[-1].from <= piece.to)
+                extend(piece);
+            else
+                *end++ = piece;
+        }
+        void extend(const Piece& piece) noexcept {
+            end[-1] = {std::min(end[-1].from, piece.from), std::max(end[-1].to, piece.to)};
+        }
+    };
+
+    void measure_lines(std::uint32_t first, std::uint32_t last) {
+        const auto count = std::accumulate(counts_.begin() + first, counts_.begin() + last, std::uint64_t{0});
+        budget_.need(count, sizeof(Piece), "pieces of lines that vectors reach");
+        if (room_ < count) {
+            pieces_ = std::make_unique_for_overwrite<Piece[]>(count);
+            room_ = count;
+        }
+        std::vector<PiecesOfLine> of_lines(last - first);
+        Piece* at = pieces_.get();
+        for (std::uint32_t i = first; i < last; ++i) {
+            of_lines[i - first] = {at, at};
+            at += counts_[i];
+        }
+        const auto visit_pieces = [&](const Lines& lines, const auto& shape, const auto& visit) {
+            const Lines here = lines.common({first, last});
+            for (std::uint32_t i = here.begin; i < here.end; ++i)
+                if (const Piece piece = shape.on_line(lines_.v(i)); piece.from < piece.to)
+                    visit(of_lines[i - first], piece);
+        };
+        const auto add = [](PiecesOfLine& line, const Piece& piece) {
+            line.add(piece);
+        };
+        for (std::size_t k = 0; k < strips_.size(); ++k) {
+            budget_.check();
+            const NearStrip& near = strips_[k];
+            if (near.lines.begin >= last || near.lines.end <= first)
+                continue;
+            for_begun(k, [&](const Lines& lines) { visit_pieces(lines, near.shape, add); });
+            if (!near.follows)
+                continue;
+            // Where the next vector does not follow, the piece that began with a former one ends.
+            const bool goes_on = k + 1 < strips_.size() && strips_[k + 1].follows;
+            for_lines_without(near.crossed.common(strips_[k - 1].crossed),
+                              goes_on ? strips_[k + 1].crossed : Lines{}, [&](const Lines& lines) {
+                                  visit_pieces(lines, near.shape, [](PiecesOfLine& line, const Piece& piece) {
+                                      line.extend(piece);
+                                  });
+                              });
+        }
+        for (const NearCorner& corner : corners_)
+            visit_pieces(corner.lines, corner.shape, add);
+        for (std::uint32_t i = first; i < last; ++i) {
+            const auto [begin, end] = of_lines[i - first];
+            std::sort(begin, end, [](const Piece& a, const Piece& b) {
                 return std::tie(a.from, a.to) < std::tie(b.from, b.to);
             });
-            measure_line(i, here);
+            measure_line(i, {begin, end});
         }
     }
 
@@ -453,7 +610,7 @@ class Measured {
             double at = own[k];
             while (next != reached.end() && next->to <= at)
                 ++next;
-            // Intervals may reach across several pieces, so `next` stays.
+            // Pieces may reach across several of the line, so `next` stays.
             for (auto one = next; one != reached.end() && one->from < own[k + 1]; ++one) {
                 if (one->from > at)
                     add_bare(i, {at, one->from});
@@ -467,12 +624,35 @@ class Measured {
     void add_bare(std::size_t i, Piece bare) {
         if (!(bare.to - bare.from > rounding_)) // where the edges of a strip and of the material coincide
             return;
-        const std::int64_t number = static_cast<std::int64_t>(i) + lines_.first() - wide_.first();
-        const std::span<const double> wide = number >= 0 && number < static_cast<std::int64_t>(wide_.size())
-                                                 ? wide_.ends(static_cast<std::size_t>(number))
-                                                 : std::span<const double>();
+        if (!wide_.points) {
+            sum_.add(bare.to - bare.from);
+            return;
+        }
+        if (wide_lines_) {
+            add_beside_wide(i, bare);
+            return;
+        }
+        // While these pieces are few, it does not matter where material is wide.
+        waiting_.push_back({i, bare});
+        waiting_length_ += bare.to - bare.from;
+        if (waiting_length_ * how_.distance <= wide_.accepted_mm2)
+            return;
+        wide_lines_.emplace(wide_.points(), how_.angle, how_.distance, 0, budget_);
+        for (const auto& [line, piece] : std::exchange(waiting_, {}))
+            add_beside_wide(line, piece);
+    }
+
+    /// Adds what lies in wide material to spots.
+    void add_beside_wide(std::size_t i, Piece bare) {
+        const std::int64_t number = static_cast<std::int64_t>(i) + lines_.first() - wide_lines_->first();
+        const std::span<const double> wide =
+            number >= 0 && number < static_cast<std::int64_t>(wide_lines_->size())
+                ? wide_lines_->ends(static_cast<std::size_t>(number))
+                : std::span<const double>();
         double at = bare.from;
-        for (std::size_t k = 0; k < wide.size(); k += 2) {
+        // The first end beyond the beginning of the piece, or the one before, if that begins material.
+        std::size_t k = static_cast<std::size_t>(std::upper_bound(wide.begin(), wide.end(), at) - wide.begin());
+        for (k -= k % 2; k < wide.size() && wide[k] < bare.to; k += 2) {
             const double from = std::max(at, wide[k]);
             const double to = std::min(bare.to, wide[k + 1]);
             if (from >= to)
@@ -485,17 +665,23 @@ class Measured {
     }
 
     double area_;
+    MeasuringLines how_;
     HatchLines lines_;
-    double distance_;
     LayerBudget budget_;
-    HatchLines wide_;
+    const WideMaterial& wide_;
+    std::optional<HatchLines> wide_lines_;
+    std::vector<std::pair<std::size_t, Piece>> waiting_; ///< bare pieces, and their lines, until then
+    double waiting_length_ = 0;
     BareSum sum_;
     double rounding_ = 0;
-    std::vector<Near> near_;
-    std::vector<std::int64_t> counts_; ///< of what may reach each line
+    std::vector<NearStrip> strips_;
+    std::vector<NearCorner> corners_;
+    std::vector<std::uint64_t> counts_; ///< of the pieces that may begin on each line
+    std::unique_ptr<Piece[]> pieces_;   ///< of some lines
+    std::uint64_t room_ = 0;            ///< number of them that fit
 };
 
-constexpr double rounded_slivers = 1 + 1e-5; // grown so much further, nothing of a wall remains but rounding
+constexpr double rounded_slivers = 1 + 1e-5; // a factor of growth that leaves nothing of a wall but rounding
 
 } // namespace
 
@@ -651,20 +837,20 @@ MeasuringLines::MeasuringLines(const Layer& material, const Reached& reached, do
 }
 
 double unreached_area(const Layer& positions, const Reached& reached, const MeasuringLines& lines,
-                      const Layer& wide, double tip_mm2, const LayerBudget& budget) {
-    return positions.rings == 0 ? 0 : Measured(positions, reached, lines, wide, tip_mm2, budget).area();
+                      const WideMaterial& wide, const LayerBudget& budget) {
+    return positions.rings == 0 ? 0 : Measured(positions, reached, lines, wide, budget).area();
 }
 
 Layer bare_points(const Layer& positions, const Reached& reached, const MeasuringLines& lines,
                   double least_reach, const LayerBudget& budget) {
     const double accepted = negligible(least_reach);
-    if (!(unreached_area(positions, reached, lines, {}, 0, budget) > accepted))
+    if (!(unreached_area(positions, reached, lines, {}, budget) > accepted))
         return {};
     const Reached near = reached.near(positions);
     std::vector<std::uint32_t> bare;
     for (const Polygon& body : polygons(nesting(positions))) {
         const std::vector<std::uint32_t> own = rings_of(body);
-        if (unreached_area(rings_of(positions, own), near, lines, {}, 0, budget) > accepted)
+        if (unreached_area(rings_of(positions, own), near, lines, {}, budget) > accepted)
             bare.insert(bare.end(), own.begin(), own.end());
     }
     return normal_form(rings_of(positions, std::move(bare)));

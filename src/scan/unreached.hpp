@@ -11,6 +11,7 @@
 #include "core/layer_budget.hpp"
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -101,11 +102,18 @@ struct MeasuringLines {
     double distance;
 };
 
+/// Material that is wide enough for the hatch, where small unreached spots do not count.
+struct WideMaterial {
+    std::function<Layer()> points = {}; ///< called only if more than `accepted_mm2` is unreached; may be empty
+    double tip_mm2 = 0;                 ///< largest spot that does not count
+    double accepted_mm2 = 0;            ///< largest area that may include spots which do not count
+};
+
 /// Returns the area of these rings that nothing reaches, mm^2: their area times the unreached share of the
-/// lines across them. So it is exact if nothing or everything is reached. The area within `wide` counts in
-/// spots above `tip_mm2` only. O(points + lines), plus for each vector the lines close to it.
+/// lines across them. So it is exact if nothing or everything is reached. O(points + lines), plus for each
+/// vector the lines close to it.
 [[nodiscard]] double unreached_area(const Layer& positions, const Reached& reached,
-                                    const MeasuringLines& lines, const Layer& wide = {}, double tip_mm2 = 0,
+                                    const MeasuringLines& lines, const WideMaterial& wide = {},
                                     const LayerBudget& budget = {});
 
 /// Returns the unreached area for which no line is made: 1/32 of the square of the shortest reach. It is

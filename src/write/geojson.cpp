@@ -46,8 +46,8 @@ void put_positions(std::span<const GridPoint> points, bool closed, ByteBuffer& o
 
 class GeoJsonWriter final : public SequentialWriter {
   public:
-    GeoJsonWriter(const std::string& path, const LayerFileInfo& info)
-        : SequentialWriter(path, info, header(info), {.written_label = quotable}) {
+    GeoJsonWriter(const std::string& path, const LayerFileInfo& info, const LayerLimits& limits)
+        : SequentialWriter(path, info, header(info), {.written_label = quotable}), limits_(limits) {
         for (const PartInfo& part : info.parts)
             labels_.push_back(json_quoted(part.label));
     }
@@ -76,7 +76,7 @@ class GeoJsonWriter final : public SequentialWriter {
     }
 
     void format_part(const Layer& layer, std::size_t part, ByteBuffer& out) const {
-        const Nesting nested = nesting(layer);
+        const Nesting nested = nesting(layer, limits_);
         std::vector<GridPoint> scratch;
         put_polygons(layer, part, nested, scratch, out);
         put_lines(layer, part, nested, scratch, out);
@@ -113,14 +113,14 @@ class GeoJsonWriter final : public SequentialWriter {
             any = true;
         };
         const Layer rings = rounded_rings(layer, nested, scratch);
-        if (const Overlay overlay(rings); overlay.clean()) {
+        if (const Overlay overlay(rings, limits_); overlay.clean()) {
             for (const Polygon& polygon : polygons(overlay.nest())) {
                 put_ring(rings.contour(polygon.outer), true);
                 for (const std::uint32_t hole : polygon.holes)
                     put_ring(rings.contour(hole), false);
             }
         } else {
-            for (const SimplePolygon& polygon : simple_polygons(rings)) {
+            for (const SimplePolygon& polygon : simple_polygons(rings, limits_)) {
                 put_ring(polygon.outer, true);
                 for (const Ring& hole : polygon.holes)
                     put_ring(hole, false);
@@ -162,6 +162,7 @@ class GeoJsonWriter final : public SequentialWriter {
 
     std::string tail() override { return "\n]}\n"; }
 
+    LayerLimits limits_;
     std::vector<std::string> labels_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
     WriterGrid uncounted_{text_step_mm};
@@ -170,8 +171,8 @@ class GeoJsonWriter final : public SequentialWriter {
 } // namespace
 
 std::unique_ptr<LayerWriter> open_geojson(const std::string& path, const LayerFileInfo& info,
-                                          const LayerWriteOptions& /*options*/) {
-    return std::make_unique<GeoJsonWriter>(path, info);
+                                          const LayerWriteOptions& options) {
+    return std::make_unique<GeoJsonWriter>(path, info, options.limits);
 }
 
 } // namespace lamella

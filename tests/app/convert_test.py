@@ -40,7 +40,7 @@ class Convert(ProgramTest):
             for source, target in [("sheet.cli", "a.svg"), ("a.svg", "b.cli"), ("sheet.cli", "c.json"),
                                    ("c.json", "d.npz"), ("d.npz", "e.3mf"), ("sheet.cli", "page.html")]:
                 run("convert", source, target)
-            run("scan", "sheet.cli", "-o", "job.cli", "--hatch-distance", "0.5")
+            run("scan", "sheet.cli", "-o", "job.cli", "--hatch-distance", "0.2")
             run("merge", "merged.cli", "1.cli", "2.cli")
             run("merge", "merged.svg", "1.cli", "2.cli")
             texts = [run("verify", "sheet.cli", "--mesh", "sheet.stl"), run("compare", "sheet.cli", "c.json"),

@@ -194,7 +194,7 @@ class Memory(ProgramTest):
             for limit in (20, 34, 50):
                 with self.subTest(name=name, limit=limit):
                     # Each of the threads reads the text of a layer of JSON, 9 MB, from the copy on disk.
-                    beside = 43 if name == "large.json" else 20
+                    beside = 43 if name == "large.json" else 25
                     self.assertLess(self.peak("info", name, "--max-memory", f"{limit}M", "--threads", 2, codes=(0, 5)),
                                     1e6 * (limit + beside))
 

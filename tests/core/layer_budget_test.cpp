@@ -25,7 +25,7 @@ TEST(LayerBudget, AllowsWhatFitsAndNothingMore) {
 TEST(LayerBudget, ALimitStaysALimitHoweverManyLayersShareIt) {
     EXPECT_EQ(layer_limits({}, 4000, 10).memory, 100U);
     EXPECT_EQ(layer_limits({}, 200, 64).memory, 1U);
-    EXPECT_EQ(layer_limits({}, 400, 0).memory, 100U);
+    EXPECT_EQ(layer_limits({.threads = 4}, 1600, 0).memory, 100U);
     EXPECT_EQ(layer_limits({}, 0, 64).memory, 0U);
 }
 

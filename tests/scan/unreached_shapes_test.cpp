@@ -111,7 +111,7 @@ double measured_everywhere(const Layer& material, const ScanVectors& vectors, co
                                                      : contour_reach(strategy.contours));
     const FillDepths depths(strategy);
     return unreached_area(material, reached, MeasuringLines(material, reached, depths.least_reach),
-                          wide_points(material, 0, depths), depths.tip_mm2);
+                          {.points = [&] { return wide_points(material, 0, depths); }, .tip_mm2 = depths.tip_mm2});
 }
 
 TEST(UnreachedShapes, HaveAllTheirBareMaterialWhereScanLooksForIt) {

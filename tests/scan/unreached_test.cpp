@@ -136,11 +136,15 @@ TEST(UnreachedArea, OfWideMaterialCountsInLargeSpotsOnly) {
     const Reached reached{.strokes = strokes, .corners = {}};
     const MeasuringLines lines(layer, reached, 0.1);
     const double all = unreached_area(layer, reached, lines);
+    const auto within = [](const Layer& wide, double tip_mm2) {
+        return WideMaterial{.points = [wide] { return wide; }, .tip_mm2 = tip_mm2};
+    };
     const double right = unreached_area(layer_of({rectangle(2.05, 0, 4, 1)}), reached, lines);
-    EXPECT_NEAR(unreached_area(layer, reached, lines, layer, 0), all, 1e-9);
-    EXPECT_NEAR(unreached_area(layer, reached, lines, layer, all / 2), right, 0.01);
-    EXPECT_EQ(unreached_area(layer, reached, lines, layer, 2), 0);
-    EXPECT_NEAR(unreached_area(layer, reached, lines, layer_of({rectangle(0, 0, 2, 1)}), 2), right, 0.01);
+    EXPECT_NEAR(unreached_area(layer, reached, lines, within(layer, 0)), all, 1e-9);
+    EXPECT_NEAR(unreached_area(layer, reached, lines, within(layer, all / 2)), right, 0.01);
+    EXPECT_EQ(unreached_area(layer, reached, lines, within(layer, 2)), 0);
+    EXPECT_NEAR(unreached_area(layer, reached, lines, within(layer_of({rectangle(0, 0, 2, 1)}), 2)), right,
+                0.01);
 }
 
 TEST(BarePoints, AreTheBodiesThatStrokesLeaveBare) {

@@ -30,8 +30,9 @@ struct LayerLimits {
     }
 };
 
-/// Returns the limits for each of `layers` layers that are processed at the same time. Together they may take
-/// a quarter of `max_memory`, the memory limit of the whole job in bytes; 0: no limit.
+/// Returns the limits for each of `layers` layers that are processed at the same time; 0: one for each thread
+/// of the execution. Together they may take a quarter of `max_memory`, the memory limit of the whole job in
+/// bytes; 0: no limit.
 [[nodiscard]] LayerLimits layer_limits(const Execution& execution, std::uint64_t max_memory = 0,
                                        unsigned layers = 1);
 

@@ -62,6 +62,7 @@ struct FileComparisonOptions {
     /// The largest distance that is no difference; by default the sum of the rounding errors of both formats.
     std::optional<double> tolerance_mm = {};
     bool area_difference = false; ///< compute the areas that only one of the files has
+    std::uint64_t max_memory = 0; ///< limit of the memory for these areas; see layer_limits
 };
 
 /// Compares the contours of two files as `compare` does, and the following details:

@@ -84,8 +84,8 @@ struct FileJob {
     bool inspect = false;
     /// Inspects the meshes. Throws Error{defect}, and writes no file, if there is any of these: a defect of a
     /// mesh, horizontal faces within rounding of a plane, open chains, rings that bound no material, material
-    /// that no scan vector reaches, or steps that leave no contour in any layer. Layers that were
-    /// already written to standard output or a pipe remain there.
+    /// that no scan vector reaches, overlapping parts (with `scan`), or no contour in any layer. Layers that
+    /// were already written to standard output or a pipe remain there.
     bool strict = false;
     /// Measures and hashes every layer.
     bool layer_statistics = false;
@@ -200,8 +200,8 @@ struct FileResult {
     /// file. Of it, `polygon`, `scan`, `format` and `write` are the times of layer steps, of scan vectors, of
     /// formatting with compression, and of writing bytes, each summed over threads; `order` is the time of
     /// the work that must be done in order, by one thread at a time. `end` is the time of one thread for the
-    /// end of the file. However many threads there are, a job takes at least `order`, `end` and the part of
-    /// `write` that the system does for one thread at a time.
+    /// end of the file. For any number of threads, a job takes at least the sum of `order`, `end` and the
+    /// part of `write` in which the system serves one thread at a time.
     struct Seconds {
         double read = 0;
         double weld = 0;

@@ -52,6 +52,8 @@ struct VerifyOptions {
     /// be at least `shortest` long, with the angles and distances of the strategy. The length of lines times
     /// their distance must equal the area that they fill.
     std::optional<ScanStrategy> strategy = {};
+    /// Limit of the memory for crossings, offsets and unions of layers; see layer_limits.
+    std::uint64_t max_memory = 0;
 
     [[nodiscard]] bool subtracts() const noexcept { return plate && !plate->negatives.empty(); }
 
@@ -170,8 +172,8 @@ struct VectorVerification {
     /// strategy.
     std::optional<double> cover;
     /// Number of planes of a part (with a mesh: of all parts together) with more material that no vector
-    /// reaches than the strategy accepts; and the area of all such material. Without a mesh, material is the
-    /// area within the outermost contour.
+    /// reaches than the strategy accepts; and the unreached area of these planes. Without a mesh, material is
+    /// the area within the outermost contour.
     std::uint64_t unreached_layers = 0;
     double unreached_mm2 = 0;
     /// Number of contours that are missing on a plane of a part, or whose area differs from that of the

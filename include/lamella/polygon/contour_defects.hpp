@@ -4,6 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/core/point.hpp"
 
 #include <cstddef>
@@ -46,9 +47,9 @@ struct ContourDefects {
 /// Finds the defects of a layer. Lists `keep` crossings at most. Segments that cross by no more than 2^-46 of
 /// the largest coordinate do not count as crossing: the rounding of cut points to doubles can cause that.
 /// Rings so thin that `rounding` can invert them may have either orientation (see orientation_is_lost). Costs
-/// as much as find_crossings and nesting.
+/// as much as find_crossings and nesting, and stops as they do.
 [[nodiscard]] ContourDefects contour_defects(const Layer& layer, const Rounding& rounding = {},
-                                             std::size_t keep = 16);
+                                             std::size_t keep = 16, const LayerLimits& limits = {});
 
 } // namespace lamella
 LAMELLA_API_END

@@ -8,6 +8,7 @@
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/commit.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/core/layer_limits.hpp"
 #include "lamella/core/point.hpp"
 #include "lamella/write/image_options.hpp"
 
@@ -135,6 +136,8 @@ struct LayerWriteOptions {
     std::uint64_t most_bytes = 0;
     /// If true, `finish` throws Error{defect} if there are warnings (LayerWriter::warnings).
     bool strict = false;
+    /// Limits of the unions that geojson computes of a layer.
+    LayerLimits limits = {};
     /// Common Layer Interface: millimetres per coordinate unit. The ASCII and the short binary form round
     /// coordinates to multiples of it; the long binary form rounds to single precision.
     double units_mm = usual_units_mm;
