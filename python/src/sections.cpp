@@ -12,6 +12,7 @@
 #include <pybind11/stl.h>
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <string>
 #include <utility>
@@ -40,15 +41,26 @@ class PreparedMesh {
 
     [[nodiscard]] std::pair<LayerPointer, Transform> tilted(const std::array<double, 3>& origin,
                                                             const std::array<double, 3>& normal) const {
-        const GilRelease released;
-        PlaneSection section =
-            slicer_.section({origin[0], origin[1], origin[2]}, {normal[0], normal[1], normal[2]});
+        const Point3 through{origin[0], origin[1], origin[2]};
+        const Point3 along{normal[0], normal[1], normal[2]};
+        // The first section takes long, because it prepares the mesh.
+        PlaneSection section = is_prepared_ ? prepared_section(through, along)
+                                            : result_of(1, py::none(), [&](const Execution& execution) {
+                                                  return slicer_.section(through, along, execution.cancel);
+                                              });
+        is_prepared_ = true;
         return {std::make_shared<SharedLayer>(std::move(section.layer), rule_), section.to_mesh};
     }
 
   private:
+    [[nodiscard]] PlaneSection prepared_section(const Point3& through, const Point3& along) const {
+        const GilRelease released;
+        return slicer_.section(through, along);
+    }
+
     PlaneRule rule_;
     Slicer slicer_;
+    mutable std::atomic<bool> is_prepared_ = false; ///< for planes of any direction
 };
 
 } // namespace

@@ -27,7 +27,7 @@ struct PlaneSection {
 };
 
 /// Cuts one mesh with many single planes, for example while somebody moves a plane through it. The mesh is
-/// prepared once; then the cost of a plane is proportional to the number of triangles that it cuts. Use
+/// prepared once; then the cost of a plane depends mainly on the number of triangles that it cuts. Use
 /// `slice` for the layers of a whole part.
 ///
 /// Immutable: any number of threads may use it at once. Cheap to move, and the mesh is shared.
@@ -48,19 +48,22 @@ class Slicer {
     /// Returns the layer at height z: bit for bit the contours that `slice` returns for this plane. Its index
     /// is 0, and its bottom and top are z. A plane that misses the mesh gives a layer without contours.
     /// Throws Error{usage} if z is not finite. O(log n + k log k) for k triangles that the plane cuts,
-    /// provided that few triangles span nearly the same heights without being cut. Runs on the calling
+    /// provided that few other triangles end just below it. Runs on the calling
     /// thread.
     [[nodiscard]] Layer section(double z) const;
 
-    /// Returns the section with the plane through `origin` at right angles to `normal`, of any length. The
-    /// rule of the plane applies with "above" on the side that the normal points to: the side of each vertex
-    /// v is decided exactly, by the sign of (v - origin) . normal for the given numbers, before anything is
-    /// rotated or rounded. Under section_above, a plane through a face gives the face if the material is on
-    /// the side of the normal, and nothing if it is on the other side. Only the triangles near the plane are
-    /// rotated. The first call prepares the mesh for this. Throws Error{usage} unless all numbers are finite
-    /// and the normal is not 0. O(log n + k log k) for k triangles near the plane. Runs on the calling
-    /// thread.
-    [[nodiscard]] PlaneSection section(const Point3& origin, const Point3& normal) const;
+    /// Returns the section with the plane through `origin` perpendicular to `normal`, which has any length.
+    /// The rule of the plane applies with "above" on the side that the normal points to: the side of each
+    /// vertex v is decided exactly, by the sign of (v - origin) . normal for the given numbers, before
+    /// anything is rotated or rounded. Under section_above, a plane through a face gives the face if the
+    /// material is on the side of the normal, and nothing if it is on the other side. Only the triangles near
+    /// the plane are
+    /// rotated. The first call prepares the mesh for this in O(n log n), with the number of threads given to
+    /// the constructor; it throws Error{cancelled} once `cancel` is requested. Throws Error{usage} unless all
+    /// numbers are finite and the normal is not 0. Later calls take O(log n + k log k) for k triangles near
+    /// the plane, on the calling thread.
+    [[nodiscard]] PlaneSection section(const Point3& origin, const Point3& normal,
+                                       const CancelFlag* cancel = nullptr) const;
 
   private:
     struct Prepared;

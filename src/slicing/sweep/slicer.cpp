@@ -235,12 +235,13 @@ struct Slicer::Prepared {
           threads(execution.run_tasks ? 1 : execution.threads), level(prepare(mesh, rule, execution)) {}
 
     /// Returns the tree of all triangles; built when it is first needed.
-    [[nodiscard]] const BoxTree& tree() const {
+    [[nodiscard]] const BoxTree& tree(const CancelFlag* cancel) const {
         const std::lock_guard lock(growing_);
         if (!tree_) {
-            Executor executor({.threads = threads});
+            const Execution execution{.threads = threads, .cancel = cancel};
+            Executor executor(execution);
             tree_.emplace(
-                executor, mesh.size(), bounding_box(mesh, {.threads = threads}),
+                executor, mesh.size(), bounding_box(mesh, execution),
                 [this](std::uint32_t i) { return mesh.triangle(i); }, [](std::uint32_t) { return true; });
         }
         return *tree_;
@@ -272,11 +273,12 @@ Layer Slicer::section(double z) const {
     return prepared_->level->section(z + 0.0);
 }
 
-PlaneSection Slicer::section(const Point3& origin, const Point3& normal) const {
+PlaneSection Slicer::section(const Point3& origin, const Point3& normal, const CancelFlag* cancel) const {
     const TiltedPlane plane(origin, normal);
     PlaneSection section{.layer = {}, .to_mesh = plane.from_frame()};
     std::vector<std::uint32_t> near;
-    prepared_->tree().near_plane(origin, normal, [&](std::uint32_t triangle) { near.push_back(triangle); });
+    prepared_->tree(cancel).near_plane(origin, normal,
+                                       [&](std::uint32_t triangle) { near.push_back(triangle); });
     if (near.empty())
         return section;
     std::sort(near.begin(), near.end());
