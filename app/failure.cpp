@@ -38,6 +38,7 @@ constexpr std::array field_options{
     FieldOption{"`snap_mm`", "--snap"},
     FieldOption{"`strict`", "--strict"},
     FieldOption{"`threads`", "--threads"},
+    FieldOption{"`unite_parts`", "--unite-parts"},
     FieldOption{"`weld_tolerance_mm`", "--weld-tolerance"},
     // Fields of a strategy. An option changes the field in all rules at once, but an error names the first
     // field that was checked. The cell must suit the overlap of each rule separately.

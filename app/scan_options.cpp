@@ -130,6 +130,14 @@ OptionGroup scan_options(ScanArguments& target, std::vector<Option> first) {
     add("hatch-border", hatch_fields(), &HatchRule::border, hatches_of);
     add("shortest", hatch_fields(), &HatchRule::shortest, hatches_of);
     add("cell-size", hatch_fields(), &HatchRule::cell, hatches_of);
+    group.options.push_back(row("unite-parts", ValueKind::flag, "",
+                                std::string(field_of(strategy_fields(), &ScanStrategy::unite_parts).help),
+                                [&target](const std::string& text) {
+                                    target.changes.emplace_back("unite-parts",
+                                                                [unite = text == "true"](ScanStrategy& strategy) {
+                                                                    strategy.unite_parts = unite;
+                                                                });
+                                }));
     add("skin-layers", skin_fields(), &SkinRule::layers, skins_of);
     return group;
 }

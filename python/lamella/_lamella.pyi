@@ -374,6 +374,7 @@ class ScanStrategy:
         support: SupportRule = ...,
         seed: int = ...,
         accepted_mm2: float = ...,
+        unite_parts: bool = ...,
     ) -> None: ...
     contours: ContourRule
     hatch: HatchRule
@@ -382,6 +383,7 @@ class ScanStrategy:
     support: SupportRule
     seed: int
     accepted_mm2: float
+    unite_parts: bool
     @classmethod
     def from_toml(cls, source: Readable) -> ScanStrategy: ...
     def to_toml(self) -> str: ...

@@ -115,8 +115,7 @@ constexpr std::array kinds{
                        .name = "overlapping_parts",
                        .many =
                            "parts overlap in {amount} mm2 {on_layers}, where the material is exposed more "
-                           "than once: move them apart, or make them components of one object of a 3MF "
-                           "file, which are united",
+                           "than once: move them apart, or unite them by `unite_parts`",
                        .unit = "mm2"},
 };
 

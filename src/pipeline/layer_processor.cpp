@@ -33,7 +33,10 @@ LayerProcessor::LayerProcessor(LayerJob job, std::span<const PlannedLayer> plane
           [this](std::size_t part, const Layer& layer) {
               return naming(job_.names[part], [&] { return ScanLayer(layer, job_.rounding, job_.limits); });
           },
-          [this](const PlaneLayers& plane) { return formatted(vectors_of(plane)); }) {}
+          [this](const PlaneLayers& plane) { return formatted(vectors_of(plane)); }) {
+    if (job_.scan && job_.scan->unite_parts)
+        job_.objects.assign(job_.objects.size(), 0);
+}
 
 void LayerProcessor::set_times(FileResult::Seconds& seconds) const noexcept {
     seconds.polygon = 1e-9 * static_cast<double>(step_nanoseconds_);

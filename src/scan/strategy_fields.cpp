@@ -65,12 +65,15 @@ std::span<const StrategyField<ParameterSet>> parameter_fields() noexcept {
 }
 
 std::span<const StrategyField<ScanStrategy>> strategy_fields() noexcept {
-    static constexpr std::array<StrategyField<ScanStrategy>, 2> fields{
+    static constexpr std::array<StrategyField<ScanStrategy>, 3> fields{
         {{"seed", "", "seed of all random choices: orders and starts", &ScanStrategy::seed},
          {"accepted_mm2", "mm2",
           "material of a layer that may be left without vectors; more is a warning, an error where jobs are "
           "strict",
-          &ScanStrategy::accepted_mm2}}};
+          &ScanStrategy::accepted_mm2},
+         {"unite_parts", "",
+          "unite parts that overlap before they get vectors; the first of them gets the vectors of all",
+          &ScanStrategy::unite_parts}}};
     return fields;
 }
 

@@ -27,6 +27,11 @@ HEIGHT = 0.05
 MITRE = 2  # of Shapely's join styles
 ROUND_CHORDS = 32
 SHARPEST = 30  # degrees, of corners that count as reached
+# A trunk with branches of 0.06 to 0.24 mm, whose middle lines once left the material at the inner corners.
+BRANCHES = [(2.507, 1.561), (0.4655, 2.3548), (0.0767, 4.8391), (-0.0418, 4.8206), (0.3362, 2.4051), (0.1291, 2.4856),
+            (-0.499, 5.7797), (-0.558, 5.7685), (0.0631, 2.5112), (-1.5107, 3.1231), (-1.5325, 3.0672), (0.0764, 2.4417),
+            (0.534, 0.0416), (0.593, 0.0529), (0.1424, 2.416), (0.3469, 2.3365), (0.6888, 0.1518), (0.8073, 0.1703),
+            (0.4762, 2.2862), (2.4856, 1.505)]
 PATTERNS = ["lines", "meander", "stripes", "chessboard", "hexagons"]
 
 
@@ -273,6 +278,10 @@ class CasesTest(ProgramTest):
         shapes = {
             "wedge of 1 degree": ([(0, 0), (10, 0), (10 * math.cos(degree), 10 * math.sin(degree))], []),
             "taper": (wall_along([(0, 0), (10, 0)], [0.19, 0.35]), []),
+            "triangle of 2.2 degrees": ([(0, 0), (9, 0), (9, 0.35)], []),
+            "wall of 0.28 mm": (turned(wall_along([(0, 0), (10.5, 0)], [0.27, 0.27]), random.Random(1)), []),
+            "wall and squares": (wall_along([(0, 0), (4.6, 0)], [0.25, 0.25]),
+                                 ["--pattern", "chessboard", "--hatch-distance", "0.2", "--shortest", "0", "--hatch-angle", "41.9993"]),
             "wall and distance 0.08": (wall_along([(0, 0), (4, 0)], [0.26, 0.26]), ["--hatch-distance", "0.08"]),
             "wall and angle 6": (wall_along([(0, 0), (4, 0)], [0.28, 0.28]),
                                  ["--pattern", "lines", "--hatch-distance", "0.17", "--hatch-angle", "6"]),
@@ -281,6 +290,11 @@ class CasesTest(ProgramTest):
             with self.subTest(name):
                 self.write("tower.obj", tower([ring], 6 * HEIGHT))
                 self.assert_same(*self.job("--layer-height", str(HEIGHT), *options), 6 * Polygon(ring).area if unary_union else 6)
+
+    def test_lines_along_narrow_branches_stay_inside(self):
+        self.write("tower.obj", tower([BRANCHES], 0.1))
+        self.assert_same(*self.job("--layer-height", "0.1", "--contours", "1", "--beam-offset", "0", "--pattern", "hexagons",
+                                   "--hatch-distance", "0.33", "--hatch-border", "0.1", "--cell-size", "1", "--shortest", "0.3"), 2)
 
     def test_bands_that_the_numbers_leave_bare(self):
         self.box("box.stl", "20,20,1")
@@ -306,6 +320,21 @@ class CasesTest(ProgramTest):
         self.assertIn("parts overlap in 200 mm2 on 2 layers", result.err)
         self.fail_with(4, "parts overlap", "slice", "box.stl", "box.stl", "--layer-height", "1", "--scan", "--strict", "-o",
                        "s.ovf")
+
+    def test_overlapping_parts_are_united_on_request(self):
+        self.box("box.stl", "10,10,2")
+        self.box("both.stl", "15,10,2")
+        two = ["slice", "box.stl", "box.stl", "--translate", "5,0,0", "--layer-height", "1", "--scan", "--strict"]
+        self.fail_with(4, "parts overlap in 100 mm2 on 2 layers, .* unite them by --unite-parts", *two, "-o", "v.ovf")
+        self.succeed(*two, "--unite-parts", "-o", "v.ovf", "--stats", "two.json")
+        self.succeed("slice", "both.stl", "--layer-height", "1", "--scan", "-o", "one.ovf", "--stats", "one.json")
+        two, one = (json.loads(self.bytes_of(f"{name}.json"))["scan"] for name in ("two", "one"))
+        self.assertAlmostEqual(two["marked_mm"], one["marked_mm"], places=3)
+        self.succeed("verify", "v.ovf", "--scan", "--mesh", "both.stl")
+        self.succeed("slice", "box.stl", "box.stl", "--translate", "5,0,0", "--layer-height", "1", "-o", "layers.json")
+        self.write("unite.toml", "unite_parts = true\n")
+        self.succeed("scan", "layers.json", "--strategy", "unite.toml", "--strict", "-o", "again.ovf")
+        self.assertEqual(self.bytes_of("again.ovf"), self.bytes_of("v.ovf"))
 
 
 if __name__ == "__main__":

@@ -190,6 +190,7 @@ export interface SliceOptions extends WriteOptions, Placement {
   hatchBorder?: number;
   shortest?: number;
   cellSize?: number;
+  uniteParts?: boolean;
   skinLayers?: number;
   buildVolume?: Triple;
   engine?: 'sweep' | 'conventional' | 'ecc' | 'ecc-edge-match' | 'eecc';

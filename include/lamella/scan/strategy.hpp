@@ -120,8 +120,12 @@ struct ScanStrategy {
     SkinRule downskin{.hatch = {.parameters = {.name = "downskin", .power_w = 120, .speed_mm_s = 1200}}};
     SupportRule support; ///< for support parts, which have no skins
     std::uint64_t seed = 1;
-    /// Largest unreached area of a part on a layer that causes no warning, mm^2.
+    /// Largest area of a part on a layer that causes no warning, mm^2: of unreached material, and of overlaps
+    /// with other parts.
     double accepted_mm2 = 0.005;
+    /// Whether parts that overlap get the vectors of their union. The first of them gets all of these. Parts
+    /// are not united with supports. Overlapping components of one object are always united.
+    bool unite_parts = false;
 };
 
 /// Returns the distance of a contour from the outline of the part. `number` is 1 for the outermost contour.
