@@ -115,7 +115,7 @@ packages-windows: packages-viewer
 # The playground is in the archive of the program if `make web` has built it.
 windows: packages-windows  ## build the program and the libraries for Windows: two zip archives in build-windows/
 	cmake --preset windows -D LAMELLA_TESTS=OFF
-	cmake --build build-windows --target lamella lamella-io lamella_app lamella_app_files
+	cmake --build build-windows --target lamella lamella-io lamella-c lamella_app lamella_app_files
 	@rm -rf build-windows/package
 	cmake --install build-windows --strip --prefix build-windows/package >/dev/null
 	/usr/bin/python3 -B tools/windows/make_archives.py build-windows/package build-windows/app/lamella.ps1 \

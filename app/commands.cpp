@@ -36,7 +36,7 @@ std::span<const ExitCode> exit_codes() noexcept {
          {6, "an output cannot be written; nothing was left at its path, but other outputs of the run may be "
              "complete"},
          {7, "some files of a batch failed; the results name them and the reasons"},
-         {130, "cancelled, by Ctrl-C, the terminate signal or the end of the terminal"}}};
+         {130, "cancelled by Ctrl-C, by the terminate signal, or because the terminal was closed"}}};
     return codes;
 }
 

@@ -127,7 +127,9 @@ std::string program_help(std::span<const Command> commands, std::size_t width) {
     for (const Command& command : commands)
         text += entry(command.name, command.summary, indent_of_commands, width);
     text += "\n" +
-            paragraph("To begin with, make a chess rook, look at it, slice it and check the result:", width) +
+            paragraph("To begin with, make a chess rook, inspect it, slice it, check the result and convert "
+                      "it:",
+                      width) +
             "\n";
     for (const std::string_view line :
          {"lamella make rook", "lamella info rook.stl",

@@ -70,13 +70,13 @@ OptionGroup image_options(ImageArguments& target) {
     Option antialias =
         count_within("antialias",
                      "1: black or white, by the centre of each pixel; 2 to 64: grey, by the covered part of "
-                     "each pixel, exact for up to N corners close together (default: 8)",
+                     "each pixel, exact unless more than N corners are close together (default: 8)",
                      1, most_antialias, target.antialias);
-    Option gamma = positive("gamma", "G", "grey is 255 times the covered part to the power of G (default: 1)",
+    Option gamma = positive("gamma", "G", "the grey value is 255 x (covered part)^G (default: 1)",
                             target.gamma);
     Option fade = count_within(
         "fade-layers",
-        "sl1: number of layers in which the first exposure fades to the normal one (default: 10)", 0,
+        "sl1: number of layers in which the first exposure time fades to the normal one (default: 10)", 0,
         std::numeric_limits<std::uint32_t>::max(), target.fade_layers);
     return {
         "images",
@@ -94,9 +94,10 @@ OptionGroup image_options(ImageArguments& target) {
                 {"none", "x", "y", "xy"}, target.mirror),
          std::move(antialias), std::move(gamma),
          positive("exposure", "SECONDS",
-                  "sl1: exposure of a layer (default: 7.5 for the SL1, 2 for the SL1S)", target.exposure_s),
+                  "sl1: exposure time of a layer (default: 7.5 for the SL1, 2 for the SL1S)",
+                  target.exposure_s),
          positive("first-exposure", "SECONDS",
-                  "sl1: exposure of the first three layers (default: 35 for the SL1, 25 for the SL1S)",
+                  "sl1: exposure time of the first three layers (default: 35 for the SL1, 25 for the SL1S)",
                   target.first_exposure_s),
          std::move(fade)}};
 }

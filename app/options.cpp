@@ -229,8 +229,8 @@ OptionGroup run_options(RunOptions& target, const std::vector<Option>& more) {
                "number of threads; 0, the default, uses all processors; the result is always the same",
                target.threads),
          choice("progress", "STYLE",
-                "progress on standard error: a bar (without this option only on a terminal), one JSON object "
-                "per line, or none",
+                "progress on standard error, as a bar or as one JSON object per line (without this option, a "
+                "bar on a terminal only)",
                 {"bar", "json", "none"}, target.progress),
          flag("quiet", "print no progress and no summary, but results, warnings and errors", target.quiet)}};
     group.options.front().letter = 'j';

@@ -48,9 +48,10 @@ def page_of(results):
              "allocates memory slowly. All outputs of a job were equal.")
     page.say("**times**: the time of one thread divided by the time of all threads; **efficiency** is this number divided by "
              "the number of threads.",
-             "**lower bound**: the larger of (a) the processor time of the run with one thread, divided by the number of "
-             "threads, and (b) the time to read the inputs on all threads and to write the output on one, at the speeds "
-             "measured on this machine.",
+             "**lower bound**: the larger of two times: (a) the processor time of the run with one thread, divided by the "
+             "number of threads; (b) the time to read the inputs on all threads and then write the output on one thread, at "
+             "the speeds measured on this machine.",
+             "**MB** is the peak memory of the process.",
              "**no file** writes only statistics (`--stats`), for which each layer is measured and hashed; it can take "
              "longer than writing a CLI file.",
              "**lattice 26** is a lattice with 26 cells in each direction. **head 7.5 million** is the test part `head`, "

@@ -196,8 +196,8 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
             execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
         if (files_.front().triangles == files_.front().records)
             return;
-        // Sums over the usable triangles depend on their chunks, which are different if the mesh is in
-        // memory.
+        // The mesh is read into memory instead. There, every chunk is full of usable triangles, but here some
+        // chunks have fewer of them, so the volume would be rounded differently.
         hashes_.reset();
         files_.clear();
     }

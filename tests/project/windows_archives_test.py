@@ -96,7 +96,7 @@ class Archives(unittest.TestCase):
 
     def test_the_sdk_has_libraries_headers_and_cmake_files(self):
         files = self.contents("lamella-sdk")
-        for name in ("lib/liblamella.a", "lib/liblamella-io.a", "lib/libexpat.a", "lib/cmake/lamella/lamella-config.cmake",
+        for name in ("lib/liblamella.a", "lib/liblamella-io.a", "bin/liblamella-c.dll", "lib/libexpat.a", "lib/cmake/lamella/lamella-config.cmake",
                      "include/lamella/core/version.hpp", "share/licences/expat.txt", "share/doc/lamella/LICENSE"):
             self.assertIn(name, files)
         self.assertNotIn("bin/lamella.exe", files)

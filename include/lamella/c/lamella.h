@@ -89,7 +89,7 @@ typedef enum lamella_cut { LAMELLA_CUT_MIDDLE = 0, LAMELLA_CUT_BOTTOM = 1, LAMEL
 typedef struct lamella_plan {
     size_t size;               /* sizeof(lamella_plan) */
     double layer_height;       /* 0: 0.1 */
-    double first_layer_height; /* 0: as of the other layers */
+    double first_layer_height; /* 0: that of the other layers */
     lamella_cut cut;
     double snap; /* vertices at most this far from a plane count as on it */
     /* If max_height is above 0, layers are adaptive: their heights are between min_height and max_height, and
@@ -117,7 +117,7 @@ typedef struct lamella_mended {
     uint64_t flipped_triangles;
 } lamella_mended;
 
-/* Join of moved edges that separate at a corner. */
+/* How lamella_offset joins moved sides that separate at a corner. */
 typedef enum lamella_join { LAMELLA_MITRE = 0, LAMELLA_BEVEL = 1, LAMELLA_ROUND = 2 } lamella_join;
 
 typedef struct lamella_corners {
@@ -127,8 +127,8 @@ typedef struct lamella_corners {
     double arc_tolerance; /* largest distance of chords from their arc; 0: 0.001 */
 } lamella_corners;
 
-/* The material of the result of lamella_combine: in either layer, in both, in the first one only, in exactly
-   one. */
+/* What the result of lamella_combine contains: the material in either layer, in both, in the first one only,
+   or in exactly one. */
 typedef enum lamella_operation {
     LAMELLA_UNION = 0,
     LAMELLA_INTERSECTION = 1,
@@ -156,7 +156,8 @@ typedef struct lamella_layer {
 /* The version of the binary interface of the library, and that of the library. */
 LAMELLA_C_API uint32_t lamella_abi(void);
 LAMELLA_C_API const char* lamella_version(void);
-/* One line about the last call of this thread that failed; valid until its next call; "" if none failed. */
+/* One line about the last failed call of this thread, or "" if none has failed. The pointer is valid until
+   the thread's next call. */
 LAMELLA_C_API const char* lamella_error(void);
 /* The warnings of the last call of this thread, one per line; valid until its next call; "" if there are
    none. */
@@ -196,7 +197,7 @@ LAMELLA_C_API lamella_status lamella_slice_at(const lamella_mesh* mesh, const do
 LAMELLA_C_API lamella_status lamella_slice_by_plan(const lamella_mesh* mesh, const lamella_plan* plan,
                                                    const lamella_settings* settings, lamella_layers** layers);
 
-/* Prepares a mesh for many single planes. The cost of a plane is then proportional to the number of triangles
+/* Prepares a mesh for many single planes. The cost of a plane then depends mainly on the number of triangles
    that it cuts. */
 LAMELLA_C_API lamella_status lamella_prepare(const lamella_mesh* mesh, lamella_rule rule,
                                              const lamella_settings* settings, lamella_slicer** slicer);

@@ -83,7 +83,7 @@ struct PlaneFinding {
     double amount = 0;        ///< sum of their lengths in mm, or areas in mm2
     double largest = 0;       ///< the largest length, in mm
 
-    /// Part of findings that do not belong to a part.
+    /// The value of `part` in findings that belong to no part.
     static constexpr std::uint32_t no_part = ~std::uint32_t{0};
 
     /// Adds the numbers of another finding of the same kind on the same plane.
@@ -104,10 +104,10 @@ struct Finding {
     double first_z = 0;                  ///< height of the lowest of these layers, mm
     std::vector<std::string> parts = {}; ///< labels of the parts with the finding; empty if all parts have it
 
-    /// File of findings that do not belong to a single file.
+    /// The value of `file` in findings that belong to no single file.
     static constexpr std::uint32_t all_files = ~std::uint32_t{0};
 
-    /// Returns one line with the finding, its position and a cure. Options are named as fields between
+    /// Returns one line with the finding, its position and a remedy. Options are named as fields between
     /// backquotes, such as `orient`.
     [[nodiscard]] std::string text() const;
 
