@@ -152,7 +152,7 @@ struct InsetCache::Insets {
     /// and the previous one may not reach, because it is too narrow. The last entry is the same for the
     /// hatches: the area that they should fill and that is narrower than `surely_hatched`.
     std::vector<Layer> narrow;
-    /// Of narrow bodies: the area within the innermost contour, and the middle of what is certainly hatched.
+    /// The area of narrow bodies within the innermost contour, and the middle of what is certainly hatched.
     Layer innermost;
     Layer certainly_hatched;
     /// For each contour, the lines along the middle of areas that are too narrow for it and that the previous

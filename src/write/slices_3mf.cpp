@@ -86,21 +86,21 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
     Slices3mfWriter(const std::string& path, const LayerFileInfo& info)
         : PackageWriter(path, info,
                         {.open_chains = false, .gaps = false, .written_label = quotable, .supports = true}),
-          info_(info), later_(info.parts.size() - 1) {
+          info_(info) {
         heights_.add(in_text(info.bottom), info.bottom, "bottom", 0);
         zip().begin("3D/3dmodel.model", ZipMethod::deflated);
         append(std::string(model_begin) + stack_begin(0));
     }
 
-    std::uint64_t bytes() const noexcept override { return PackageWriter::bytes() + waiting_; }
+    std::uint64_t bytes() const noexcept override { return PackageWriter::bytes() + (ended_ ? 0 : waiting_.size()); }
 
   private:
-    /// A chunk of a stack in store_.
+    /// A chunk of a stack that waits.
     struct Later {
-        std::uint64_t position;
-        std::size_t bytes;
+        std::uint64_t position; ///< in waiting_
+        std::uint64_t bytes;
         std::uint64_t size; ///< as text
-        std::uint32_t crc;
+        std::uint64_t crc;
     };
 
     /// Returns a height rounded to nine decimals, in billionths of a millimetre.
@@ -121,23 +121,27 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
             zip().append(chunks->front().in_zip(), chunks, after);
             for (std::size_t part = 1; part < chunks->size(); ++part) {
                 const package_3mf::Chunk& chunk = (*chunks)[part];
-                later_[part - 1].push_back({store_.size(), chunk.bytes.size(), chunk.size, chunk.crc});
-                store_.add(chunk.bytes);
-                waiting_ += chunk.bytes.size();
+                const Later later{waiting_.size(), chunk.bytes.size(), chunk.size, chunk.crc};
+                later_.add({reinterpret_cast<const char*>(&later), sizeof later});
+                waiting_.add(chunk.bytes);
             }
         };
     }
 
     void end_file() override {
-        waiting_ = 0;
+        ended_ = true;
         append(stack_end);
+        const std::size_t parts = info_.parts.size();
         std::string bytes;
-        for (std::size_t part = 1; part <= later_.size(); ++part) {
+        for (std::size_t part = 1; part < parts; ++part) {
             append(stack_begin(part));
-            for (const Later& chunk : later_[part - 1]) {
+            for (std::uint64_t at = (part - 1) * sizeof(Later); at < later_.size();
+                 at += (parts - 1) * sizeof(Later)) {
+                Later chunk{};
+                later_.read(at, {reinterpret_cast<char*>(&chunk), sizeof chunk});
                 bytes.resize(chunk.bytes);
-                store_.read(chunk.position, bytes);
-                zip().append({bytes, chunk.size, chunk.crc});
+                waiting_.read(chunk.position, bytes);
+                zip().append({bytes, chunk.size, static_cast<std::uint32_t>(chunk.crc)});
             }
             append(stack_end);
         }
@@ -167,10 +171,10 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
 
     LayerFileInfo info_;
     WriterGrid grid_{text_step_mm, &rounding_loss()};
-    ByteStore store_;
-    /// The stacks of all parts except the first one. They wait until the first one is complete.
-    std::vector<std::vector<Later>> later_;
-    std::uint64_t waiting_ = 0; ///< bytes of later_
+    /// The stacks of all parts except the first one, plane by plane. They wait until that is complete.
+    ByteStore waiting_;
+    ByteStore later_; ///< a Later for each chunk in waiting_
+    bool ended_ = false;
     WrittenHeights heights_{"billionths of a millimetre", 1e-9, rounding_loss()};
 };
 

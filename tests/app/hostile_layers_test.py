@@ -60,7 +60,7 @@ def chains(seed, size):
     return [[p, (p[0] + chance.uniform(-3, 3), p[1] + chance.uniform(-3, 3))] for p in points]
 
 
-LAYERS = {"chords": (chords, 1500, True), "comb": (comb, 20_000, True), "chains": (chains, 60_000, False)}
+LAYERS = {"chords": (chords, 1000, True), "comb": (comb, 10_000, True), "chains": (chains, 20_000, False)}
 
 
 class HostileLayers(ProgramTest):
