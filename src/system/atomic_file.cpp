@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -37,16 +38,18 @@ std::string first_bad_folder(const std::string& path) {
     return folder.string();
 }
 
-/// Returns the network folder of a path, such as \\server\share, if it cannot be reached; else "".
-std::string unreachable_share(const fs::path& path) {
-    if (!path.has_relative_path())
+/// Returns the network folder of a path on Windows, such as \\server\share, if it cannot be reached; else "".
+/// Not every standard library knows such names.
+std::string unreachable_share(const std::string& path) {
+    constexpr std::string_view separators = "/\\";
+    const bool of_network = fs::path::preferred_separator == '\\' && path.size() > 3 &&
+                            path.find_first_not_of(separators) == 2 && path[2] != '?' && path[2] != '.';
+    const std::size_t end_of_server = of_network ? path.find_first_of(separators, 2) : std::string::npos;
+    if (end_of_server == std::string::npos)
         return {};
-    const std::string server = path.root_name().string(); // or a drive, or empty
-    const fs::path share = path.root_path() / *path.relative_path().begin();
+    const std::string share = path.substr(0, path.find_first_of(separators, end_of_server + 1));
     std::error_code ignored;
-    const bool of_network =
-        server.size() > 3 && server[1] == server[0] && server[2] != '?' && server[2] != '.';
-    return of_network && !fs::is_directory(share, ignored) ? share.string() : std::string();
+    return fs::is_directory(share, ignored) ? std::string() : share;
 }
 
 bool working_folder_is_gone() {

@@ -72,7 +72,7 @@ class Terminal(ProgramTest):
         self.box()
         for words, shown in [(["box.stl"], 'lamella view "box.stl"'), ([], "lamella make rook")]:
             code, text = self.run_in_terminal(*words, typed=b"x", after="Press a key to close this window.")
-            self.assertIn(shown, text)
+            self.assertIn(shown, re.sub(r"[\r\n]+", "", text))  # the console divides long lines
             self.assertIn("Press a key", text)
             self.assertEqual(code, 2 if words else 0, text)
 
