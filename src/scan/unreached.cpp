@@ -556,7 +556,7 @@ class Measured {
         const auto count = std::accumulate(counts_.begin() + first, counts_.begin() + last, std::uint64_t{0});
         budget_.need(count, sizeof(Piece), "pieces of lines that vectors reach");
         if (room_ < count) {
-            pieces_ = std::make_unique_for_overwrite<Piece[]>(count);
+            pieces_.reset(new Piece[count]); // not initialized
             room_ = count;
         }
         std::vector<PiecesOfLine> of_lines(last - first);

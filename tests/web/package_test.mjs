@@ -166,7 +166,7 @@ test('a file that becomes too large for an array is a limit and is named', async
 /** The formats that the program lists. */
 function formats() {
   const help = native('help', 'slice').replace(/\s+/g, ' ');
-  return /does not end in a known extension: ([^;]*?) --/.exec(help)[1].split(', ');
+  return /its name does not determine it: ([^;]*?) --/.exec(help)[1].split(', ');
 }
 
 for (const format of formats())
