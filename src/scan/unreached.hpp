@@ -34,7 +34,7 @@ struct Stroke {
     double reach = 0;
 };
 
-/// What the vectors of a layer reach.
+/// The area that the vectors of a layer reach.
 struct Reached {
     std::vector<Stroke> strokes;
     /// The corner pieces that join the strips beside the sides of rings, as `offset` makes them: two ends of
@@ -60,7 +60,7 @@ struct FillDepths {
     /// Largest unreached spot that does not count within material that is wide enough for the hatch: the tip
     /// of a corner, in which lines are too short.
     double tip_mm2 = 0;
-    /// Whether the vectors of the strategy reach everything, except in narrow material.
+    /// True if the vectors of the strategy reach everything, except in narrow material.
     bool dense = true;
 };
 

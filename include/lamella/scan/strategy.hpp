@@ -123,7 +123,7 @@ struct ScanStrategy {
     /// Largest area of a part on a layer that causes no warning, mm^2: of unreached material, and of overlaps
     /// with other parts.
     double accepted_mm2 = 0.005;
-    /// Whether parts that overlap get the vectors of their union. The first of them gets all of these. Parts
+    /// True if parts that overlap get the vectors of their union. The first of them gets all of these. Parts
     /// are not united with supports. Overlapping components of one object are always united.
     bool unite_parts = false;
 };
