@@ -17,7 +17,9 @@ target_compile_options(
               -Wnon-virtual-dtor
               -Woverloaded-virtual
               # Never fuses a*b+c, so that every processor computes the same bits (docs/conventions.md).
-              -ffp-contract=off)
+              -ffp-contract=off
+              # Nothing reads the error numbers of square roots, which keep loops from using vectors.
+              -fno-math-errno)
 # GCC warns of uninitialised values in the code that its own sanitizers add, so warnings are no errors there.
 if(MINGW)
     target_compile_options(lamella_options INTERFACE -include ${PROJECT_SOURCE_DIR}/src/system/windows/utf8_paths.hpp)

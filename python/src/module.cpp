@@ -5,6 +5,7 @@
 #include "errors.hpp"
 #include "files.hpp"
 #include "layers.hpp"
+#include "run.hpp"
 #include "scanning.hpp"
 #include "sections.hpp"
 #include "slicing.hpp"
@@ -32,4 +33,5 @@ PYBIND11_MODULE(_lamella, module) {
     lamella::python::bind_scanning(module);
     lamella::python::bind_files(module);
     py::delattr(module, "__module__");
+    py::module_::import("atexit").attr("register")(py::cpp_function(&lamella::python::wait_for_work_left_alone));
 }

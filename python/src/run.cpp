@@ -34,6 +34,34 @@ class Event {
     bool rung_ = false;
 };
 
+/// Counts the threads of `run_alone`, which may outlive the call.
+class AloneThreads {
+  public:
+    /// Never destroyed, because such a thread may end after static objects.
+    static AloneThreads& all() {
+        static AloneThreads& threads = *new AloneThreads;
+        return threads;
+    }
+    void begin() {
+        const std::lock_guard lock(mutex_);
+        ++count_;
+    }
+    void end() {
+        const std::lock_guard lock(mutex_);
+        --count_;
+        changed_.notify_all();
+    }
+    void wait(std::chrono::seconds most) {
+        std::unique_lock lock(mutex_);
+        changed_.wait_for(lock, most, [&] { return count_ == 0; });
+    }
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    int count_ = 0;
+};
+
 /// Joins without the interpreter lock, because the thread may need a while to end, for example to free
 /// gigabytes.
 void join(std::thread& worker) {
@@ -112,13 +140,16 @@ void run_alone(const std::function<void(const Execution&)>& work) {
     };
     const auto job = std::make_shared<Job>();
     job->work = work;
-    std::thread([job] {
+    AloneThreads::all().begin();
+    std::thread([job = std::shared_ptr<Job>(job)]() mutable {
         try {
             job->work(Execution{.threads = 1, .cancel = &job->cancel});
         } catch (...) {
             job->failure = std::current_exception();
         }
         job->bell.ring();
+        job.reset();
+        AloneThreads::all().end();
     }).detach();
     try {
         while (!job->bell.wait())
@@ -130,6 +161,11 @@ void run_alone(const std::function<void(const Execution&)>& work) {
     }
     if (job->failure)
         std::rethrow_exception(job->failure);
+}
+
+void wait_for_work_left_alone() {
+    const GilRelease released;
+    AloneThreads::all().wait(std::chrono::seconds(5));
 }
 
 } // namespace lamella::python

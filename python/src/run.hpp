@@ -63,6 +63,10 @@ template <class Work>
 /// that it uses.
 void run_alone(const std::function<void(const Execution&)>& work);
 
+/// Waits until such work has ended, which was asked to stop, or for five seconds. For the end of the process,
+/// which destroys what the work may use.
+void wait_for_work_left_alone();
+
 /// Returns the result of work on layers with this many points in total. The work must keep alive everything
 /// that it uses. If there are few points, the calling thread does the work itself, because starting a thread
 /// would take longer.

@@ -21,12 +21,25 @@ LAMELLA_VECTOR_CLONES double ring_area(std::span<const Point2> ring) noexcept {
     return area.end(ring, i);
 }
 
-double contour_length(std::span<const Point2> contour, bool closed) noexcept {
+LAMELLA_VECTOR_CLONES double contour_length(std::span<const Point2> contour, bool closed) noexcept {
     if (contour.size() < 2)
         return 0;
-    std::array<double, 4> sums{};
-    for (std::size_t i = 1; i < contour.size(); ++i)
+    std::array<double, 4> sums{}; // side i belongs to sum i % 4
+    const auto add = [&](std::size_t i) {
         sums[i % 4] += quick_distance(contour[i - 1], contour[i]);
+    };
+    std::size_t i = 1;
+    for (; i < contour.size() && i % 4 != 0; ++i)
+        add(i);
+    for (; i + 4 <= contour.size(); i += 4) {
+        std::array<double, 4> lengths;
+        for (std::size_t k = 0; k < 4; ++k)
+            lengths[k] = quick_distance(contour[i + k - 1], contour[i + k]);
+        for (std::size_t k = 0; k < 4; ++k)
+            sums[k] += lengths[k];
+    }
+    for (; i < contour.size(); ++i)
+        add(i);
     if (closed)
         sums[0] += quick_distance(contour.back(), contour.front());
     return (sums[0] + sums[1]) + (sums[2] + sums[3]);
