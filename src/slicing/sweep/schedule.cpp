@@ -10,6 +10,11 @@ namespace {
 constexpr std::uint64_t plane_cost = 64; // in points
 constexpr std::uint64_t worth_a_thread = 1U << 15;
 constexpr std::uint64_t worth_a_task = 32; // planes
+// Points that stay in the cache of a core, 2 MB. If their layers are released before the next ones are made,
+// these are written over them, and no fresh memory is needed.
+constexpr std::uint64_t hot_points = std::uint64_t{1} << 17;
+// Planes that are worth it to lay out the edges of long runs again.
+constexpr std::uint64_t least_group = 4;
 
 /// Returns one task that all workers share.
 std::vector<SweepTask> one_for_all(std::uint32_t planes, unsigned workers, std::uint64_t group) {
@@ -45,8 +50,12 @@ std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers, std::
                                                                         // may wait to be delivered
     const std::uint64_t largest_layer = std::max<std::uint64_t>(1, loads.most_points);
     const std::uint64_t planes_of_task = bounded ? per_task / largest_layer : planes;
-    const std::uint64_t group =
-        bounded ? std::max<std::uint64_t>(1, points_in_flight / largest_layer) : planes;
+    const auto group_of = [&](std::uint64_t hot, std::uint64_t most) {
+        const std::uint64_t points = std::min(most, std::max(hot, least_group * largest_layer));
+        return static_cast<std::uint32_t>(
+            bounded ? std::clamp<std::uint64_t>(points / largest_layer, 1, planes) : planes);
+    };
+    const std::uint32_t group = group_of(workers * hot_points, points_in_flight);
     if (planes_of_task == 0)
         return one_for_all(planes, workers, group);
     const bool many_planes = planes_of_task >= std::min<std::uint64_t>(planes, worth_a_task);
@@ -64,7 +73,7 @@ std::vector<SweepTask> schedule(const PlaneLoads& loads, unsigned workers, std::
         const std::uint64_t cost = loads.points[p] + plane_cost;
         // In a task of many planes, exceeding the target by part of a plane matters little.
         if (tasks.empty() || filled + (many_planes ? cost / 2 : cost) > target) {
-            tasks.push_back({{p, p}, planes});
+            tasks.push_back({{p, p}, group_of(hot_points, per_task)});
             filled = 0;
             walked += loads.points[p] - (loads.begun[p + 1] - loads.begun[p]);
         }

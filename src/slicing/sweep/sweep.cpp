@@ -43,14 +43,14 @@ namespace {
 template <class Ends>
 class alignas(128) Sweep {
   public:
-    /// Requires that either all tasks are shared, or none.
+    /// Requires that all tasks are shared if `first` is, and that none has a larger group.
     Sweep(const CutGraph<Ends>& graph, const SharedMarks& marks, const StartIndex& starts,
-          const PlaneLoads& loads, const Ranks& ranks, const Plan& plan, bool shared, Executor& executor,
-          const LayerSink& sink, OrderedStage& delivery)
+          const PlaneLoads& loads, const Ranks& ranks, const Plan& plan, const SweepTask& first,
+          Executor& executor, const LayerSink& sink, OrderedStage& delivery)
         : graph_(graph), starts_(starts), ranks_(ranks), plan_(plan), sink_(sink), delivery_(delivery),
-          crew_(executor, shared), walk_(graph, marks), columns_(room_for_columns(loads, shared)),
-          arena_(loads.all_points) {
-        if (shared)
+          crew_(executor, first.shared), walk_(graph, marks), columns_(room_for_columns(loads, first.shared)),
+          arena_(std::min(loads.all_points, first.group * loads.most_points)) {
+        if (first.shared)
             runs_.reserve_nodes(loads.begun.back());
     }
 
@@ -173,7 +173,7 @@ void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& 
     const auto sweep_for = [&](std::size_t task, unsigned worker) -> Sweep<Ends>& {
         if (!sweeps[worker])
             sweeps[worker] = std::make_unique<Sweep<Ends>>(graph, marks, starts, loads, ranks, job.plan,
-                                                           tasks[task].shared, executor, job.sink, delivery);
+                                                           tasks[task], executor, job.sink, delivery);
         return *sweeps[worker];
     };
     if (tasks.size() == 1) {
