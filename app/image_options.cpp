@@ -72,8 +72,8 @@ OptionGroup image_options(ImageArguments& target) {
                      "1: black or white, by the centre of each pixel; 2 to 64: grey, by the covered part of "
                      "each pixel, exact unless more than N corners are close together (default: 8)",
                      1, most_antialias, target.antialias);
-    Option gamma = positive("gamma", "G", "the grey value is 255 x (covered part)^G (default: 1)",
-                            target.gamma);
+    Option gamma =
+        positive("gamma", "G", "the grey value is 255 x (covered part)^G (default: 1)", target.gamma);
     Option fade = count_within(
         "fade-layers",
         "sl1: number of layers in which the first exposure time fades to the normal one (default: 10)", 0,

@@ -133,10 +133,10 @@ OptionGroup scan_options(ScanArguments& target, std::vector<Option> first) {
     group.options.push_back(row("unite-parts", ValueKind::flag, "",
                                 std::string(field_of(strategy_fields(), &ScanStrategy::unite_parts).help),
                                 [&target](const std::string& text) {
-                                    target.changes.emplace_back("unite-parts",
-                                                                [unite = text == "true"](ScanStrategy& strategy) {
-                                                                    strategy.unite_parts = unite;
-                                                                });
+                                    target.changes.emplace_back(
+                                        "unite-parts", [unite = text == "true"](ScanStrategy& strategy) {
+                                            strategy.unite_parts = unite;
+                                        });
                                 }));
     add("skin-layers", skin_fields(), &SkinRule::layers, skins_of);
     return group;

@@ -33,5 +33,6 @@ PYBIND11_MODULE(_lamella, module) {
     lamella::python::bind_scanning(module);
     lamella::python::bind_files(module);
     py::delattr(module, "__module__");
-    py::module_::import("atexit").attr("register")(py::cpp_function(&lamella::python::wait_for_work_left_alone));
+    py::module_::import("atexit").attr("register")(
+        py::cpp_function(&lamella::python::wait_for_work_left_alone));
 }

@@ -12,7 +12,9 @@ namespace lamella {
 LayerLimits layer_limits(const Execution& execution, std::uint64_t max_memory, unsigned layers) {
     // A limit of 0 would mean none.
     const std::uint64_t memory =
-        max_memory == 0 ? 0 : std::max<std::uint64_t>(1, max_memory / 4 / (layers == 0 ? thread_count(execution) : layers));
+        max_memory == 0
+            ? 0
+            : std::max<std::uint64_t>(1, max_memory / 4 / (layers == 0 ? thread_count(execution) : layers));
     return {execution.cancel, memory};
 }
 

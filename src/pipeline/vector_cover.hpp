@@ -25,6 +25,7 @@ void check_cover(const PlaneGroup& group, const MaterialBounds& bounds, const Sc
 /// Measures the material of each possible section that no vector reaches, and keeps the smallest result.
 /// Vectors are rounded; the edges of the material may have moved by `moved_edges`.
 void check_reach(const PlaneGroup& group, const MaterialBounds& bounds, const ScanStrategy& strategy,
-                 const Rounding& rounding, double moved_edges, const LayerLimits& limits, PlaneFindings& found);
+                 const Rounding& rounding, double moved_edges, const LayerLimits& limits,
+                 PlaneFindings& found);
 
 } // namespace lamella

@@ -93,8 +93,9 @@ class VectorCheck {
             };
             for (const double limit : limits_of_mitres(OffsetCorners{}.mitre_limit, options_.granted())) {
                 for (const Layer& section : bounds.sections) {
-                    const LayerMeasure expected = measure(moved_inwards(
-                        section, contour_depth(rule, number) - bounds.depth, limits_, {.mitre_limit = limit}));
+                    const LayerMeasure expected =
+                        measure(moved_inwards(section, contour_depth(rule, number) - bounds.depth, limits_,
+                                              {.mitre_limit = limit}));
                     const double slack = 4 * tolerance_ * (expected.perimeter_mm + row.perimeter_mm);
                     least = std::min(least, expected.area_mm2 - slack);
                     greatest = std::max(greatest, expected.area_mm2 + slack);

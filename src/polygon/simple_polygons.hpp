@@ -23,7 +23,6 @@ struct SimplePolygon {
 /// at most points in common. So bodies that overlap or share edges are united, and rings that touch
 /// themselves are divided in their common points. All coordinates of the result are integers; where rings
 /// cross, their sides move by less than a unit. Throws the errors of `fill`. Costs as much as `fill`.
-[[nodiscard]] std::vector<SimplePolygon> simple_polygons(const Layer& whole,
-                                                         const LayerLimits& limits = {});
+[[nodiscard]] std::vector<SimplePolygon> simple_polygons(const Layer& whole, const LayerLimits& limits = {});
 
 } // namespace lamella

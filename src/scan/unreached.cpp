@@ -371,8 +371,8 @@ class BareSum {
 /// The lines across an area, and what reaches their pieces.
 class Measured {
   public:
-    Measured(const Layer& positions, const Reached& reached, const MeasuringLines& how, const WideMaterial& wide,
-             const LayerBudget& budget)
+    Measured(const Layer& positions, const Reached& reached, const MeasuringLines& how,
+             const WideMaterial& wide, const LayerBudget& budget)
         : area_(std::max(0.0, measure(positions).area_mm2)), how_(how),
           lines_(positions, how.angle, how.distance, 0, budget), budget_(budget.without(lines_.bytes())),
           wide_(wide), sum_(wide.tip_mm2 / how.distance) {
@@ -651,7 +651,8 @@ class Measured {
                 : std::span<const double>();
         double at = bare.from;
         // The first end beyond the beginning of the piece, or the one before, if that begins material.
-        std::size_t k = static_cast<std::size_t>(std::upper_bound(wide.begin(), wide.end(), at) - wide.begin());
+        std::size_t k =
+            static_cast<std::size_t>(std::upper_bound(wide.begin(), wide.end(), at) - wide.begin());
         for (k -= k % 2; k < wide.size() && wide[k] < bare.to; k += 2) {
             const double from = std::max(at, wide[k]);
             const double to = std::min(bare.to, wide[k + 1]);

@@ -104,9 +104,10 @@ struct MeasuringLines {
 
 /// Material that is wide enough for the hatch, where small unreached spots do not count.
 struct WideMaterial {
-    std::function<Layer()> points = {}; ///< called only if more than `accepted_mm2` is unreached; may be empty
-    double tip_mm2 = 0;                 ///< largest spot that does not count
-    double accepted_mm2 = 0;            ///< largest area that may include spots which do not count
+    std::function<Layer()> points =
+        {};                  ///< called only if more than `accepted_mm2` is unreached; may be empty
+    double tip_mm2 = 0;      ///< largest spot that does not count
+    double accepted_mm2 = 0; ///< largest area that may include spots which do not count
 };
 
 /// Returns the area of these rings that nothing reaches, mm^2: their area times the unreached share of the

@@ -92,7 +92,9 @@ class Slices3mfWriter final : public package_3mf::PackageWriter {
         append(std::string(model_begin) + stack_begin(0));
     }
 
-    std::uint64_t bytes() const noexcept override { return PackageWriter::bytes() + (ended_ ? 0 : waiting_.size()); }
+    std::uint64_t bytes() const noexcept override {
+        return PackageWriter::bytes() + (ended_ ? 0 : waiting_.size());
+    }
 
   private:
     /// A chunk of a stack that waits.

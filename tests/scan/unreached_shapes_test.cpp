@@ -110,8 +110,9 @@ double measured_everywhere(const Layer& material, const ScanVectors& vectors, co
                     all[i].kind == VectorKind::hatch ? hatch_reach(strategy.contours, strategy.hatch)
                                                      : contour_reach(strategy.contours));
     const FillDepths depths(strategy);
-    return unreached_area(material, reached, MeasuringLines(material, reached, depths.least_reach),
-                          {.points = [&] { return wide_points(material, 0, depths); }, .tip_mm2 = depths.tip_mm2});
+    return unreached_area(
+        material, reached, MeasuringLines(material, reached, depths.least_reach),
+        {.points = [&] { return wide_points(material, 0, depths); }, .tip_mm2 = depths.tip_mm2});
 }
 
 TEST(UnreachedShapes, HaveAllTheirBareMaterialWhereScanLooksForIt) {

@@ -103,7 +103,8 @@ TEST(Schedule, GivesUprightPartsOfFewPlanesToAllWorkersTogether) {
 }
 
 TEST(Schedule, EmitsPlanesInGroupsThatStayInTheCache) {
-    const PlaneLoads light = planes(std::vector<std::uint64_t>(3000, 1000), std::vector<std::uint64_t>(3000, 1000));
+    const PlaneLoads light =
+        planes(std::vector<std::uint64_t>(3000, 1000), std::vector<std::uint64_t>(3000, 1000));
     for (const SweepTask& task : schedule(light, 1, 7'000'000))
         EXPECT_EQ(task.group, (std::uint64_t{1} << 17) / 1000);
     for (const SweepTask& task : schedule(light, 1, 0)) // all layers are kept
