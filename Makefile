@@ -81,7 +81,7 @@ ci-windows: packages-windows
 	$(call suites,build-windows,system,processes)
 
 ci-web: packages-ci web
-	tests/web/run.sh build api_test.mjs preview_test.mjs package_test.mjs
+	tests/web/run.sh build api_test.mjs preview_test.mjs package_test.mjs browser_test.mjs
 
 test-all: test-large test-asan test-tsan test-arm64 test-windows test-macos test-shared test-web fresh  ## run the long suites: large programs, sanitizers, ARM64, Windows, macOS, web, fresh
 

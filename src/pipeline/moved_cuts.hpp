@@ -115,7 +115,7 @@ inline LayerStack sections_of(const VerifyOptions& options, const Plan& plan, co
                                    : slice(*options.mesh, plan, {.execution = execution});
     LayerStack layers;
     const double within = *options.close_gaps_mm;
-    const LayerLimits limits = layer_limits(execution, options.max_memory);
+    const LayerLimits limits = layer_limits(execution, options.max_memory, 0);
     if (!options.plate) {
         for (const Layer& layer : slice(*options.mesh, plan, {.execution = execution}))
             layers.push_back(close_gaps(layer, within, limits).layer);

@@ -6,6 +6,7 @@
 #include "contour/distance.hpp"
 #include "pipeline/length_around.hpp"
 #include "scan/hatch.hpp"
+#include "scan/narrow_bodies.hpp"
 #include "scan/support.hpp"
 #include "scan/unreached.hpp"
 
@@ -167,7 +168,7 @@ void check_reach(const PlaneGroup& group, const MaterialBounds& bounds, const Sc
     for (const Layer& section : bounds.sections) {
         const Layer material = moved_inwards(section, 0, limits);
         const MeasuringLines lines(material, reached, depths.least_reach);
-        const WideMaterial wide{.points = [&] { return wide_points(material, bounds.depth, depths, limits); },
+        const WideMaterial wide{.points = [&] { return wide_area(material, bounds.depth, depths, limits); },
                                 .tip_mm2 = depths.tip_mm2,
                                 .accepted_mm2 = strategy.accepted_mm2};
         const double left = unreached_area(material, reached, lines, wide, budget);

@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cassert>
+#include <cstddef>
 #include <cstdint>
 
 namespace lamella {
@@ -17,6 +18,13 @@ namespace lamella {
 class Occupied {
   public:
     explicit Occupied(const Layer& layer) : whole_(box_of(layer.points.span())) {}
+    /// Returns the cells that the boxes of the rings of a layer occupy.
+    [[nodiscard]] static Occupied by_rings(const Layer& layer) {
+        Occupied occupied(layer);
+        for (std::size_t i = 0; i < layer.rings; ++i)
+            occupied.add(box_of(layer.contour(i)));
+        return occupied;
+    }
 
     void add(const Box2& box) {
         for_rows(box, [](std::uint64_t& row, std::uint64_t columns) {

@@ -14,6 +14,7 @@
 #include "scan/contours.hpp"
 #include "scan/hatch.hpp"
 #include "scan/middle_lines.hpp"
+#include "scan/narrow_bodies.hpp"
 #include "scan/skin.hpp"
 #include "scan/support.hpp"
 #include "scan/unreached.hpp"
@@ -137,9 +138,9 @@ struct InsetCache::Insets {
 
     /// Returns the area within the innermost contour that is too narrow for a hatch.
     [[nodiscard]] Layer strips(const LayerLimits& limits) const {
-        return narrow_points(innermost, certainly_hatched,
-                             depths.filled + depths.half_width - contour_depth(contours, contours.count),
-                             limits);
+        return narrow_area(innermost, certainly_hatched,
+                           depths.filled + depths.half_width - contour_depth(contours, contours.count),
+                           limits);
     }
 
     Layer layer;
@@ -176,7 +177,7 @@ struct InsetCache::Insets {
         };
         const auto lost = [&](const Layer& material, const Layer& within, double by) {
             const Layer narrow_ones = bodies_by_width(material, within, by).narrow;
-            return narrow_ones.rings == 0 ? Layer{} : narrow_points(narrow_ones, within, by, limits);
+            return narrow_ones.rings == 0 ? Layer{} : narrow_area(narrow_ones, within, by, limits);
         };
         Layer outer = bodies.narrow;
         for (std::uint32_t i = 1; i <= contours.count; ++i) {
@@ -189,7 +190,7 @@ struct InsetCache::Insets {
                        : lost(offset(bodies.narrow, step / 2 - depth, {.limits = limits}), inner, step / 2);
             if (line && narrow[i - 1].rings > 0)
                 lines[i - 1] = middle_lines(
-                    i == 1 ? narrow[0] : narrow_points(outer, inner, step, limits), 2 * (step + sliver),
+                    i == 1 ? narrow[0] : narrow_area(outer, inner, step, limits), 2 * (step + sliver),
                     i == 1 ? contours.thinnest : 2 * reach * more_than_reached, budget);
             outer = std::move(inner);
         }
@@ -306,7 +307,7 @@ std::vector<std::vector<Point2>> lines_amid(const Layer& strips, const Reached& 
                                             const ScanStrategy& strategy, const LayerBudget& budget) {
     const ContourRule& rule = strategy.contours;
     const double width = 2 * (depths.filled + depths.half_width - contour_depth(rule, rule.count));
-    return middle_lines(bare_points(strips, reached, lines, depths.least_reach, budget),
+    return middle_lines(bare_bodies(strips, reached, lines, depths.least_reach, budget),
                         width * more_than_reached, contour_reach(rule) * (more_than_reached - 1), budget);
 }
 
@@ -330,7 +331,7 @@ std::vector<double> unreached_by_exposure(const InsetCache::Insets& insets, std:
     const Layer& filled = everywhere ? insets.within_contours() : insets.narrow.back();
     WideMaterial wide;
     if (everywhere)
-        wide = {.points = [&] { return wide_points(insets.layer, 0, insets.depths, budget.limits()); },
+        wide = {.points = [&] { return wide_area(insets.layer, 0, insets.depths, budget.limits()); },
                 .tip_mm2 = insets.depths.tip_mm2};
     const double of_hatches = unreached_area(filled, reached, lines, wide, budget);
     // A spot may lie in several regions, so these share the area of all spots.

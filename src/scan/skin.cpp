@@ -8,6 +8,7 @@
 #include "contour/same_height.hpp"
 #include "polygon/subtract.hpp"
 #include "scan/alongside.hpp"
+#include "scan/chosen_rings.hpp"
 #include "scan/occupied.hpp"
 
 #include <algorithm>
@@ -21,16 +22,6 @@
 namespace lamella {
 
 namespace {
-
-/// Returns the chosen rings of a layer, in their order.
-template <class Chosen>
-Layer rings_of(const Layer& layer, const Chosen& chosen) {
-    LayerBuilder builder;
-    for (std::size_t i = 0; i < layer.rings; ++i)
-        if (chosen(i))
-            builder.add_contour(layer.contour(i), true);
-    return builder.finish(layer.index, layer.z, layer.bottom, layer.top);
-}
 
 /// Returns for each ring of a layer whether it affects the difference to another layer. A ring does if it has
 /// no ring alongside in the other layer, or if it is closer than `reach` to such a ring of either layer.
@@ -109,7 +100,7 @@ Layer uncovered_area(const Layer& layer, std::span<const ScanLayer> neighbours, 
         for (std::size_t i = 0; i < layer.rings; ++i)
             chosen[i] = chosen[i] || counts[i];
     }
-    const Layer own = offset(rings_of(layer, [&](std::size_t i) { return chosen[i]; }),
+    const Layer own = offset(chosen_rings(layer, [&](std::size_t i) { return chosen[i]; }),
                              -narrowest / 2 * (1 - spread), {.limits = limits});
     if (own.rings == 0)
         return {};
@@ -122,7 +113,7 @@ Layer uncovered_area(const Layer& layer, std::span<const ScanLayer> neighbours, 
         for (std::size_t i = 0; i < layer.rings; ++i)
             if (neighbour.partners[i] != no_ring && !chosen[i])
                 left_out[neighbour.partners[i]] = true;
-        others.push_back(offset(rings_of(other, [&](std::size_t j) { return !left_out[j]; }),
+        others.push_back(offset(chosen_rings(other, [&](std::size_t j) { return !left_out[j]; }),
                                 narrowest / 2 * (1 + spread * static_cast<double>(neighbour.number) / count),
                                 {.limits = limits}));
         if (others.size() < most_at_once && d + 1 < different.size())

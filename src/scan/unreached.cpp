@@ -2,25 +2,26 @@
 
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
-#include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/nesting.hpp"
-#include "lamella/polygon/offset.hpp"
 
 #include "contour/box2.hpp"
-#include "scan/hatch.hpp"
+#include "scan/bare_sum.hpp"
+#include "scan/chosen_rings.hpp"
 #include "scan/hatch_lines.hpp"
 #include "scan/occupied.hpp"
+#include "scan/ring_side.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
-#include <iterator>
 #include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -28,200 +29,6 @@
 namespace lamella {
 
 namespace {
-
-/// Returns the distance beyond which no beam of these rules melts anything. Half of the width of the melt
-/// pool is `beam_offset`; the pools of hatches are larger, by up to the factor of 4 that is granted here.
-double farthest_reach(const ContourRule& contours, const ParameterSet& parameters) noexcept {
-    const double farthest = std::max(4 * contours.beam_offset, 2 * parameters.spot_mm);
-    return farthest > 0 ? farthest : std::numeric_limits<double>::infinity();
-}
-
-double rounded(double mm, const Rounding& rounding) noexcept {
-    if (rounding.single_precision)
-        mm = static_cast<double>(static_cast<float>(mm));
-    return rounding.step_mm > 0 ? std::nearbyint(mm / rounding.step_mm) * rounding.step_mm : mm;
-}
-
-Point2 rounded(const Point2& p, const Rounding& rounding) noexcept {
-    return {rounded(p.x, rounding), rounded(p.y, rounding)};
-}
-
-/// A side of a ring: its direction, of length 1, and its length.
-struct Side {
-    Side(const Point2& a, const Point2& b) noexcept : way{b.x - a.x, b.y - a.y} {
-        length = std::sqrt(way.x * way.x + way.y * way.y);
-        if (length > 0)
-            way = {way.x / length, way.y / length};
-    }
-
-    Point2 way;
-    double length;
-};
-
-double cross(const Point2& a, const Point2& b) noexcept {
-    return a.x * b.y - a.y * b.x;
-}
-double dot_product(const Point2& a, const Point2& b) noexcept {
-    return a.x * b.x + a.y * b.y;
-}
-
-/// Appends the piece that fills the gap between the strips beside two sides that meet at p.
-void add_corner(const Point2& p, const Side& before, const Side& after, double reach, Reached& reached) {
-    const double turn = cross(before.way, after.way);
-    const double cosine = dot_product(before.way, after.way);
-    if (turn == 0 && cosine > 0)
-        return;
-    const double by = turn > 0 ? -reach : reach; // the gap lies on the outer side of the turn
-    const auto beside = [&p, by](const Point2& way) {
-        return Point2{p.x - by * way.y, p.y + by * way.x};
-    };
-    const Point2 first = beside(before.way);
-    const Point2 last = beside(after.way);
-    // The tip of a mitre is at the distance of reach / cos(half of the turn) from p.
-    constexpr double longest = reached_mitre * (1 + OffsetCorners::mitre_tolerance);
-    const double half = std::sqrt(std::max(0.0, (1 + cosine) / 2));
-    const double further = half * longest >= 1
-                               ? std::sqrt(std::max(0.0, 1 - half * half)) / half
-                               : std::sqrt(std::max(0.0, 1 - half)) / std::sqrt(1 + half); // cut off
-    const double along = further * reach;
-    reached.corners.push_back({first,
-                               {first.x + along * before.way.x, first.y + along * before.way.y},
-                               {last.x - along * after.way.x, last.y - along * after.way.y},
-                               last});
-}
-
-/// Returns the rings of the layer that are among `wanted`.
-Layer rings_of(const Layer& layer, std::vector<std::uint32_t> wanted) {
-    std::sort(wanted.begin(), wanted.end());
-    LayerBuilder some;
-    for (const std::uint32_t ring : wanted)
-        some.add_contour(layer.contour(ring), true);
-    return some.finish(layer.index, layer.z, layer.bottom, layer.top);
-}
-
-std::vector<std::uint32_t> rings_of(const Polygon& body) {
-    std::vector<std::uint32_t> rings{body.outer};
-    rings.insert(rings.end(), body.holes.begin(), body.holes.end());
-    return rings;
-}
-
-/// The rings of an inset, which are found by their first points.
-class InsetRings {
-  public:
-    InsetRings(const Layer& inset, double by)
-        : inset_(inset), by_(by), tolerance_(by * 1e-5), taken_(inset.rings, false) {}
-
-    /// Returns whether the inset has the ring with its sides moved inwards, and takes it from the inset. No
-    /// corner may be sharp. Sides of rounded corners may be missing, where others meet before them.
-    [[nodiscard]] bool take(std::span<const Point2> ring) {
-        if (ring.size() < 3 || !move(ring))
-            return false;
-        const Box2 box = box_of(ring).grown(reached_mitre * by_);
-        std::size_t begin = 0; // rings in normal form are ordered by their first points
-        std::size_t count = inset_.rings;
-        while (count > 0) {
-            const std::size_t half = count / 2;
-            if (inset_.contour(begin + half).front().x < box.x0) {
-                begin += half + 1;
-                count -= half + 1;
-            } else {
-                count = half;
-            }
-        }
-        for (; begin < inset_.rings && inset_.contour(begin).front().x <= box.x1; ++begin)
-            if (!taken_[begin] && box.meets(Box2::of(inset_.contour(begin).front())) &&
-                is_moved(inset_.contour(begin)))
-                return taken_[begin] = true;
-        return false;
-    }
-    /// Returns the rings that were not taken.
-    [[nodiscard]] Layer others() const {
-        std::vector<std::uint32_t> others;
-        for (std::uint32_t i = 0; i < inset_.rings; ++i)
-            if (!taken_[i])
-                others.push_back(i);
-        return rings_of(inset_, std::move(others));
-    }
-    [[nodiscard]] bool all_taken() const {
-        return std::find(taken_.begin(), taken_.end(), false) == taken_.end();
-    }
-
-  private:
-    /// The line of a moved side: the points p with cross(way, p) = level.
-    struct MovedSide {
-        Point2 way;
-        double level;
-    };
-
-    bool move(std::span<const Point2> ring) {
-        sides_.clear();
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Side side(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1]);
-            if (!(side.length > 0))
-                return false;
-            sides_.push_back({side.way, cross(side.way, ring[i]) + by_});
-        }
-        return true;
-    }
-    [[nodiscard]] bool is_moved(std::span<const Point2> ring) const {
-        for (std::size_t first = 0; ring.size() <= sides_.size() && first < sides_.size(); ++first)
-            if (has(ring, 0, first) && follows(ring, first))
-                return true;
-        return false;
-    }
-    /// Returns whether side i of the ring lies on a moved side.
-    [[nodiscard]] bool has(std::span<const Point2> ring, std::size_t i, std::size_t moved) const {
-        const Point2& a = ring[i];
-        const Point2& b = ring[i + 1 == ring.size() ? 0 : i + 1];
-        const auto& [way, level] = sides_[moved];
-        return std::abs(cross(way, a) - level) <= tolerance_ &&
-               std::abs(cross(way, b) - level) <= tolerance_ && dot_product(way, {b.x - a.x, b.y - a.y}) > 0;
-    }
-    /// Returns whether the sides of the ring are those moved, in their order, if its side 0 is `first`.
-    [[nodiscard]] bool follows(std::span<const Point2> ring, std::size_t first) const {
-        const std::size_t all = sides_.size();
-        std::size_t before = first;
-        for (std::size_t i = 1; i <= ring.size(); ++i) {
-            std::size_t next = before + 1;
-            const auto here = [&] {
-                return i == ring.size() ? next == first + all : has(ring, i, next % all);
-            };
-            while (!here()) // the side is missing
-                if (!turns_left(next - 1, next) || ++next > first + all)
-                    return false;
-            if (!is_reached_corner(before, next))
-                return false;
-            before = next;
-        }
-        return true;
-    }
-    [[nodiscard]] bool turns_left(std::size_t side, std::size_t next) const {
-        constexpr double straight = -1e-6;
-        return cross(sides_[side % sides_.size()].way, sides_[next % sides_.size()].way) >= straight;
-    }
-    /// Returns whether the ring reaches the corner between the lines of two sides, and what the sides between
-    /// them leave of it.
-    [[nodiscard]] bool is_reached_corner(std::size_t side, std::size_t next) const {
-        constexpr double sharpest = -0.8660254; // the cosine of 180 - 30 degrees
-        const Point2& one = sides_[side % sides_.size()].way;
-        const Point2& other = sides_[next % sides_.size()].way;
-        if (next == side + 1)
-            return cross(one, other) < 0 || dot_product(one, other) > sharpest;
-        return turns_left(next - 1, next) && cross(one, other) >= 0 && dot_product(one, other) > sharpest;
-    }
-
-    const Layer& inset_;
-    double by_;
-    double tolerance_;
-    std::vector<bool> taken_;
-    std::vector<MovedSide> sides_; // of the ring that is looked for
-};
-
-/// A piece of a line.
-struct Piece {
-    double from;
-    double to;
-};
 
 /// The strip around a vector, in the frame of lines across it: all points within its reach.
 class Strip {
@@ -286,97 +93,15 @@ struct CornerPiece {
     }
 };
 
-/// Sums up pieces of lines: all of them in one area, and only large spots of them in another one. Pieces of
-/// neighbouring lines that overlap belong to the same spot.
-class BareSum {
-  public:
-    explicit BareSum(double largest_tip) : largest_tip_(largest_tip) {}
-
-    void add(double length) noexcept { sum_ += length; }
-    /// Adds a piece of a spot, after those of the lines before and those before it on its line.
-    void add_to_spot(std::size_t line, Piece piece) {
-        if (line != line_) {
-            end_line();
-            if (line != line_ + 1)
-                end_line(); // all spots have ended
-            line_ = line;
-        }
-        const auto spot = static_cast<std::uint32_t>(spots_.size());
-        spots_.push_back({spot, piece.to - piece.from});
-        while (next_ < before_.size() && before_[next_].piece.to < piece.from)
-            ++next_;
-        for (std::size_t i = next_; i < before_.size() && before_[i].piece.from <= piece.to; ++i)
-            join(before_[i].spot, spot);
-        here_.push_back({piece, spot});
-    }
-    [[nodiscard]] double sum() {
-        end_line();
-        end_line();
-        return sum_;
-    }
-
-  private:
-    struct InSpot {
-        Piece piece;
-        std::uint32_t spot;
-    };
-    struct Spot {
-        std::uint32_t parent; ///< itself, or a spot that it was joined to
-        double size;
-    };
-
-    std::uint32_t root(std::uint32_t spot) {
-        while (spots_[spot].parent != spot)
-            spot = spots_[spot].parent = spots_[spots_[spot].parent].parent;
-        return spot;
-    }
-    void join(std::uint32_t one, std::uint32_t other) {
-        one = root(one);
-        other = root(other);
-        if (one == other)
-            return;
-        spots_[other].parent = one;
-        spots_[one].size += spots_[other].size;
-    }
-    /// Makes the line the one before. Counts the spots that have no piece on it, and forgets them.
-    void end_line() {
-        std::vector<Spot> left;
-        for (InSpot& piece : here_) {
-            const std::uint32_t spot = root(piece.spot);
-            if (spots_[spot].size > 0) { // not yet moved to `left`
-                const auto number = static_cast<std::uint32_t>(left.size());
-                left.push_back({number, spots_[spot].size});
-                spots_[spot] = {spot, -static_cast<double>(number)};
-            }
-            piece.spot = static_cast<std::uint32_t>(-spots_[spot].size);
-        }
-        for (std::uint32_t spot = 0; spot < spots_.size(); ++spot)
-            if (spots_[spot].parent == spot && spots_[spot].size > largest_tip_)
-                sum_ += spots_[spot].size;
-        spots_ = std::move(left);
-        before_.swap(here_);
-        here_.clear();
-        next_ = 0;
-    }
-
-    double largest_tip_; ///< mm of lines
-    double sum_ = 0;
-    std::size_t line_ = 0;
-    std::vector<InSpot> before_; ///< on the line before
-    std::size_t next_ = 0;       ///< of these, the first one that further pieces may overlap
-    std::vector<InSpot> here_;
-    std::vector<Spot> spots_; ///< of both lines
-};
-
 /// The lines across an area, and what reaches their pieces.
 class Measured {
   public:
-    Measured(const Layer& positions, const Reached& reached, const MeasuringLines& how,
-             const WideMaterial& wide, const LayerBudget& budget)
-        : area_(std::max(0.0, measure(positions).area_mm2)), how_(how),
-          lines_(positions, how.angle, how.distance, 0, budget), budget_(budget.without(lines_.bytes())),
+    Measured(const Layer& area, const Reached& reached, const MeasuringLines& how, const WideMaterial& wide,
+             const LayerBudget& budget)
+        : area_(std::max(0.0, measure(area).area_mm2)), how_(how),
+          lines_(area, how.angle, how.distance, 0, budget), budget_(budget.without(lines_.bytes())),
           wide_(wide), sum_(wide.tip_mm2 / how.distance) {
-        find_near(positions, reached);
+        find_near(area, reached);
     }
 
     [[nodiscard]] double area() {
@@ -429,12 +154,10 @@ class Measured {
         bool way = false; ///< whether u ascends
     };
 
-    void find_near(const Layer& positions, const Reached& reached) {
-        const Box2 box = box_of(positions.points.span());
+    void find_near(const Layer& area, const Reached& reached) {
+        const Box2 box = box_of(area.points.span());
         rounding_ = box.largest_coordinate() * 0x1p-40;
-        Occupied occupied(positions); // most vectors are far from all rings
-        for (std::size_t i = 0; i < positions.rings; ++i)
-            occupied.add(box_of(positions.contour(i)));
+        Occupied occupied = Occupied::by_rings(area); // most vectors are far from all rings
         const auto in_frame = [this](const Point2& p) {
             return Point2{lines_.frame().along(p), lines_.frame().across(p)};
         };
@@ -492,7 +215,9 @@ class Measured {
             return near.shape.middle(v) - before.shape.middle(v);
         };
         // On a line that a vector crosses, it reaches at least its reach to either side.
-        const double most = before.shape.reach() + near.shape.reach();
+        const double most = 2 * near.shape.reach();
+        if (before.shape.reach() != near.shape.reach())
+            return;
         const double first = step(common.begin);
         const double last = step(common.end - 1);
         near.way = first > 0;
@@ -548,6 +273,7 @@ class Measured {
                 *end++ = piece;
         }
         void extend(const Piece& piece) noexcept {
+            assert(end != begin);
             end[-1] = {std::min(end[-1].from, piece.from), std::max(end[-1].to, piece.to)};
         }
     };
@@ -682,130 +408,7 @@ class Measured {
     std::uint64_t room_ = 0;            ///< number of them that fit
 };
 
-constexpr double rounded_slivers = 1 + 1e-5; // a factor of growth that leaves nothing of a wall but rounding
-
 } // namespace
-
-double contour_reach(const ContourRule& rule) noexcept {
-    const double reach = rule.count > 1 ? std::max(rule.beam_offset, rule.distance / 2) : rule.beam_offset;
-    return std::min(reach, farthest_reach(rule, rule.parameters));
-}
-
-double hatch_reach(const ContourRule& contours, const HatchRule& rule) noexcept {
-    return std::min(rule.distance, farthest_reach(contours, rule.parameters));
-}
-
-void Reached::add(const Layer& polylines, std::span<const Point2> lines, double reach,
-                  const Rounding& rounding) {
-    std::vector<Point2> line;
-    for (std::size_t i = 0; i < polylines.contours(); ++i) {
-        line.clear();
-        for (const Point2& p : polylines.contour(i))
-            if (const Point2 at = rounded(p, rounding); line.empty() || line.back() != at)
-                line.push_back(at);
-        const bool ring = polylines.closed(i);
-        while (ring && line.size() > 1 && line.front() == line.back())
-            line.pop_back();
-        for (std::size_t p = 1; p < line.size(); ++p)
-            strokes.push_back({line[p - 1], line[p], reach});
-        if (!ring || line.empty())
-            continue;
-        strokes.push_back({line.back(), line.front(), reach});
-        Side before(line.back(), line.front());
-        for (std::size_t p = 0; line.size() > 2 && p < line.size(); ++p) {
-            const Side after(line[p], line[p + 1 == line.size() ? 0 : p + 1]);
-            add_corner(line[p], before, after, reach, *this);
-            before = after;
-        }
-    }
-    for (std::size_t i = 0; i + 1 < lines.size(); i += 2)
-        strokes.push_back({rounded(lines[i], rounding), rounded(lines[i + 1], rounding), reach});
-}
-
-Reached Reached::near(const Layer& positions) const {
-    Occupied occupied(positions);
-    for (std::size_t i = 0; i < positions.rings; ++i)
-        occupied.add(box_of(positions.contour(i)));
-    Reached near;
-    std::copy_if(strokes.begin(), strokes.end(), std::back_inserter(near.strokes), [&](const Stroke& stroke) {
-        return occupied.any_within(Box2::of(stroke.from, stroke.to).grown(stroke.reach));
-    });
-    std::copy_if(corners.begin(), corners.end(), std::back_inserter(near.corners),
-                 [&](const std::array<Point2, 4>& corner) { return occupied.any_within(box_of(corner)); });
-    return near;
-}
-
-FillDepths::FillDepths(const ScanStrategy& strategy) {
-    const ContourRule& contours = strategy.contours;
-    const double reach = contour_reach(contours);
-    least_reach = contours.count > 0 && reach > 0 ? reach : std::numeric_limits<double>::infinity();
-    dense = contours.count > 0 && (contours.count == 1 || contours.distance <= 2 * reach);
-    double shortest = 0;
-    double most = 0;
-    const auto add = [&](const HatchRule& rule) {
-        const double hatch = hatch_reach(contours, rule);
-        filled = std::max(filled, hatch_depth(contours, rule));
-        half_width = std::max(half_width, surely_hatched(rule) / 2);
-        least_reach = std::min(least_reach, hatch);
-        shortest = std::max(shortest, rule.shortest);
-        most = std::max(most, hatch);
-        dense = dense && rule.border <= reach && hatch >= rule.distance;
-    };
-    add(strategy.hatch);
-    for (const SkinRule* const skin : {&strategy.upskin, &strategy.downskin})
-        if (skin->layers > 0)
-            add(skin->hatch);
-    // The largest tip of a corner of 30 degrees in which all lines are too short has 0.93 times the square of
-    // the shortest line.
-    tip_mm2 = shortest * shortest + most * most / 2;
-}
-
-Layer grown_to_corners(const Layer& inset, double by, const LayerLimits& limits) {
-    return offset(inset, by * rounded_slivers, {.corners = {.mitre_limit = reached_mitre}, .limits = limits});
-}
-
-Layer wide_points(const Layer& material, double depth, const FillDepths& depths, const LayerLimits& limits) {
-    const double in = std::max(0.0, depths.filled - depth) + depths.half_width;
-    return grown_to_corners(offset(material, -in, {.limits = limits}), depths.half_width, limits);
-}
-
-BodiesByWidth bodies_by_width(const Layer& material, const Layer& inset, double by) {
-    InsetRings rings(inset, by);
-    std::vector<bool> moved(material.rings, false);
-    for (std::size_t i = 0; i < material.rings; ++i)
-        moved[i] = rings.take(material.contour(i));
-    const bool all = std::find(moved.begin(), moved.end(), false) == moved.end();
-    if (all && rings.all_taken())
-        return {.narrow = {}, .wide = material};
-    std::vector<std::uint32_t> narrow;
-    std::vector<std::uint32_t> wide;
-    for (const Polygon& body : polygons(nesting(material))) {
-        const std::vector<std::uint32_t> own = rings_of(body);
-        const bool is_narrow =
-            all || std::any_of(own.begin(), own.end(), [&](std::uint32_t ring) { return !moved[ring]; });
-        std::vector<std::uint32_t>& some = is_narrow ? narrow : wide;
-        some.insert(some.end(), own.begin(), own.end());
-    }
-    return {.narrow = rings_of(material, std::move(narrow)), .wide = rings_of(material, std::move(wide))};
-}
-
-Layer inset_of_narrow(const BodiesByWidth& bodies, const Layer& inset, double by, const LayerLimits& limits) {
-    if (bodies.wide.rings == 0)
-        return inset;
-    InsetRings rings(inset, by);
-    for (std::size_t i = 0; i < bodies.wide.rings; ++i)
-        if (!rings.take(bodies.wide.contour(i)))
-            return offset(bodies.narrow, -by, {.limits = limits});
-    return rings.others();
-}
-
-Layer narrow_points(const Layer& material, const Layer& inset, double by, const LayerLimits& limits) {
-    if (!(by > 0) || material.rings == 0)
-        return {};
-    if (inset.rings == 0)
-        return material;
-    return combine(material, grown_to_corners(inset, by, limits), BooleanOperation::subtract, limits);
-}
 
 // Strips beside sides and lines are at least 7.5 degrees from the best of these directions, unless there are
 // sides in all directions.
@@ -837,24 +440,22 @@ MeasuringLines::MeasuringLines(const Layer& material, const Reached& reached, do
                          (box.width() + box.height()) / most_lines, box.largest_coordinate() * 0x1p-40});
 }
 
-double unreached_area(const Layer& positions, const Reached& reached, const MeasuringLines& lines,
+double unreached_area(const Layer& area, const Reached& reached, const MeasuringLines& lines,
                       const WideMaterial& wide, const LayerBudget& budget) {
-    return positions.rings == 0 ? 0 : Measured(positions, reached, lines, wide, budget).area();
+    return area.rings == 0 ? 0 : Measured(area, reached, lines, wide, budget).area();
 }
 
-Layer bare_points(const Layer& positions, const Reached& reached, const MeasuringLines& lines,
-                  double least_reach, const LayerBudget& budget) {
+Layer bare_bodies(const Layer& area, const Reached& reached, const MeasuringLines& lines, double least_reach,
+                  const LayerBudget& budget) {
     const double accepted = negligible(least_reach);
-    if (!(unreached_area(positions, reached, lines, {}, budget) > accepted))
+    if (!(unreached_area(area, reached, lines, {}, budget) > accepted))
         return {};
-    const Reached near = reached.near(positions);
-    std::vector<std::uint32_t> bare;
-    for (const Polygon& body : polygons(nesting(positions))) {
-        const std::vector<std::uint32_t> own = rings_of(body);
-        if (unreached_area(rings_of(positions, own), near, lines, {}, budget) > accepted)
-            bare.insert(bare.end(), own.begin(), own.end());
-    }
-    return normal_form(rings_of(positions, std::move(bare)));
+    const Reached near = reached.near(area);
+    std::vector<bool> bare(area.rings, false);
+    for (const Polygon& body : polygons(nesting(area)))
+        if (unreached_area(rings_of(area, body), near, lines, {}, budget) > accepted)
+            choose(body, bare);
+    return normal_form(chosen_rings(area, [&](std::size_t i) { return bare[i]; }));
 }
 
 } // namespace lamella

@@ -268,11 +268,11 @@ TEST(Hatch, CellsMeetWithoutAGapWhateverTheirOverlap) {
                 rule.overlap = overlap;
                 rule.angle_degrees = random.real(0, 90);
                 const std::vector<Vector> vectors = vectors_of(hatch(square, rule, 1));
-                int bare_points = 0;
+                int bare_bodies = 0;
                 for (int i = 0; i < rounds_within_reason(500); ++i) // far from the edge of the material
-                    bare_points +=
+                    bare_bodies +=
                         is_exposed(vectors, {random.real(-3.7, 3.7), random.real(-3.7, 3.7)}, 0.1) ? 0 : 1;
-                EXPECT_EQ(bare_points, 0) << hatch_pattern_name(pattern) << ' ' << cell << ' ' << overlap;
+                EXPECT_EQ(bare_bodies, 0) << hatch_pattern_name(pattern) << ' ' << cell << ' ' << overlap;
             }
 }
 

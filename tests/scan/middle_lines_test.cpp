@@ -6,6 +6,7 @@
 #include "fixtures/rounds.hpp"
 #include "polygon/edge_tree.hpp"
 #include "scan/middle_lines.hpp"
+#include "scan/narrow_bodies.hpp"
 #include "scan/turned_layer.hpp"
 #include "scan/unreached.hpp"
 
@@ -174,7 +175,7 @@ TEST(MiddleLines, OfFinsOnABodyAreOfTheFinsAlone) {
                                       {6, 13},
                                       {6, 10},
                                       {0, 10}}});
-    const Layer fins = narrow_points(body, offset(body, -0.05), 0.05);
+    const Layer fins = narrow_area(body, offset(body, -0.05), 0.05);
     EXPECT_NEAR(measure(fins).area_mm2, 0.08 * 7, 1e-3);
     const Lines lines = lines_of(fins);
     ASSERT_EQ(lines.size(), 2U);

@@ -10,6 +10,7 @@
 #include "fixtures/rounds.hpp"
 #include "polygon/edge_tree.hpp"
 #include "scan/hatch.hpp"
+#include "scan/narrow_bodies.hpp"
 #include "scan/random_layers.hpp"
 #include "scan/turned_layer.hpp"
 #include "scan/unreached.hpp"
@@ -112,7 +113,7 @@ double measured_everywhere(const Layer& material, const ScanVectors& vectors, co
     const FillDepths depths(strategy);
     return unreached_area(
         material, reached, MeasuringLines(material, reached, depths.least_reach),
-        {.points = [&] { return wide_points(material, 0, depths); }, .tip_mm2 = depths.tip_mm2});
+        {.points = [&] { return wide_area(material, 0, depths); }, .tip_mm2 = depths.tip_mm2});
 }
 
 TEST(UnreachedShapes, HaveAllTheirBareMaterialWhereScanLooksForIt) {

@@ -1,7 +1,5 @@
 #include "lamella/contour/measure.hpp"
 #include "lamella/contour/normal_form.hpp"
-#include "lamella/polygon/boolean.hpp"
-#include "lamella/polygon/offset.hpp"
 
 #include "fixtures/layers.hpp"
 #include "fixtures/rounds.hpp"
@@ -16,7 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
+#include <utility>
 #include <vector>
 
 namespace lamella::unreached_cases {
@@ -27,8 +25,6 @@ using test::layer_of;
 using test::normal_layer;
 using test::Random;
 using test::rectangle;
-using test::regular_polygon;
-using test::reversed;
 using test::rounds_within_reason;
 using test::turned;
 
@@ -36,30 +32,6 @@ using test::turned;
 double bare_area(const Layer& layer, const std::vector<Stroke>& strokes, double reach = 0.1) {
     const Reached reached{.strokes = strokes, .corners = {}};
     return unreached_area(layer, reached, MeasuringLines(layer, reached, reach));
-}
-
-Layer narrow_bodies(const Layer& layer) {
-    return bodies_by_width(layer, offset(layer, -0.15), 0.15).narrow;
-}
-
-TEST(BodiesByWidth, AreNoneThatAreNarrowWhereAllIsWide) {
-    for (const Contour& ring : {rectangle(0, 0, 10, 10), regular_polygon(300, 5), regular_polygon(5, 2)})
-        EXPECT_EQ(narrow_bodies(normal_layer({ring})).rings, 0U);
-    const Layer plate = normal_layer({rectangle(0, 0, 10, 10), reversed(regular_polygon(40, 1))});
-    EXPECT_EQ(narrow_bodies(plate).rings, 0U);
-}
-
-// A sharp corner has sides parallel to those of its inset, too.
-TEST(BodiesByWidth, AreNarrowWithThinWallsOrSharpCorners) {
-    const Contour plate = rectangle(0, 0, 10, 10);
-    const Contour wall = rectangle(20, 0, 20.29, 10);
-    const Contour wedge{{30, 0}, {40, 0}, {30, 5}};
-    const Layer bodies = narrow_bodies(normal_layer({plate, wall, wedge, reversed(rectangle(2, 2, 4, 4))}));
-    ASSERT_EQ(bodies.rings, 2U);
-    EXPECT_EQ(bodies.contour(0).front().x, 20);
-    EXPECT_EQ(bodies.contour(1).front().x, 30);
-    const Layer frame = normal_layer({plate, reversed(rectangle(0.25, 0.25, 9.75, 9.75))});
-    EXPECT_EQ(narrow_bodies(frame).rings, 2U) << "the moved rings cross each other";
 }
 
 TEST(UnreachedArea, IsExactWhereNothingAndWhereAllIsReached) {
@@ -147,7 +119,41 @@ TEST(UnreachedArea, OfWideMaterialCountsInLargeSpotsOnly) {
                 0.01);
 }
 
-TEST(BarePoints, AreTheBodiesThatStrokesLeaveBare) {
+// Vectors that follow one another are measured together, others one by one.
+TEST(UnreachedArea, DoesNotDependOnTheOrderOfVectors) {
+    Random random(52);
+    const Layer layer = normal_layer({rectangle(0, 0, 10, 10)});
+    for (int round = 0; round < rounds_within_reason(60); ++round) {
+        // Hatch lines to and fro, of strokes that also turn back, jump and differ in their reach, some of it
+        // 0.
+        std::vector<Stroke> strokes;
+        double x = random.real(-1, 8);
+        double step = 0.1;
+        for (int i = 0; i < 120; ++i) {
+            if (random.integer(0, 9) == 0)
+                step = random.real(-0.3, 0.3);
+            if (random.integer(0, 29) == 0)
+                x = random.real(-1, 10);
+            x += step;
+            const Point2 low{x + random.real(0, 0.2), random.real(-1, 4)};
+            const Point2 high{x + random.real(0, 2), random.real(5, 11)};
+            const double reach = random.integer(0, 3) > 0 ? 0.1 : std::max(0.0, random.real(-0.2, 0.2));
+            strokes.push_back(i % 2 == 0 ? Stroke{low, high, reach} : Stroke{high, low, reach});
+        }
+        const Reached reached{.strokes = strokes, .corners = {}};
+        const MeasuringLines lines(layer, reached, 0.1);
+        const double area = unreached_area(layer, reached, lines);
+        for (int again = 0; again < 3; ++again) {
+            for (std::size_t i = strokes.size() - 1; i > 0; --i)
+                std::swap(strokes[i],
+                          strokes[static_cast<std::size_t>(random.integer(0, static_cast<std::int64_t>(i)))]);
+            EXPECT_NEAR(unreached_area(layer, {.strokes = strokes, .corners = {}}, lines), area, 1e-9)
+                << round;
+        }
+    }
+}
+
+TEST(BareBodies, AreTheBodiesThatStrokesLeaveBare) {
     // A row of squares, of which each second one is reached.
     std::vector<Contour> squares;
     Reached reached;
@@ -157,87 +163,11 @@ TEST(BarePoints, AreTheBodiesThatStrokesLeaveBare) {
             reached.strokes.push_back({{3.0 * i - 1, 0.5}, {3.0 * i + 2, 0.5}, 0.75});
     }
     const Layer layer = normal_layer(squares);
-    const Layer bare = bare_points(layer, reached, MeasuringLines(layer, reached, 0.75), 0.75);
+    const Layer bare = bare_bodies(layer, reached, MeasuringLines(layer, reached, 0.75), 0.75);
     ASSERT_EQ(bare.rings, 5U);
     EXPECT_TRUE(in_normal_form(bare));
     for (std::size_t i = 0; i < bare.rings; ++i)
         EXPECT_EQ(bare.contour(i).front().x, 3.0 * (2 * static_cast<double>(i) + 1));
-}
-
-TEST(NarrowPoints, AreWhereAGrownInsetDoesNotReach) {
-    // A bar between two squares.
-    const double thick = 0.08;
-    const Layer layer = normal_layer({{{0, 0},
-                                       {2, 0},
-                                       {2, 1},
-                                       {4, 1},
-                                       {4, 0},
-                                       {6, 0},
-                                       {6, 2},
-                                       {4, 2},
-                                       {4, 1 + thick},
-                                       {2, 1 + thick},
-                                       {2, 2},
-                                       {0, 2}}});
-    const Layer narrow = narrow_points(layer, offset(layer, -0.05), 0.05);
-    ASSERT_EQ(narrow.rings, 1U);
-    EXPECT_NEAR(measure(narrow).area_mm2, 2 * thick, 0.01);
-    for (const Point2& p : narrow.points) {
-        EXPECT_GE(p.x, 1.9);
-        EXPECT_LE(p.x, 4.1);
-    }
-}
-
-TEST(Reached, IsWhatTheVectorsOfALayerReach) {
-    const Layer lines = layer_of({rectangle(0, 0, 4, 4)}, {{{1, 1}, {2, 2}, {3, 1}}});
-    const std::vector<Point2> hatches{{5, 5}, {6, 6}, {7, 7}, {8, 8}};
-    Reached reached;
-    reached.add(lines, hatches, 0.25);
-    ASSERT_EQ(reached.strokes.size(), 4U + 2 + 2);
-    for (const Stroke& stroke : reached.strokes)
-        EXPECT_EQ(stroke.reach, 0.25);
-    EXPECT_TRUE(std::any_of(reached.strokes.begin(), reached.strokes.end(), [](const Stroke& stroke) {
-        return stroke.from == Point2{0, 4} && stroke.to == Point2{0, 0};
-    })) << "rings are closed";
-    EXPECT_FALSE(std::any_of(reached.strokes.begin(), reached.strokes.end(), [](const Stroke& stroke) {
-        return stroke.from == Point2{3, 1};
-    })) << "chains are not";
-    EXPECT_EQ(reached.corners.size(), 4U);
-}
-
-// A ring reaches what `offset` adds to it, on both sides.
-TEST(Reached, IncludesTheCornersOfRings) {
-    Random random(713);
-    for (int round = 0; round < rounds_within_reason(40); ++round) {
-        const double angle = random.real(10, 170);
-        const double degrees = random.real(0, 360);
-        const Layer corner = turned(normal_layer({{{0, 0},
-                                                   {5, 0},
-                                                   {5 * std::cos(angle * std::numbers::pi / 180),
-                                                    5 * std::sin(angle * std::numbers::pi / 180)}}}),
-                                    degrees, {1, 2});
-        const Layer grown = offset(corner, 0.2, {.corners = {.mitre_limit = reached_mitre}});
-        Reached reached;
-        reached.add(corner, {}, 0.2);
-        const Layer band = combine(grown, corner, BooleanOperation::subtract);
-        const MeasuringLines lines(grown, reached, 0.1);
-        EXPECT_LT(unreached_area(band, reached, lines), 1e-9) << angle;
-        const Layer beyond = combine(offset(corner, 1), grown, BooleanOperation::subtract);
-        EXPECT_NEAR(unreached_area(beyond, reached, lines), measure(beyond).area_mm2, 1e-6) << angle;
-    }
-}
-
-TEST(Reached, IsThatOfTheRoundedVectors) {
-    Reached reached;
-    reached.add(layer_of({{{0.004, 0}, {1, 0}, {1, 1.006}}}), std::vector<Point2>{{0.011, 0.019}, {2, 2}},
-                0.1, {.step_mm = 0.01});
-    EXPECT_TRUE(std::all_of(reached.strokes.begin(), reached.strokes.end(), [](const Stroke& stroke) {
-        const auto whole = [](double mm) {
-            return std::abs(mm * 100 - std::round(mm * 100)) < 1e-9;
-        };
-        return whole(stroke.from.x) && whole(stroke.from.y) && whole(stroke.to.x) && whole(stroke.to.y);
-    }));
-    EXPECT_EQ(reached.strokes.back().from, (Point2{0.01, 0.02}));
 }
 
 } // namespace

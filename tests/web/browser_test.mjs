@@ -287,9 +287,11 @@ test('the viewer keeps height, view and look from run to run, and forgets where 
   const after = await stateOf();
   assert.ok(Math.abs(after.z - before.z) <= 0.125, `z = ${after.z} mm`);
   assert.deepEqual({ ...after, z: 0 }, { ...before, z: 0 });
+  const mesh = page.locator('#viewer[title="The mesh and its defects"]');
   await page.getByRole('button', { name: 'Diagnosis of the mesh' }).click();
-  await page.frameLocator('#viewer').locator('canvas[data-ready]').first().waitFor();
+  await mesh.waitFor();
   await page.locator('#views [data-view=layers]').click();
+  await mesh.waitFor({ state: 'detached' });
   await page.frameLocator('#viewer').locator('canvas[data-layer]').first().waitFor();
   assert.deepEqual(await stateOf(), after);
   await page.locator('#body').selectOption('box');
@@ -298,6 +300,18 @@ test('the viewer keeps height, view and look from run to run, and forgets where 
   assert.ok(other.z > 4, `z = ${other.z} mm`);
   assert.equal(other.theme, before.theme);
   assert.deepEqual(complaints, []);
+  await close();
+});
+
+test('whoever goes back to the layers while the mesh is diagnosed stays there', async () => {
+  const { page, close } = await open('#layerHeight=2&body=head');
+  await sliced(page);
+  await layersOf(page);
+  await page.getByRole('button', { name: 'Diagnosis of the mesh' }).click();
+  await page.locator('#views [data-view=layers]').click();
+  await page.locator('#cancel').waitFor({ state: 'hidden' });
+  await layersOf(page);
+  assert.equal(await page.locator('#viewer').getAttribute('title'), 'Layers');
   await close();
 });
 

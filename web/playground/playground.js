@@ -51,6 +51,7 @@ let strategy = null; // {name, text} of a file
 let pages = {}; // addresses of the pages of layers and mesh
 let abort = null; // of the call in progress
 let turn = 0; // of the last slicing: an older one shows nothing
+let meshIsWanted = false; // rather than layers
 let done = false; // what is seen is of the settings
 
 const strategyFile = 'strategy.toml';
@@ -370,7 +371,9 @@ function unusedName(name, files) {
 const takeBody = (body) =>
   take(async (calls) => (await run(['make', body, '-o', `${body}.stl`, ...words(smaller[body] ?? {})], {}, calls)).files);
 
+/** Diagnoses the mesh and shows it, unless somebody goes back to the layers meanwhile. */
 async function showMesh() {
+  meshIsWanted = true;
   await attempt(async (calls) => {
     if (!pages.mesh) {
       const unit = options().unit;
@@ -378,7 +381,8 @@ async function showMesh() {
       keepPage('mesh', files['mesh.html']);
       showWarnings(warnings);
     }
-    if (await showPage('mesh')) $('status').textContent = 'The mesh with its shells and defects.';
+    if (!meshIsWanted) $('status').textContent = '';
+    else if (await showPage('mesh')) $('status').textContent = 'The mesh with its shells and defects.';
   });
 }
 
@@ -488,8 +492,11 @@ $('results').addEventListener('click', ({ target }) => {
   if (target.dataset.copy === 'link') copy(link(), target);
 });
 $('views').addEventListener('click', ({ target }) => {
-  if (target.dataset.view === 'layers') showPage('layers');
-  else if (target.dataset.view === 'mesh') showMesh();
+  if (target.dataset.view === 'layers') {
+    meshIsWanted = false;
+    showPage('layers');
+  }
+  if (target.dataset.view === 'mesh') showMesh();
 });
 $('panes').addEventListener('click', ({ target }) => target.dataset.pane && showPane(target.dataset.pane));
 for (const kind of ['dragover', 'dragleave', 'drop'])
