@@ -68,11 +68,11 @@ packages-ci:
 ci-asan: packages-ci
 	cmake --preset asan-ubsan
 	cmake --build build-asan --target lamella_app
-	$(call suites,build-asan,container read slicing polygon fuzz,processor input)
+	$(call suites,build-asan,container read fuzz,processor input)
 
 ci-tsan: packages-ci
 	cmake --preset tsan
-	$(call suites,build-tsan,slicing read write pipeline)
+	$(call suites,build-tsan,slicing pipeline)
 
 # Optimised less, since that compiles in half the time. The output is compared with that of build/lamella.
 ci-windows: packages-windows

@@ -1,6 +1,7 @@
 // Every slice format that is read: what is written comes back, at the resolution of the format; and no bytes
 // of it do more harm than an error.
 
+#include "fixtures/rounds.hpp"
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
@@ -329,7 +330,7 @@ void expect_harmless(std::string_view bytes) {
 TEST(SliceFormats, AreTheSameWhereLayersAreParsedWhenTheyAreNeeded) {
     for (const Resolution& format : readable()) {
         const std::string bytes = written(format.format, random_parts(9, format.parts ? 3 : 1, 400));
-        for (const unsigned threads : {1U, 2U, 3U, 7U, 16U})
+        for (const unsigned threads : test::thread_counts())
             EXPECT_TRUE(expect_same_stream(bytes, threads)) << format.format;
     }
 }

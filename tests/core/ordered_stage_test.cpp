@@ -4,6 +4,7 @@
 
 #include "core/ordered_stage.hpp"
 #include "fixtures/random.hpp"
+#include "fixtures/rounds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -100,7 +101,7 @@ TEST(OrderedStage, RunsTheOrderedPartsOneAtATimeUnderManyThreads) {
 }
 
 TEST(OrderedStage, RunsEachCompletionOnceAfterItsCommit) {
-    for (const unsigned workers : {1U, 2U, 3U, 7U, 16U}) {
+    for (const unsigned workers : test::thread_counts()) {
         constexpr std::uint32_t planes = 300;
         std::vector<std::atomic<int>> runs(planes);
         std::atomic<std::uint32_t> committed{0};

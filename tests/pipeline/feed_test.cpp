@@ -191,7 +191,7 @@ TEST_F(FeedOfOneFile, StreamsItsTrianglesWithTheFiguresOfTheMesh) {
     const Plate whole = load_plate(job_.inputs);
     const Plan plan = plan_uniform(whole.box.min.z, whole.box.max.z, {.layer_height = 0.7});
     const LayerStack expected = slice(whole, plan);
-    for (const unsigned threads : {1U, 2U, 3U, 7U, 16U}) {
+    for (const unsigned threads : test::thread_counts()) {
         const Execution execution{.threads = threads};
         Feed feed(job_, engines().front(), alone(), execution);
         EXPECT_EQ(feed.meshes(), nullptr);

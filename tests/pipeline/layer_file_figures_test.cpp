@@ -2,6 +2,7 @@
 
 #include "fixtures/expect_error.hpp"
 #include "fixtures/layers.hpp"
+#include "fixtures/rounds.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +59,7 @@ TEST(LayerFileFigures, AreSumsOfTheLayers) {
 TEST(LayerFileFigures, AreTheSameForAnyNumberOfThreadsAndIfLayersAreNotInMemory) {
     const FileFigures expected = measure(read(true, LayersKept::all), {.threads = 1});
     for (const LayersKept kept : {LayersKept::all, LayersKept::none})
-        for (const unsigned threads : {1U, 2U, 3U, 7U, 16U}) {
+        for (const unsigned threads : test::thread_counts()) {
             const LayerFile file = read(true, kept);
             ASSERT_EQ(file.stream != nullptr, kept == LayersKept::none);
             const FileFigures found = measure(file, {.threads = threads});

@@ -4,6 +4,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/rounds.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -74,7 +75,7 @@ TEST(LayerFileSteps, GiveTheSameIfLayersAreNotInMemory) {
          {LayerSteps{.fill = FillRule::nonzero}, LayerSteps{.offset_mm = -0.05},
           LayerSteps{.offset_mm = 0.1, .simplify_mm = 0.01}, LayerSteps{.min_area_mm2 = 1e6}, LayerSteps{}}) {
         const SteppedFile expected = take_steps(steps, file_of(LayersKept::all));
-        for (const unsigned threads : {1U, 2U, 3U, 7U, 16U})
+        for (const unsigned threads : test::thread_counts())
             expect_same(take_steps(steps, file_of(LayersKept::none), {.threads = threads}), expected);
     }
 }

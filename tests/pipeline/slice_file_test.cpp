@@ -85,7 +85,7 @@ TEST_F(Processes, WriteTheBytesOfAMeshInMemoryIfTheySliceWhileTheyRead) {
         job.output = path("part.cli");
         const FileResult expected = slice_file(job, load_plate(job.inputs));
         const std::string bytes = content("part.cli");
-        for (const unsigned threads : {1U, 2U, 3U, 7U, 16U}) {
+        for (const unsigned threads : test::thread_counts()) {
             test::expect_same(slice_file(job, {.threads = threads}), expected);
             EXPECT_EQ(content("part.cli"), bytes);
         }

@@ -5,6 +5,7 @@
 #include "lamella/read/layer_file.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/rounds.hpp"
 #include "read/gzip.hpp"
 #include "read/layer_assembly.hpp"
 #include "read/layer_pieces.hpp"
@@ -136,7 +137,7 @@ TEST(LayerFile, WhoseLayersAreNotInMemoryHasTheSamePlanes) {
         std::vector<std::uint64_t> hashes;
         for (std::size_t i = 0; i < held.planes().size(); ++i)
             hashes.push_back(content_hash(held.plane(i)));
-        for (const unsigned threads : {1U, 2U, 3U, 7U, 16U}) {
+        for (const unsigned threads : test::thread_counts()) {
             const LayerFile file =
                 read_layers(bytes, "a.cli", {.layers = LayersKept::none}, {.threads = threads});
             ASSERT_TRUE(file.stream);

@@ -188,7 +188,7 @@ std::string without_skimming(std::string text, std::size_t body) {
 
 void expect_same_outcome(const std::string& text, std::size_t body, int round) {
     const std::string expected = outcome(without_skimming(text, body), 1);
-    for (const unsigned threads : {1U, 2U, 3U, 7U, 16U})
+    for (const unsigned threads : test::thread_counts())
         ASSERT_EQ(outcome(text, threads), expected) << threads << " threads, round " << round;
 }
 

@@ -4,6 +4,7 @@
 #include "even_planes.hpp"
 #include "expect_layers.hpp"
 #include "fixtures/random.hpp"
+#include "fixtures/rounds.hpp"
 #include "fixtures/solids.hpp"
 #include "parts/shapes.hpp"
 #include "slicing/triangle_stream.hpp"
@@ -80,7 +81,7 @@ TEST(TriangleStream, GivesTheLayersOfTheMeshForAnyChunksAndThreads) {
         const Box3 box = bounding_box(soup);
         const Plan plan = test::even_planes(box.min.z, box.max.z, 70);
         const LayerStack expected = slice(soup, plan);
-        for (const unsigned threads : {1U, 2U, 3U, 7U, 16U})
+        for (const unsigned threads : test::thread_counts())
             for (const std::size_t size : {97U, 4096U, 1U << 20}) {
                 SCOPED_TRACE(testing::Message() << threads << " threads, chunks of " << size);
                 LayerStack layers;

@@ -1,6 +1,7 @@
 #include "lamella/write/layer_writer.hpp"
 
 #include "fixtures/expect_error.hpp"
+#include "fixtures/rounds.hpp"
 #include "plain_formats.hpp"
 #include "sample_layers.hpp"
 #include "temporary_folder.hpp"
@@ -97,7 +98,7 @@ TEST(LayerWriter, GivesTheSameBytesForAnyNumberOfThreads) {
     for (const LayerFormat& format : layer_formats()) {
         const TemporaryFolder folder;
         std::string expected;
-        for (const unsigned threads : {1U, 2U, 3U, 7U, 16U}) {
+        for (const unsigned threads : test::thread_counts()) {
             const std::string path = folder.file(std::to_string(threads));
             std::filesystem::create_directory(path);
             const std::string output = path + "/part"; // formats name layers after their file
