@@ -67,7 +67,7 @@ packages-ci:
 
 ci-asan: packages-ci
 	cmake --preset asan-ubsan
-	cmake --build build-asan --target lamella_app
+	cmake --build build-asan --target lamella_app lamella_processor_test
 	$(call suites,build-asan,container read fuzz,processor input)
 
 ci-tsan: packages-ci

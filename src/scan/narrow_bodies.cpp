@@ -68,7 +68,7 @@ class InsetRings {
     bool move(std::span<const Point2> ring) {
         sides_.clear();
         for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Side side(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1]);
+            const RingSide side(ring[i], ring[i + 1 == ring.size() ? 0 : i + 1]);
             if (!(side.length > 0))
                 return false;
             sides_.push_back({side.way, cross(side.way, ring[i]) + by_});

@@ -34,7 +34,8 @@ Point2 rounded(const Point2& p, const Rounding& rounding) noexcept {
 }
 
 /// Appends the piece that fills the gap between the strips beside two sides that meet at p.
-void add_corner(const Point2& p, const Side& before, const Side& after, double reach, Reached& reached) {
+void add_corner(const Point2& p, const RingSide& before, const RingSide& after, double reach,
+                Reached& reached) {
     const double turn = cross(before.way, after.way);
     const double cosine = dot_product(before.way, after.way);
     if (turn == 0 && cosine > 0)
@@ -85,9 +86,9 @@ void Reached::add(const Layer& polylines, std::span<const Point2> lines, double 
         if (!ring || line.empty())
             continue;
         strokes.push_back({line.back(), line.front(), reach});
-        Side before(line.back(), line.front());
+        RingSide before(line.back(), line.front());
         for (std::size_t p = 0; line.size() > 2 && p < line.size(); ++p) {
-            const Side after(line[p], line[p + 1 == line.size() ? 0 : p + 1]);
+            const RingSide after(line[p], line[p + 1 == line.size() ? 0 : p + 1]);
             add_corner(line[p], before, after, reach, *this);
             before = after;
         }

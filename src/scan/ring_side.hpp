@@ -9,8 +9,8 @@
 namespace lamella {
 
 /// A side of a ring: its direction, of length 1, and its length.
-struct Side {
-    Side(const Point2& a, const Point2& b) noexcept : way{b.x - a.x, b.y - a.y} {
+struct RingSide {
+    RingSide(const Point2& a, const Point2& b) noexcept : way{b.x - a.x, b.y - a.y} {
         length = std::sqrt(way.x * way.x + way.y * way.y);
         if (length > 0)
             way = {way.x / length, way.y / length};

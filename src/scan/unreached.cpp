@@ -420,7 +420,7 @@ MeasuringLines::MeasuringLines(const Layer& material, const Reached& reached, do
         angles[i] = cos_sin_degrees(27.18 + 15.0 * static_cast<double>(i));
     std::array<double, directions> lengths{};
     const auto add = [&](const Point2& a, const Point2& b) {
-        const Side side(a, b);
+        const RingSide side(a, b);
         for (std::size_t i = 0; i < directions; ++i)
             if (std::abs(side.way.x * angles[i].sin - side.way.y * angles[i].cos) < near)
                 lengths[i] += side.length;

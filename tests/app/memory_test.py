@@ -313,7 +313,7 @@ class Memory(ProgramTest):
 
     def test_what_a_file_has_at_its_end_does_not_wait_in_memory(self):
         self.succeed("make", "box", "--size", "60,60,10", "-o", "box.stl")
-        hatched = self.slice("box.stl", "--scan", "--layer-height", 0.025, "-o", "box.npz")
+        hatched = self.slice("box.stl", "--scan", "--layer-height", 0.025, "--threads", 2, "-o", "box.npz")
         self.assertGreater(self.path("box.npz").stat().st_size, 110e6)
         self.assertLess(hatched["peak_rss_bytes"], 90e6)
         self.succeed("make", "sheet", "--holes", 25, "-o", "sheet.stl")
