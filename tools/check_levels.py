@@ -48,7 +48,7 @@ THIRD_PARTY = {
     "expat.h": "src/container/xml.cpp",
     "fast_float": "src/container/parse_number.cpp",
     "libdeflate.h": "src/container/inflate.cpp",
-    "xxhash.h": "src/container/file_hash.cpp src/read/stl_binary.cpp src/contour/normal_form.cpp",
+    "xxhash.h": "src/container/file_hash.cpp src/contour/normal_form.cpp",
     "zlib.h": "src/container/deflate.cpp src/container/gzip.cpp",
 }
 THIRD_PARTY_ANYWHERE = {"fmt"}

@@ -52,15 +52,6 @@ std::string first_option_needing_whole_mesh(const FileJob& job, const Engine& en
     return {};
 }
 
-/// Returns whether a job that can stream, and that fits into memory, is sliced while its file is read.
-/// Several parts, and scan vectors, are sliced in ranges of a few planes, and each range would read the file
-/// again. With several processes or shards, triangles must be counted first, so the file is read more than
-/// once anyway. Files that are in memory gain nothing.
-bool can_slice_while_reading(const FileJob& job, const std::vector<MeshInput>& inputs) {
-    return inputs.size() == 1 && job.inputs.front().copies == 1 && !job.scan && !job.shard &&
-           inputs.front().records() && inputs.front().bytes_in_memory() == 0;
-}
-
 /// Returns the range of n records that a process reads. It consists of whole chunks of `fold_chunk` records.
 /// Volumes are summed chunk by chunk, so they have the same bits as in a single process.
 RecordRange part_of(std::uint64_t n, std::size_t process, std::size_t processes) {
@@ -166,9 +157,8 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
         for (const PlateInput& input : job.inputs) {
             const MeshInput& file = inputs.emplace_back(input.path, room, execution);
             room -= std::min(room, file.bytes_in_memory());
-            const bool placed = input.placement != Transform{} || input.unit_mm.value_or(1) != 1;
             if (file.can_stream())
-                bytes += memory_.of_whole(file, placed, threads);
+                bytes += memory_.of_whole(file, threads);
             else
                 not_streamed = file.path();
             divisible = divisible && file.can_stream() && file.records().has_value();
@@ -188,18 +178,6 @@ Feed::Feed(const FileJob& job, const Engine& engine, Communicator& processes, co
     if (in_ranges_ || among_->size() > 1) {
         look_at(job, std::move(inputs), execution);
         return;
-    }
-    if (processes.size() == 1 && can_stream && can_slice_while_reading(job, inputs)) {
-        hashes_.emplace();
-        look_at(job, inputs, execution);
-        if (execution.progress)
-            execution.progress({Stage::read, bytes_to_read_, bytes_to_read_});
-        if (files_.front().triangles == files_.front().records)
-            return;
-        // The mesh is read into memory instead. There, every chunk is full of usable triangles, but here some
-        // chunks have fewer of them, so the volume would be rounded differently.
-        hashes_.reset();
-        files_.clear();
     }
     if (too_large != 0 && memory_.asked)
         throw Error(
@@ -241,7 +219,7 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
             file.part = part_of(file.records.value(), among_->process(), among_->size());
             figures_.triangles_read += file.part->end - file.part->begin;
         }
-        bytes_to_read_ += (hashes_ ? 1 : 3) * bytes_of(file, file.part);
+        bytes_to_read_ += 3 * bytes_of(file, file.part);
     }
     PlateBuilder builder(job.max_memory);
     for (std::size_t i = 0; i < files_.size(); ++i) {
@@ -254,7 +232,7 @@ void Feed::look_at(const FileJob& job, std::vector<MeshInput> inputs, const Exec
             Extent extent(placement);
             read = stream(
                 file, [&](const TriangleSoup& batch, std::uint64_t number) { extent.add(batch, number); },
-                execution, file.part, hashes_ ? &*hashes_ : nullptr);
+                execution, file.part);
             mine = {extent.box(), read.nonfinite_triangles, read.first_nonfinite, extent.first_corner()};
         });
         Box3 box;
@@ -299,13 +277,13 @@ std::uint64_t Feed::bytes_of(const File& file, const std::optional<RecordRange>&
 
 /// Streams a file. The passes are reported as one stage of progress.
 MeshFile Feed::stream(const File& file, const TriangleSink& sink, const Execution& execution,
-                      const std::optional<RecordRange>& part, ChunkHashes* hashes) {
+                      const std::optional<RecordRange>& part) {
     const Stopwatch reading;
     const Execution counted = with_progress(execution, [&](const Progress& progress) {
         return std::optional(
             Progress{Stage::read, std::min(bytes_read_ + progress.done, bytes_to_read_), bytes_to_read_});
     });
-    MeshFile read = file.input.stream(sink, reading_, counted, part, hashes);
+    MeshFile read = file.input.stream(sink, reading_, counted, part);
     bytes_read_ += bytes_of(file, part);
     figures_.read_seconds += reading.seconds();
     return read;
@@ -490,11 +468,7 @@ std::vector<PlaneRange> Feed::ranges_of(const Plan& plan, PlaneRange mine, unsig
     if (mine.size() == 0)
         return {};
     const RangeSurvey survey(part_of(counts_of_parts(plan.layers.size()), mine));
-    RangeMemory needed{
-        .threads = threads,
-        .placed = std::any_of(plate_.shapes.begin(), plate_.shapes.end(),
-                              [](const PlateShape& shape) { return shape.mesh.soup()->has_placement(); }),
-        .points_in_flight = memory_.points_in_flight()};
+    RangeMemory needed{.threads = threads, .points_in_flight = memory_.points_in_flight()};
     if (plate_.parts.size() + plate_.negatives.size() > 1 || neighbours_) // all layers of a range are held
         needed.points_in_flight = ~std::uint64_t{0};
     std::uint64_t overhead =
@@ -648,39 +622,6 @@ void Feed::store(std::size_t shape, const TriangleSoup& triangles, const Executi
             throw changed_while_read(path_of(shape));
     });
     executor.check_cancelled();
-}
-
-std::optional<TriangleStream> Feed::stream(const Plan& plan, const Execution& execution) {
-    if (!hashes_)
-        return std::nullopt;
-    begin_near_faces(plan);
-    return TriangleStream{.triangles = triangles(0),
-                          .placed = plate_.shapes.front().mesh.soup()->has_placement(),
-                          .pass = [this, execution = without_progress(execution)](
-                                      unsigned threads, const TriangleStream::Sink& sink) mutable {
-                              execution.threads = threads;
-                              pass_again(sink, execution);
-                          }};
-}
-
-/// The second and last pass over a file that is sliced while it is read.
-void Feed::pass_again(const TriangleStream::Sink& sink, const Execution& execution) {
-    const File& file = files_.front();
-    VolumeSum volume(placement(0), file.first_corner);
-    file.input.stream_again(
-        [&](const TriangleSoup& batch, std::uint64_t number) {
-            const TriangleSoup placed = batch.transformed(placement(0));
-            if (near_.front().any())
-                near_.front().add(placed, 0, placed.size());
-            if (measure_volume_)
-                volume.add(placed, number);
-            sink(placed, number * fold_chunk);
-        },
-        *hashes_, execution);
-    double six_volumes = 0;
-    for (const double chunk : volume.chunks())
-        six_volumes += chunk;
-    volume_mm3_ = six_volumes / 6;
 }
 
 Plate Feed::take(std::size_t range, const Execution& execution) {

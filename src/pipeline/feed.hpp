@@ -14,7 +14,6 @@
 #include "pipeline/range_store.hpp"
 #include "slicing/near_faces.hpp"
 #include "slicing/plane_ranges.hpp"
-#include "slicing/triangle_stream.hpp"
 
 #include <cstddef>
 #include <cstdint>
@@ -27,10 +26,6 @@
 namespace lamella {
 
 /// The plate of a job. Its meshes are in memory, or its triangles stay in their files.
-///
-/// A single part of a binary STL file is read twice: to measure its extent, and while it is sliced. Both
-/// passes read through small buffers that stay in the caches, so that the file needs no memory. If the second
-/// pass finds other triangles than the first one, slicing fails.
 ///
 /// If meshes do not fit into memory, or if several processes divide the files, triangles are streamed in
 /// three passes:
@@ -46,9 +41,9 @@ namespace lamella {
 /// the same job, and all must call its functions in the same order.
 class Feed {
   public:
-    /// Reads the files of the job. If they do not fit into the memory of the job, if several processes can
-    /// divide them, or if they can be sliced while they are read, only measures the files. Throws the errors
-    /// of load_plate, and Error{limit} if the meshes fit into memory neither as a whole nor in ranges.
+    /// Reads the files of the job. If they do not fit into the memory of the job, or if several processes can
+    /// divide them, only measures the files. Throws the errors of load_plate, and Error{limit} if the meshes
+    /// fit into memory neither as a whole nor in ranges.
     Feed(const FileJob& job, const Engine& engine, Communicator& processes, const Execution& execution);
     /// Takes a plate that is already in memory.
     Feed(const FileJob& job, Plate plate, Communicator& processes);
@@ -60,7 +55,7 @@ class Feed {
     /// True if the memory of the job is too small for the meshes.
     [[nodiscard]] bool in_ranges() const noexcept { return in_ranges_; }
     /// True if this process slices all triangles, and need not count them before.
-    [[nodiscard]] bool at_once() const noexcept { return files_.empty() || hashes_.has_value(); }
+    [[nodiscard]] bool at_once() const noexcept { return files_.empty(); }
 
     /// Number of triangles of a shape with finite coordinates, over all processes.
     [[nodiscard]] std::uint64_t triangles(std::size_t shape) const;
@@ -68,12 +63,12 @@ class Feed {
     /// Counts the triangles of all parts on the planes, over all processes.
     [[nodiscard]] PlaneCounts count(const Plan& plan, const Execution& execution);
     /// Signed volume of all parts. Requires layer statistics, triangles that stay in their files, and a call
-    /// of `count`, or a pass of `stream`.
+    /// of `count`.
     [[nodiscard]] double volume_mm3() const noexcept { return volume_mm3_; }
 
     /// Horizontal faces of the parts of a file that lie within rounding error of a plane, over all processes,
     /// in ascending planes. If the triangles stay in their files, requires a call of `count` with the same
-    /// plan, or a pass of `stream`. Otherwise requires a call of `begin_near_faces`, then calls of
+    /// plan. Otherwise requires a call of `begin_near_faces`, then calls of
     /// `show_near_faces` for all triangles of all shapes, from any threads.
     struct NearPlane {
         std::size_t file = 0;
@@ -95,12 +90,8 @@ class Feed {
     [[nodiscard]] std::vector<PlaneRange> bring(const Plan& plan, std::span<const PlaneRange> division,
                                                 const Execution& execution);
 
-    /// Returns the triangles of the only part, if they are sliced while they are read. `plan` is that of the
-    /// whole job. There can be one pass; it throws Error{input} if the file has changed.
-    [[nodiscard]] std::optional<TriangleStream> stream(const Plan& plan, const Execution& execution);
-
-    /// Returns a plate with the triangles of a range, unless `stream` returns them; `range` is an index into
-    /// the result of `bring`. Each range can be taken once.
+    /// Returns a plate with the triangles of a range; `range` is an index into the result of `bring`. Each
+    /// range can be taken once.
     [[nodiscard]] Plate take(std::size_t range, const Execution& execution);
 
     [[nodiscard]] const JobMemory& memory() const noexcept { return memory_; }
@@ -123,10 +114,9 @@ class Feed {
 
     void read(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution);
     void look_at(const FileJob& job, std::vector<MeshInput> inputs, const Execution& execution);
-    void pass_again(const TriangleStream::Sink& sink, const Execution& execution);
     [[nodiscard]] static std::uint64_t bytes_of(const File& file, const std::optional<RecordRange>& part);
     MeshFile stream(const File& file, const TriangleSink& sink, const Execution& execution,
-                    const std::optional<RecordRange>& part, ChunkHashes* hashes = nullptr);
+                    const std::optional<RecordRange>& part);
     [[nodiscard]] const Transform& placement(std::size_t shape) const;
     [[nodiscard]] const std::string& path_of(std::size_t shape) const;
 
@@ -150,8 +140,7 @@ class Feed {
     std::optional<std::uint32_t> neighbours_; ///< of each scanned plane; unset if none is scanned
     bool in_ranges_ = false;
     Plate plate_;
-    std::vector<File> files_;           ///< empty if the meshes are in memory
-    std::optional<ChunkHashes> hashes_; ///< of the first pass, if the file is sliced while it is read
+    std::vector<File> files_; ///< empty if the meshes are in memory
     std::uint64_t bytes_to_read_ = 0;
     std::uint64_t bytes_read_ = 0;
     std::vector<PlaneCounts> counts_; ///< by shape, over all processes

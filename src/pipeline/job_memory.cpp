@@ -12,15 +12,13 @@ namespace {
 /// Memory of a point in flight and of its text.
 constexpr std::uint64_t bytes_per_point = 56;
 
-constexpr std::uint64_t binary_record = 50;
 /// Length of the shortest text of a facet.
 constexpr std::uint64_t least_facet = 100;
 
 /// Upper bound on the memory of one triangle of a mesh, without its record or text.
-std::uint64_t triangle_bytes(bool placed, unsigned threads) {
+std::uint64_t triangle_bytes(unsigned threads) {
     const RangeNeeds one{.triangles = 1, .edges = 3, .points = 0, .most_points = 0};
-    return RangeMemory{.threads = threads, .placed = placed, .points_in_flight = 0}.bytes(one) -
-           sizeof(Triangle3f);
+    return RangeMemory{.threads = threads, .points_in_flight = 0}.bytes(one) - sizeof(Triangle3f);
 }
 
 } // namespace
@@ -59,8 +57,10 @@ std::uint64_t JobMemory::of_output() const noexcept {
 }
 
 std::uint64_t JobMemory::of_input(unsigned threads) const noexcept {
-    const std::uint64_t times = (binary_record + triangle_bytes(true, threads)) / binary_record + 1;
-    return limit / times;
+    constexpr std::uint64_t binary_record = 50;
+    const std::uint64_t times = (sizeof(Triangle3f) + triangle_bytes(threads)) / binary_record + 1;
+    const std::uint64_t besides = overhead(threads, 0);
+    return limit > besides ? (limit - besides) / times : 0;
 }
 
 std::uint64_t JobMemory::besides_meshes(unsigned threads) const noexcept {
@@ -78,13 +78,13 @@ std::uint64_t JobMemory::of_meshes(std::span<const Mesh* const> meshes, unsigned
             stored += mesh->size() * mesh->soup()->stride();
         most = std::max<std::uint64_t>(most, mesh->size());
     }
-    return besides_meshes(threads) + stored + most * triangle_bytes(false, threads);
+    return besides_meshes(threads) + stored + most * triangle_bytes(threads);
 }
 
-std::uint64_t JobMemory::of_whole(const MeshInput& file, bool placed, unsigned threads) const {
-    const std::uint64_t each = triangle_bytes(placed, threads);
+std::uint64_t JobMemory::of_whole(const MeshInput& file, unsigned threads) const {
+    const std::uint64_t each = triangle_bytes(threads);
     if (const auto records = file.records())
-        return *records * (binary_record + each);
+        return *records * (sizeof(Triangle3f) + each);
     // A text is read into chunks, which are then joined.
     const std::uint64_t facets = file.bytes() / least_facet;
     return std::max(file.bytes() + facets * 2 * sizeof(Triangle3f), facets * (sizeof(Triangle3f) + each));

@@ -57,7 +57,7 @@ struct JobMemory {
     /// Memory for slicing that does not depend on the meshes: `overhead` and the points in flight.
     [[nodiscard]] std::uint64_t besides_meshes(unsigned threads) const noexcept;
     /// Upper bound on the memory for an STL file that is sliced as a whole, without `besides_meshes`.
-    [[nodiscard]] std::uint64_t of_whole(const MeshInput& file, bool placed, unsigned threads) const;
+    [[nodiscard]] std::uint64_t of_whole(const MeshInput& file, unsigned threads) const;
 };
 
 } // namespace lamella

@@ -389,9 +389,4 @@ SliceReport slice_plate_to(const PlateSink& sink, const Plate& plate, const Plan
     return slice_to(single(sink), plate.shapes.front().mesh, plan, visited);
 }
 
-SliceReport slice_plate_to(const PlateSink& sink, const TriangleStream& body, const Plan& plan,
-                           const SliceOptions& options) {
-    return slice_to(single(sink), body, plan, options);
-}
-
 } // namespace lamella

@@ -6,8 +6,6 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
-#include "slicing/triangle_stream.hpp"
-
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -32,9 +30,5 @@ enum class SinkCost { proportional, expanding };
                                          const SliceOptions& options = {},
                                          SinkCost cost = SinkCost::proportional,
                                          const ShapeVisitor& visitor = {});
-
-/// Slices a plate of a single body, whose triangles are read meanwhile.
-[[nodiscard]] SliceReport slice_plate_to(const PlateSink& sink, const TriangleStream& body, const Plan& plan,
-                                         const SliceOptions& options);
 
 } // namespace lamella

@@ -257,7 +257,6 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
         return processor.prepare(static_cast<std::uint32_t>(parts.front().index - first), parts);
     }};
     const ShapeVisitor visitor = near_face_visitor(feed, plan);
-    const std::optional<TriangleStream> stream = feed.stream(plan, execution);
     const std::vector<PlaneRange> ranges = feed.bring(plan, sliced, execution);
     done.ranges = ranges.size();
     const std::uint64_t points_in_flight = feed.memory().points_in_flight(
@@ -271,9 +270,7 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
                 .execution = whole ? execution : in_range(ranges[s], sliced[processes.process()], execution),
                 .engine = engine,
                 .points_in_flight = points_in_flight};
-            done.report +=
-                stream ? slice_plate_to(sink, *stream, planes, options)
-                       : slice_plate_to(sink, feed.take(s, execution), planes, options, cost, visitor);
+            done.report += slice_plate_to(sink, feed.take(s, execution), planes, options, cost, visitor);
         }
         if (visitor && ranges.empty()) // all processes count near faces
             for (std::size_t shape = 0; shape < feed.plate().shapes.size(); ++shape) {

@@ -105,29 +105,14 @@ MeshFile MeshInput::read(const MeshReadOptions& options, const Execution& execut
 }
 
 MeshFile MeshInput::stream(const TriangleSink& sink, const MeshReadOptions& options,
-                           const Execution& execution, const std::optional<RecordRange>& share,
-                           ChunkHashes* hashes) const {
+                           const Execution& execution, const std::optional<RecordRange>& share) const {
     if (!can_stream())
         throw Error(
             ErrorKind::usage,
             fmt::format("{}: only STL files that are not compressed can be read in chunks", source_->name));
-    TriangleSink hashing;
-    if (const auto stored = records(); hashes != nullptr && stored) {
-        hashes->assign((*stored + fold_chunk - 1) / fold_chunk, 0);
-        hashing = [&](const TriangleSoup& batch, std::uint64_t number) {
-            (*hashes)[number] = stl_chunk_hash(batch);
-            sink(batch, number);
-        };
-    }
-    MeshFile file = mesh_format_of(*source_, options)
-                        .stream(*source_, hashing ? hashing : sink, options, execution, share);
+    MeshFile file = mesh_format_of(*source_, options).stream(*source_, sink, options, execution, share);
     file.path = path_;
     return file;
-}
-
-void MeshInput::stream_again(const TriangleSink& sink, const ChunkHashes& hashes,
-                             const Execution& execution) const {
-    stream_stl_binary_again(*source_, sink, hashes, execution);
 }
 
 } // namespace lamella

@@ -10,9 +10,7 @@
 #include "read/remarks.hpp"
 #include "system/memory_size.hpp"
 
-#define XXH_INLINE_ALL
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -21,7 +19,9 @@
 #include <cstring>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lamella {
@@ -93,83 +93,122 @@ bool is_finite(const std::byte* corners) {
                         [](std::uint32_t word) { return (word & exponent_bits) == exponent_bits; });
 }
 
-/// Number of records of each chunk with a corner that is not finite, and index of the first one in the file.
-struct NonFinite {
-    std::vector<std::uint32_t> per_chunk;
-    std::uint64_t total = 0;
-    std::uint64_t first = 0;
-    Box3 box; ///< of all corners; valid if all are finite
-};
-
-/// The records of all triangles in memory, from the corners of the first one on.
-struct Records {
-    std::shared_ptr<const void> owner;
-    const std::byte* corners;
-    NonFinite nonfinite;
-};
-
-/// Copies the records of a file that is read in windows to memory and surveys each chunk as it arrives,
-/// unless they would take too much memory. Otherwise surveys them in place.
-Records read_records(const ByteSource& source, std::uint64_t n, const MeshReadOptions& options,
-                     const Execution& execution, Executor& executor, ProgressMeter& progress) {
-    const std::size_t size = n * stl_record_bytes - stl_normal_bytes;
-    const std::uint64_t most = memory_of_file(options.max_memory);
-    std::shared_ptr<PageArray<std::byte>> memory;
-    ByteSource viewed = source;
-    if (source.file && size <= most)
-        memory = std::make_shared<PageArray<std::byte>>(size);
-    else
-        viewed = whole(source, execution, most);
-    const std::byte* const corners = memory ? memory->data() : viewed.bytes.data() + corners_at;
-    NonFinite found;
-    found.per_chunk.resize((n + chunk_triangles - 1) / chunk_triangles);
-    std::vector<Box3> boxes(executor.workers());
-    executor.for_chunks(n, chunk_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
-        const std::size_t location = begin * stl_record_bytes;
-        if (memory)
-            copy_out(source, corners_at + location,
-                     memory->span().subspan(location, std::min<std::uint64_t>(end * stl_record_bytes, size) -
-                                                          location));
-        const Survey surveyed = survey(corners + location, end - begin);
-        boxes[worker].add(surveyed.box);
-        if (!surveyed.finite) {
-            std::uint32_t count = 0;
-            for (std::uint64_t i = begin; i < end; ++i)
-                count += is_finite(corners + i * stl_record_bytes) ? 0 : 1;
-            found.per_chunk[begin / chunk_triangles] = count;
+/// Reads the corners of records batch by batch, on all threads, each through a buffer of its own if the file
+/// is not in memory. Calls body(corners, begin, end, worker); `begin` and `end` are counted from the first of
+/// the records, and `corners` are those of record `begin`. `corners` is valid only during the call.
+template <class Body>
+void for_batches(const ByteSource& source, RecordRange records, Executor& executor, const Body& body) {
+    const std::uint64_t count = records.end - records.begin;
+    // A thread reads some chunks in succession: edges at the border of two chunks are found sooner then.
+    const std::uint64_t successive =
+        std::clamp<std::uint64_t>(count / batch_triangles / (8 * executor.workers()), 1, 8) * batch_triangles;
+    std::vector<PageArray<std::byte>> buffers(source.file ? executor.workers() : 0);
+    executor.for_chunks(count, successive, [&](std::uint64_t first, std::uint64_t last, unsigned worker) {
+        for (std::uint64_t begin = first; begin < last && !executor.stopping(); begin += batch_triangles) {
+            const std::uint64_t end = std::min(last, begin + batch_triangles);
+            const std::uint64_t offset = corners_at + (records.begin + begin) * stl_record_bytes;
+            if (!source.file) {
+                body(source.bytes.data() + offset, begin, end, worker);
+                continue;
+            }
+            PageArray<std::byte>& buffer = buffers[worker];
+            if (buffer.size() == 0)
+                buffer = PageArray<std::byte>(std::min(count, batch_triangles) * stl_record_bytes);
+            copy_out(source, offset,
+                     buffer.span().first((end - begin) * stl_record_bytes - stl_normal_bytes));
+            body(buffer.data(), begin, end, worker);
         }
-        progress.add((end - begin) * stl_record_bytes);
     });
-    for (const Box3& box : boxes)
-        found.box.add(box);
-    for (const std::uint32_t count : found.per_chunk)
-        found.total += count;
-    if (found.total != 0)
-        while (is_finite(corners + found.first * stl_record_bytes))
-            ++found.first;
-    if (memory)
-        return {memory, corners, std::move(found)};
-    return {viewed.owner, corners, std::move(found)};
+    executor.check_cancelled();
 }
 
-/// Copies the triangles with finite corners, in order.
-TriangleSoup copy_finite(const std::byte* corners, std::uint64_t n, const NonFinite& dropped,
-                         Executor& executor) {
-    std::vector<std::uint64_t> first_kept(dropped.per_chunk.size());
-    std::uint64_t kept = 0;
-    for (std::size_t chunk = 0; chunk < first_kept.size(); ++chunk) {
-        first_kept[chunk] = kept;
-        kept += std::min(chunk_triangles, n - chunk * chunk_triangles) - dropped.per_chunk[chunk];
+/// Lowers a number that several threads lower.
+void lower(std::atomic<std::uint64_t>& least, std::uint64_t number) {
+    for (std::uint64_t before = least; number < before && !least.compare_exchange_weak(before, number);) {
     }
-    const auto memory = std::make_shared<PageArray<Triangle3f>>(kept);
-    executor.for_chunks(n, chunk_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
-        Triangle3f* to = memory->data() + first_kept[begin / chunk_triangles];
-        for (std::uint64_t i = begin; i < end; ++i)
-            if (is_finite(corners + i * stl_record_bytes))
-                std::memcpy(to++, corners + i * stl_record_bytes, sizeof *to);
+}
+
+/// The box of the boxes of all workers.
+Box3 united(const std::vector<Box3>& boxes) {
+    Box3 box;
+    for (const Box3& one : boxes)
+        box.add(one);
+    return box;
+}
+
+/// Surveys the records of a file in memory, in place. Returns nothing if a corner is not finite.
+std::optional<TriangleSoup> view_records(const ByteSource& source, std::uint64_t n, Executor& executor,
+                                         ProgressMeter& progress) {
+    const std::byte* const corners = source.bytes.data() + corners_at;
+    std::atomic<bool> finite{true};
+    std::vector<Box3> boxes(executor.workers());
+    executor.for_chunks(n, chunk_triangles, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
+        const Survey surveyed = survey(corners + begin * stl_record_bytes, end - begin);
+        boxes[worker].add(surveyed.box);
+        if (!surveyed.finite)
+            finite = false;
+        progress.add((end - begin) * stl_record_bytes);
     });
-    const auto* first = reinterpret_cast<const std::byte*>(memory->data());
-    return {TriangleSoup::KnownFinite{}, memory, first, sizeof(Triangle3f), static_cast<std::size_t>(kept)};
+    if (!finite)
+        return std::nullopt;
+    return TriangleSoup(TriangleSoup::KnownFinite{}, source.owner, corners, stl_record_bytes, n,
+                        united(boxes));
+}
+
+/// Triangles with finite corners, and the index in the file of the first of the others, if there are any.
+struct FiniteTriangles {
+    TriangleSoup soup;
+    std::uint64_t first_nonfinite = 0;
+};
+
+/// Copies the corners of the triangles to memory: 36 bytes of each record, after the normal and before the
+/// attribute. Each thread reads the file through a buffer that stays in its cache.
+FiniteTriangles copy_records(const ByteSource& source, std::uint64_t n, Executor& executor,
+                             ProgressMeter& progress) {
+    const auto memory = std::make_shared<PageArray<Triangle3f>>(n);
+    std::vector<std::uint64_t> kept((n + batch_triangles - 1) / batch_triangles);
+    std::atomic<std::uint64_t> first_nonfinite{n};
+    std::vector<Box3> boxes(executor.workers());
+    for_batches(source, {0, n}, executor,
+                [&](const std::byte* corners, std::uint64_t begin, std::uint64_t end, unsigned worker) {
+                    const Survey surveyed = survey(corners, end - begin);
+                    boxes[worker].add(surveyed.box);
+                    Triangle3f* const first = memory->data() + begin;
+                    Triangle3f* to = first;
+                    for (std::uint64_t i = begin; i < end; ++i, corners += stl_record_bytes) {
+                        if (surveyed.finite || is_finite(corners))
+                            std::memcpy(to++, corners, sizeof *to);
+                        else
+                            lower(first_nonfinite, i);
+                    }
+                    kept[begin / batch_triangles] = static_cast<std::uint64_t>(to - first);
+                    progress.add((end - begin) * stl_record_bytes);
+                });
+    Triangle3f* last = memory->data();
+    for (std::size_t batch = 0; batch < kept.size(); ++batch) {
+        Triangle3f* const from = memory->data() + batch * batch_triangles;
+        last = from == last ? from + kept[batch] : std::copy_n(from, kept[batch], last);
+    }
+    const auto count = static_cast<std::size_t>(last - memory->data());
+    return {TriangleSoup(TriangleSoup::KnownFinite{}, memory,
+                         reinterpret_cast<const std::byte*>(memory->data()), sizeof(Triangle3f), count,
+                         count == n ? std::optional(united(boxes)) : std::nullopt),
+            first_nonfinite};
+}
+
+/// Reads the triangles of a file. A file that is in memory is viewed in place if all corners are finite. A
+/// file that is read in windows is copied, unless its triangles would take too much memory.
+FiniteTriangles read_records(const ByteSource& source, std::uint64_t n, const MeshReadOptions& options,
+                             const Execution& execution, Executor& executor, ProgressMeter& progress) {
+    const std::uint64_t most = memory_of_file(options.max_memory);
+    const std::uint64_t bytes = n * sizeof(Triangle3f);
+    if (source.file && bytes <= most)
+        return copy_records(source, n, executor, progress);
+    const ByteSource viewed = whole(source, execution, most);
+    if (std::optional<TriangleSoup> soup = view_records(viewed, n, executor, progress))
+        return {*std::move(soup)};
+    ReadLimits(source, options).add_bytes(bytes);
+    return copy_records(viewed, n, executor, progress);
 }
 
 /// Returns the text of the header, up to the first byte that is not text, without blanks at its beginning and
@@ -290,30 +329,6 @@ MeshFile describe(const ByteSource& source, std::uint64_t stored, std::uint64_t 
     return file;
 }
 
-/// Reads the records chunk by chunk, on all threads, each into a buffer of its own. Calls
-/// body(buffer, begin, end); `begin` and `end` are counted from the first of the records.
-template <class Body>
-void for_batches(const ByteSource& source, RecordRange records, Executor& executor, const Body& body) {
-    const std::uint64_t count = records.end - records.begin;
-    // A thread reads some chunks in succession: edges at the border of two chunks are found sooner then.
-    const std::uint64_t successive =
-        std::clamp<std::uint64_t>(count / batch_triangles / (8 * executor.workers()), 1, 8) * batch_triangles;
-    std::vector<std::shared_ptr<PageArray<std::byte>>> batches(executor.workers());
-    executor.for_chunks(count, successive, [&](std::uint64_t first, std::uint64_t last, unsigned worker) {
-        std::shared_ptr<PageArray<std::byte>>& batch = batches[worker];
-        if (!batch)
-            batch =
-                std::make_shared<PageArray<std::byte>>(std::min(count, batch_triangles) * stl_record_bytes);
-        for (std::uint64_t begin = first; begin < last && !executor.stopping(); begin += batch_triangles) {
-            const std::uint64_t end = std::min(last, begin + batch_triangles);
-            copy_out(source, corners_at + (records.begin + begin) * stl_record_bytes,
-                     batch->span().first((end - begin) * stl_record_bytes - stl_normal_bytes));
-            body(batch, begin, end);
-        }
-    });
-    executor.check_cancelled();
-}
-
 } // namespace
 
 void judge_nonfinite(std::uint64_t count, std::uint64_t first, std::uint64_t stored, Remarks& remarks) {
@@ -336,17 +351,11 @@ MeshFile read_stl_binary(const ByteSource& source, const MeshReadOptions& option
     const std::uint64_t stored = check_header(source, options, remarks);
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, source.size());
-    const auto [owner, corners, nonfinite] =
-        read_records(source, stored, options, execution, executor, progress);
-    judge_nonfinite(nonfinite.total, nonfinite.first, stored, remarks);
-    if (nonfinite.total != 0) // the other triangles are copied
-        ReadLimits(source, options).add_bytes((stored - nonfinite.total) * sizeof(Triangle3f));
-
-    MeshFile file = describe(source, stored, nonfinite.total, nonfinite.first, remarks);
-    file.objects.front().mesh = nonfinite.total == 0
-                                    ? Mesh(TriangleSoup(TriangleSoup::KnownFinite{}, owner, corners,
-                                                        stl_record_bytes, stored, nonfinite.box))
-                                    : Mesh(copy_finite(corners, stored, nonfinite, executor));
+    FiniteTriangles finite = read_records(source, stored, options, execution, executor, progress);
+    const std::uint64_t nonfinite = stored - finite.soup.size();
+    judge_nonfinite(nonfinite, finite.first_nonfinite, stored, remarks);
+    MeshFile file = describe(source, stored, nonfinite, finite.first_nonfinite, remarks);
+    file.objects.front().mesh = Mesh(std::move(finite.soup));
     progress.finish();
     return file;
 }
@@ -364,55 +373,32 @@ MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink, c
     std::atomic<std::uint64_t> first_nonfinite{stored};
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::read, stl_record_bytes * count);
-    for_batches(source, records, executor, [&](const auto& batch, std::uint64_t begin, std::uint64_t end) {
-        const std::byte* const at = batch->data();
-        const Survey surveyed = survey(at, end - begin);
-        if (surveyed.finite) {
-            sink(TriangleSoup(TriangleSoup::KnownFinite{}, batch, at, stl_record_bytes, end - begin,
-                              surveyed.box),
-                 begin / batch_triangles);
-        } else {
-            std::vector<Triangle3f> finite;
-            for (std::uint64_t i = 0; i < end - begin; ++i) {
-                if (is_finite(at + i * stl_record_bytes)) {
-                    std::memcpy(&finite.emplace_back(), at + i * stl_record_bytes, sizeof(Triangle3f));
-                    continue;
-                }
-                nonfinite.fetch_add(1);
-                const std::uint64_t number = records.begin + begin + i;
-                for (std::uint64_t before = first_nonfinite;
-                     number < before && !first_nonfinite.compare_exchange_weak(before, number);) {
-                }
-            }
-            if (!finite.empty())
-                sink(TriangleSoup(std::move(finite)), begin / batch_triangles);
-        }
-        progress.add((end - begin) * stl_record_bytes);
-    });
+    for_batches(source, records, executor,
+                [&](const std::byte* corners, std::uint64_t begin, std::uint64_t end, unsigned) {
+                    const Survey surveyed = survey(corners, end - begin);
+                    if (surveyed.finite) {
+                        sink(TriangleSoup(TriangleSoup::KnownFinite{}, nullptr, corners, stl_record_bytes,
+                                          end - begin, surveyed.box),
+                             begin / batch_triangles);
+                    } else {
+                        std::vector<Triangle3f> finite;
+                        for (std::uint64_t i = begin; i < end; ++i, corners += stl_record_bytes) {
+                            if (is_finite(corners)) {
+                                std::memcpy(&finite.emplace_back(), corners, sizeof(Triangle3f));
+                                continue;
+                            }
+                            nonfinite.fetch_add(1);
+                            lower(first_nonfinite, records.begin + i);
+                        }
+                        if (!finite.empty())
+                            sink(TriangleSoup(std::move(finite)), begin / batch_triangles);
+                    }
+                    progress.add((end - begin) * stl_record_bytes);
+                });
     if (!share)
         judge_nonfinite(nonfinite, first_nonfinite, stored, remarks);
     progress.finish();
     return describe(source, stored, nonfinite, first_nonfinite, remarks);
-}
-
-std::uint64_t stl_chunk_hash(const TriangleSoup& chunk) {
-    return XXH3_64bits(chunk.data(), (chunk.size() - 1) * chunk.stride() + sizeof(Triangle3f));
-}
-
-void stream_stl_binary_again(const ByteSource& source, const TriangleSink& sink, const ChunkHashes& hashes,
-                             const Execution& execution) {
-    const StlExtent extent = stl_extent(source.size(), stl_declared_count(source.bytes));
-    Executor executor(execution);
-    for_batches(source, {0, extent.triangles}, executor,
-                [&](const auto& batch, std::uint64_t begin, std::uint64_t end) {
-                    const std::uint64_t number = begin / batch_triangles;
-                    const TriangleSoup chunk(TriangleSoup::KnownFinite{}, batch, batch->data(),
-                                             stl_record_bytes, end - begin);
-                    if (stl_chunk_hash(chunk) != hashes.at(number))
-                        throw Error(ErrorKind::input,
-                                    fmt::format("{}: was changed while it was read", source.name));
-                    sink(chunk, number);
-                });
 }
 
 } // namespace lamella

@@ -1,7 +1,7 @@
 #pragma once
 
-// Binary STL: 80 bytes of header, a count, and records of 50 bytes. The mesh is a view of the records; they
-// are not copied.
+// Binary STL: 80 bytes of header, a count, and records of 50 bytes. The mesh is a view of the records of a
+// file in memory, or a copy of the corners in other files.
 
 #include "lamella/core/execution.hpp"
 #include "lamella/read/mesh_file.hpp"
@@ -48,12 +48,5 @@ void judge_nonfinite(std::uint64_t count, std::uint64_t first, std::uint64_t sto
 [[nodiscard]] MeshFile stream_stl_binary(const ByteSource& source, const TriangleSink& sink,
                                          const MeshReadOptions& options, const Execution& execution,
                                          const std::optional<RecordRange>& share);
-
-/// Returns a hash of all bytes from the first corner of a chunk to the last one.
-[[nodiscard]] std::uint64_t stl_chunk_hash(const TriangleSoup& chunk);
-
-/// Passes the triangles to the sink; see MeshInput::stream_again.
-void stream_stl_binary_again(const ByteSource& source, const TriangleSink& sink, const ChunkHashes& hashes,
-                             const Execution& execution);
 
 } // namespace lamella

@@ -149,7 +149,6 @@ inline constexpr std::uint64_t least_points_in_flight = (std::uint64_t{112} << 2
 /// The parameters of slicing a range that determine its memory.
 struct RangeMemory {
     unsigned threads = 1;
-    bool placed = false; ///< the soup has a placement: coordinates are kept in double precision
     std::uint64_t points_in_flight = 0; ///< as passed to `slice_to`
 
     /// Returns an upper bound on the bytes that slicing a range takes: its triangles (36 bytes each), the cut

@@ -5,7 +5,6 @@
 #include "slicing/layer_counter.hpp"
 #include "slicing/plane_ranges.hpp"
 #include "slicing/slice_job.hpp"
-#include "slicing/triangle_stream.hpp"
 
 #include <algorithm>
 #include <cassert>
@@ -52,8 +51,7 @@ SliceReport& SliceReport::operator+=(const SliceReport& other) noexcept {
 namespace {
 
 SliceReport slice_and_count(const LayerSink& sink, const Mesh& mesh, const Plan& plan,
-                            const SliceOptions& options, std::uint64_t points_in_flight,
-                            const TriangleStream* stream = nullptr) {
+                            const SliceOptions& options, std::uint64_t points_in_flight) {
     SliceReport report;
     LayerCounter counter(sink);
     const LayerSink counting{.prepare = [&counter](Layer&& layer) {
@@ -66,7 +64,7 @@ SliceReport slice_and_count(const LayerSink& sink, const Mesh& mesh, const Plan&
     if (visits && options.engine.welds)
         options.visitor(joined, 0, joined.size());
     options.engine.slice({joined, plan, counting, options.execution, points_in_flight, report,
-                          visits ? &options.visitor : nullptr, stream});
+                          visits ? &options.visitor : nullptr});
     report.weld_seconds += join_seconds;
     counter.set_counts(report);
     assert(report.layers == plan.layers.size());
@@ -93,14 +91,6 @@ LayerStack slice(const Mesh& mesh, const Plan& plan, const SliceOptions& options
 SliceReport slice_to(const LayerSink& sink, const Mesh& mesh, const Plan& plan, const SliceOptions& options) {
     return slice_and_count(sink, mesh, plan, options,
                            options.points_in_flight.value_or(usual_points_in_flight(mesh.size())));
-}
-
-SliceReport slice_to(const LayerSink& sink, const TriangleStream& stream, const Plan& plan,
-                     const SliceOptions& options) {
-    assert(!options.engine.welds);
-    return slice_and_count(sink, Mesh(), plan, options,
-                           options.points_in_flight.value_or(usual_points_in_flight(stream.triangles)),
-                           &stream);
 }
 
 } // namespace lamella

@@ -7,8 +7,6 @@
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"
 
-#include "slicing/triangle_stream.hpp"
-
 #include <cstdint>
 
 namespace lamella {
@@ -24,9 +22,6 @@ struct SliceJob {
     SliceReport& report;
     /// Null if no visitor is wanted. Only the sweep calls it; for engines that weld, slice() does.
     const TriangleVisitor* visitor = nullptr;
-    /// The triangles, if they are not in memory; null otherwise. The mesh is then empty. Only engines that do
-    /// not weld get a stream.
-    const TriangleStream* stream = nullptr;
 };
 
 } // namespace lamella

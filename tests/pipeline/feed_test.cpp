@@ -169,84 +169,27 @@ class FeedOfOneFile : public testing::Test {
         file.write(reinterpret_cast<const char*>(&x), sizeof x);
     }
 
-    /// Returns the error of a job whose file is changed right after the first pass.
-    template <class Change>
-    [[nodiscard]] std::string error_after(const Change& change) const {
-        bool changed = false;
-        const Execution execution{.threads = 2, .progress = [&](const Progress& progress) {
-                                      if (progress.stage == Stage::read && progress.done == progress.total &&
-                                          !std::exchange(changed, true))
-                                          change();
-                                  }};
-        return test::error_of(ErrorKind::input, [&] { (void)slice_file(job_, execution); });
-    }
-
     const TriangleSoup body_ = make_torus(20, 8, test::slowed ? 100 : 300, 200);
     TemporaryFolder folder_;
     const std::string path_ = folder_.file("torus.stl");
     FileJob job_;
 };
 
-TEST_F(FeedOfOneFile, StreamsItsTrianglesWithTheFiguresOfTheMesh) {
-    const Plate whole = load_plate(job_.inputs);
-    const Plan plan = plan_uniform(whole.box.min.z, whole.box.max.z, {.layer_height = 0.7});
-    const LayerStack expected = slice(whole, plan);
-    for (const unsigned threads : test::thread_counts()) {
-        const Execution execution{.threads = threads};
-        Feed feed(job_, engines().front(), alone(), execution);
-        EXPECT_EQ(feed.meshes(), nullptr);
-        EXPECT_TRUE(feed.at_once());
-        EXPECT_FALSE(feed.in_ranges());
-        EXPECT_EQ(feed.plate().box, whole.box);
-        EXPECT_EQ(feed.triangles(0), body_.size());
-        const std::vector<PlaneRange> all{{0, static_cast<std::uint32_t>(plan.layers.size())}};
-        EXPECT_EQ(feed.bring(plan, all, execution), all);
-        const std::optional<TriangleStream> stream = feed.stream(plan, execution);
-        ASSERT_TRUE(stream);
-        LayerStack layers;
-        slice_to(appending_to(layers), *stream, plan, {.execution = execution});
-        EXPECT_EQ(test::hashes(layers), test::hashes(expected));
-        EXPECT_EQ(feed.volume_mm3(), volume(whole.shapes.front().mesh)) << "bit for bit";
-    }
-}
-
-TEST_F(FeedOfOneFile, ReadsMeshesThatAJobNeedsWholeOrOftenToMemory) {
-    const std::vector<std::function<void(FileJob&)>> needs{
-        [](FileJob& job) { job.inspect = true; },
-        [](FileJob& job) { job.strict = true; },
-        [](FileJob& job) { job.repair.orient = true; },
-        [](FileJob& job) { job.inputs.front().copies = 2; },
-        [](FileJob& job) { job.inputs.push_back(job.inputs.front()); },
-        [](FileJob& job) { job.scan.emplace(); },
-        [](FileJob& job) {
-            job.shard = {1, 2};
-        },
-    };
-    for (std::size_t i = 0; i < needs.size(); ++i) {
-        FileJob job = job_;
-        needs[i](job);
-        Feed feed(job, engines().front(), alone(), {});
-        EXPECT_NE(feed.meshes(), nullptr) << i;
-    }
-    set_corner(70, std::numeric_limits<float>::quiet_NaN());
+TEST_F(FeedOfOneFile, ReadsItToMemoryIfItFits) {
+    const Box3 box = load_plate(job_.inputs).box;
     Feed feed(job_, engines().front(), alone(), {});
     ASSERT_NE(feed.meshes(), nullptr);
-    EXPECT_EQ(feed.triangles(0), body_.size() - 1);
-    EXPECT_EQ(feed.plate().files.front().warnings.size(), 1U);
-    EXPECT_EQ(feed.plate().box, load_plate(job_.inputs).box);
-}
+    EXPECT_TRUE(feed.at_once());
+    EXPECT_FALSE(feed.in_ranges());
+    EXPECT_EQ(feed.plate().box, box);
+    EXPECT_EQ(feed.triangles(0), body_.size());
 
-TEST_F(FeedOfOneFile, FailsIfTheFileChangesBetweenThePasses) {
-    const std::string changed = path_ + ": was changed while it was read";
-    const std::size_t last = body_.size() - 1;
-    EXPECT_EQ(error_after([&] { set_corner(0, 3); }), changed);
-    EXPECT_EQ(error_after([&] { set_corner(last, 3); }), changed);
-    EXPECT_EQ(error_after([&] { set_corner(last, std::numeric_limits<float>::infinity()); }), changed);
-    set_corner(last, 3);
-    const std::size_t size = stl_header_bytes + body_.size() * stl_record_bytes;
-    EXPECT_EQ(error_after([&] { std::filesystem::resize_file(path_, size - 70'000); }),
-              fmt::format("{}: was cut off while it was read: it had {} bytes, and ends after {} now", path_,
-                          size, size - 70'000));
+    set_corner(70, std::numeric_limits<float>::quiet_NaN());
+    Feed lacking(job_, engines().front(), alone(), {});
+    ASSERT_NE(lacking.meshes(), nullptr);
+    EXPECT_EQ(lacking.triangles(0), body_.size() - 1);
+    EXPECT_EQ(lacking.plate().files.front().warnings.size(), 1U);
+    EXPECT_EQ(lacking.plate().box, load_plate(job_.inputs).box);
 }
 
 } // namespace

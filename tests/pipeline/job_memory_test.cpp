@@ -107,12 +107,11 @@ TEST(JobMemory, AsksForEachRecordOfABinaryFileAndNoLessForATextOfTheSamePart) {
     write_stl_ascii(folder.file("text.stl"), some, "part");
     const MeshInput binary(folder.file("some.stl"));
     const JobMemory memory = limited_to(1024 * mib);
-    const std::uint64_t bytes = memory.of_whole(binary, false, 1);
+    const std::uint64_t bytes = memory.of_whole(binary, 1);
     const std::uint64_t each =
-        (memory.of_whole(MeshInput(folder.file("more.stl")), false, 1) - bytes) / (more.size() - some.size());
-    EXPECT_GT(each, 50U + sizeof(Triangle3f));          // a record, and what slicing makes of it
-    EXPECT_GT(memory.of_whole(binary, true, 1), bytes); // placed in double
-    EXPECT_GE(memory.of_whole(MeshInput(folder.file("text.stl")), false, 1), bytes);
+        (memory.of_whole(MeshInput(folder.file("more.stl")), 1) - bytes) / (more.size() - some.size());
+    EXPECT_GT(each, 2 * sizeof(Triangle3f)); // a triangle, and what slicing makes of it
+    EXPECT_GE(memory.of_whole(MeshInput(folder.file("text.stl")), 1), bytes);
 }
 
 TEST(JobMemory, KeepsNoMoreOfStandardInputThanCouldBeSlicedThere) {
@@ -127,8 +126,8 @@ TEST(JobMemory, KeepsNoMoreOfStandardInputThanCouldBeSlicedThere) {
         while (limited_to(limit).of_input(threads) < file.bytes())
             limit += 100;
         const JobMemory memory = limited_to(limit);
-        const std::uint64_t around = memory.of_whole(MeshInput(folder.file("none.stl")), true, threads);
-        EXPECT_LE(memory.of_whole(file, true, threads) - around, limit) << threads;
+        const std::uint64_t around = memory.of_whole(MeshInput(folder.file("none.stl")), threads);
+        EXPECT_LE(memory.of_whole(file, threads) - around, limit) << threads;
     }
 }
 

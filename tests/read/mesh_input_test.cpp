@@ -185,43 +185,5 @@ TEST(MeshInput, GivesOnWhatTheSinkThrows) {
     }
 }
 
-TEST(MeshInput, StreamsABinaryFileAgainUnlessItHasChanged) {
-    const Triangles triangles = some_triangles(test::slowed ? 40'000 : 800'000); // several chunks per thread
-    std::string bytes = binary(triangles);
-    const TemporaryFolder folder;
-    const std::string path = folder.file("part.stl");
-    write_file(path, bytes);
-    const MeshInput input(path);
-    ChunkHashes hashes;
-    std::map<std::uint64_t, Triangles> first;
-    std::map<std::uint64_t, Triangles> again;
-    std::mutex mutex;
-    const auto into = [&](std::map<std::uint64_t, Triangles>& chunks) {
-        return [&](const TriangleSoup& batch, std::uint64_t number) {
-            Triangles copies;
-            for (std::size_t i = 0; i < batch.size(); ++i)
-                copies.push_back(batch.stored(i));
-            const std::lock_guard lock(mutex);
-            EXPECT_TRUE(chunks.emplace(number, std::move(copies)).second) << "once";
-        };
-    };
-    (void)input.stream(into(first), {}, {.threads = 2}, {}, &hashes);
-    EXPECT_EQ(hashes.size(), first.size());
-    for (const unsigned threads : {1U, 2U, 7U}) {
-        again.clear();
-        input.stream_again(into(again), hashes, {.threads = threads});
-        EXPECT_EQ(again, first);
-    }
-    // From the first corner to the last one, any bit counts.
-    const std::size_t end = 84 + 50 * triangles.size() - 3;
-    for (const std::size_t changed : {std::size_t{84 + 12}, end / 2, end}) {
-        bytes[changed] = static_cast<char>(bytes[changed] ^ 1);
-        write_file(path, bytes);
-        bytes[changed] = static_cast<char>(bytes[changed] ^ 1);
-        EXPECT_EQ(error_text([&] { input.stream_again(into(again = {}), hashes); }),
-                  path + ": was changed while it was read");
-    }
-}
-
 } // namespace
 } // namespace lamella::stl_test

@@ -144,7 +144,7 @@ TEST(StlBinary, LeavesOutTheSameTrianglesWithAnyNumberOfThreads) {
 TEST(StlBinary, CountsTheCopyOfWhatIsLeft) {
     Triangles broken = many;
     broken[3][1].y = nan;
-    const std::uint64_t copy = binary(broken).size() + (many.size() - 1) * sizeof(Triangle3f);
+    const std::uint64_t copy = binary(broken).size() + many.size() * sizeof(Triangle3f);
     EXPECT_EQ(read(binary(broken), {.max_memory = copy}).nonfinite_triangles, 1U);
     EXPECT_EQ(error_of(binary(broken), {.max_memory = copy - 1}, ErrorKind::limit),
               fmt::format("part.stl: takes more than the {} bytes of `max_memory`", copy - 1));

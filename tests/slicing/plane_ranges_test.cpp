@@ -218,7 +218,7 @@ TEST(Ranges, DivideToFit) {
     const TriangleSoup soup = make_torus(6, 2, 200, 100);
     const Plan plan = even_planes(500);
     const RangeSurvey survey(count_planes(soup, plan));
-    const RangeMemory memory{.threads = 2, .placed = false, .points_in_flight = 100};
+    const RangeMemory memory{.threads = 2, .points_in_flight = 100};
     const std::uint64_t all = memory.bytes(survey.needs({0, 500}));
     EXPECT_EQ(divide_to_fit(survey, plan, memory, all).size(), 1U);
     EXPECT_TRUE(divide_to_fit(RangeSurvey(PlaneCounts(0)), {}, memory, all).empty());

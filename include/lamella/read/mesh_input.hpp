@@ -12,7 +12,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 LAMELLA_API_BEGIN
 namespace lamella {
@@ -30,9 +29,6 @@ struct RecordRange {
     std::uint64_t begin = 0;
     std::uint64_t end = 0;
 };
-
-/// A hash of each chunk of a file; 0 for chunks without usable triangles.
-using ChunkHashes = std::vector<std::uint64_t>;
 
 /// An open mesh file. Copies are cheap and refer to the same file.
 class MeshInput {
@@ -69,17 +65,8 @@ class MeshInput {
     /// that at least one triangle of the file is usable. `stored_triangles` and `max_triangles` refer to the
     /// whole file, by the number in its header. Throws Error{usage} if the file has fewer triangles than the
     /// range, for a range of an ASCII file, and for a file that cannot be streamed.
-    ///
-    /// `hashes`, if given, is set to the hashes of the chunks of a whole binary STL file.
     MeshFile stream(const TriangleSink& sink, const MeshReadOptions& options = {},
-                    const Execution& execution = {}, const std::optional<RecordRange>& share = {},
-                    ChunkHashes* hashes = nullptr) const;
-
-    /// Passes all triangles of a binary STL file once more. It takes less time than `stream`, because it
-    /// compares the chunks with their hashes instead of checking them. All triangles must be usable. Throws
-    /// Error{input} if a chunk has changed.
-    void stream_again(const TriangleSink& sink, const ChunkHashes& hashes,
-                      const Execution& execution = {}) const;
+                    const Execution& execution = {}, const std::optional<RecordRange>& share = {}) const;
 
   private:
     std::string path_;

@@ -74,30 +74,31 @@ class ColumnStore {
 
 /// Prepares the edges of a run for cutting. Writes their columns to `to`, which must have space for them.
 template <class Ends>
-EdgeColumns lay_out_edges(const CutGraph<Ends>& graph, const Ranks& ranks,
+EdgeColumns lay_out_edges(const LocatedGraph<Ends>& graph, const Ranks& ranks,
                           std::span<const std::uint32_t> nodes, const PointKernels& kernels, double* to) {
     assert(!nodes.empty());
     const std::size_t stride = EdgeColumns::padded(nodes.size());
-    double* const z0 = to;
-    double* const far_z = z0 + stride;
-    double* const x0 = far_z + stride;
-    double* const far_x = x0 + stride;
-    double* const y0 = far_x + stride;
-    double* const far_y = y0 + stride;
     const bool low_is_base = ranks.rule() == PlaneRule::section_above;
     constexpr std::size_t ahead = 12;
     for (std::size_t i = 0; i < nodes.size(); ++i) {
+        if (i + 2 * ahead < nodes.size())
+            __builtin_prefetch(&graph.nodes[nodes[i + 2 * ahead]]);
         if (i + ahead < nodes.size())
-            __builtin_prefetch(&graph.nodes[nodes[i + ahead]].ends);
-        const Ends& ends = graph.nodes[nodes[i]].ends;
-        const Point3 base = low_is_base ? graph.low(ends) : graph.high(ends);
-        const Point3 far = low_is_base ? graph.high(ends) : graph.low(ends);
-        z0[i] = base.z;
-        far_z[i] = far.z;
-        x0[i] = base.x;
-        far_x[i] = far.x;
-        y0[i] = base.y;
-        far_y[i] = far.y;
+            graph.ends.prefetch(graph.nodes[nodes[i + ahead]].side);
+        const auto [a, b] = graph.ends(graph.nodes[nodes[i]].side);
+        const Point3 p = graph.ends.point(a);
+        const Point3 q = graph.ends.point(b);
+        // The columns z0, far_z, x0, far_x, y0, far_y. The order of the ends of a side is random, so a branch
+        // would be mispredicted.
+        const std::size_t q_is_base = static_cast<std::size_t>((p.z < q.z) != low_is_base);
+        double* const of_p = to + i + q_is_base * stride;
+        double* const of_q = to + i + (1 - q_is_base) * stride;
+        of_p[0] = p.z;
+        of_q[0] = q.z;
+        of_p[2 * stride] = p.x;
+        of_q[2 * stride] = q.x;
+        of_p[4 * stride] = p.y;
+        of_q[4 * stride] = q.y;
     }
     const EdgeColumns edges{to, nodes.size(), ranks.snap_mm()};
     kernels.prepare(edges);

@@ -45,7 +45,7 @@ using NodePartitions = KeyPartitions<std::uint32_t>;
 // the vertex.
 
 struct FloatCorners {
-    using Ends = FloatEnds;
+    using Vertex = Point3f;
     /// Two integers that stay in registers and are read and written without conversion.
     struct Corner {
         std::uint64_t xy;
@@ -79,14 +79,9 @@ struct FloatCorners {
     }
     [[nodiscard]] static std::uint64_t hash(const Corner& c) { return corner_hash(c.xy, c.z); }
     [[nodiscard]] static bool is(const Point3f& stored, const Corner& c) {
-        std::uint64_t xy;
-        std::memcpy(&xy, &stored, sizeof xy);
-        return static_cast<int>(xy == c.xy) &
-               static_cast<int>(lamella::bit_cast<std::uint32_t>(stored.z) == c.z);
-    }
-    static void store(const Corner& c, Point3f& to) {
-        std::memcpy(static_cast<void*>(&to), &c.xy, sizeof c.xy);
-        to.z = lamella::bit_cast<float>(c.z);
+        const auto xy = lamella::bit_cast<std::array<float, 2>>(c.xy);
+        return static_cast<int>(stored.x == xy[0]) & static_cast<int>(stored.y == xy[1]) &
+               static_cast<int>(stored.z == lamella::bit_cast<float>(c.z));
     }
 
   private:
@@ -96,7 +91,7 @@ struct FloatCorners {
 };
 
 struct PlacedCorners {
-    using Ends = DoubleEnds;
+    using Vertex = Point3;
     using Corner = Point3;
 
     PlacedCorners(TriangleSoup chunk, const Ranks& ranks) : chunk_(std::move(chunk)), ranks_(ranks) {}
@@ -112,7 +107,6 @@ struct PlacedCorners {
                    lamella::bit_cast<std::uint64_t>(c.z));
     }
     [[nodiscard]] static bool is(const Point3& stored, const Corner& c) { return stored == c; }
-    static void store(const Corner& c, Point3& to) { to = c; }
 
   private:
     TriangleSoup chunk_;
@@ -120,7 +114,7 @@ struct PlacedCorners {
 };
 
 struct IndexedCorners {
-    using Ends = IndexEnds;
+    using Vertex = std::uint32_t;
     using Corner = std::uint32_t;
 
     IndexedCorners(std::span<const std::array<std::uint32_t, 3>> chunk,
@@ -135,7 +129,6 @@ struct IndexedCorners {
     }
     [[nodiscard]] static std::uint64_t hash(Corner vertex) { return vertex; }
     [[nodiscard]] static bool is(std::uint32_t stored, Corner vertex) { return stored == vertex; }
-    static void store(Corner vertex, std::uint32_t& to) { to = vertex; }
 
   private:
     std::span<const std::array<std::uint32_t, 3>> chunk_;
@@ -171,17 +164,15 @@ class CutNodePool {
 
 /// Collects the nodes of one worker. The collector copies the data that it reads all the time into memory of
 /// its own, so that writes of other workers nearby do not evict the data from its cache.
-template <class Corners>
+template <class Corners, class Ends>
 class alignas(128) Collector {
-    using Ends = typename Corners::Ends;
     using Corner = typename Corners::Corner;
-    using Node = CutNode<Ends>;
 
   public:
     /// Requires a power of two as `table_size`.
-    Collector(const CutGraph<Ends>& graph, const NodePartitions& partitions, CutNodePool& pool,
+    Collector(const LocatedGraph<Ends>& graph, const NodePartitions& partitions, CutNodePool& pool,
               std::uint32_t block_size, std::size_t table_size)
-        : nodes_(graph.nodes.data()), spans_(graph.spans.data()), partitions_(partitions), pool_(pool),
+        : nodes_(graph.nodes.data()), ends_(graph.ends), partitions_(partitions), pool_(pool),
           hashes_(block_size), table_(table_size, Fill::zero) {}
 
     /// Adds the triangles [begin, end) of a chunk; `first` is the number of the first triangle of the chunk.
@@ -214,14 +205,15 @@ class alignas(128) Collector {
 
         const std::array<std::uint64_t, 3> hash{Corners::hash(corner[0]), Corners::hash(corner[1]),
                                                 Corners::hash(corner[2])};
-        const auto node_of = [&](std::size_t from, std::size_t to) {
+        const auto side = static_cast<std::uint32_t>(3 * number);
+        const auto node_of = [&](std::uint32_t from, std::uint32_t to) {
             if (rank[from] == rank[to])
                 return no_node;
             const bool up = rank[from] < rank[to];
             const std::size_t low = up ? from : to;
             const std::size_t high = up ? to : from;
-            return find_or_add(corner[low], corner[high], edge_hash(hash[low], hash[high]),
-                               {rank[low], rank[high]}, up);
+            return find_or_add(corner[from], corner[to], edge_hash(hash[low], hash[high]), rank[low],
+                               rank[high], side + from, up);
         };
         const std::uint32_t node01 = node_of(0, 1);
         const std::uint32_t node12 = node_of(1, 2);
@@ -230,54 +222,58 @@ class alignas(128) Collector {
         // Contours leave an edge through the triangle in which it runs downwards. On planes below the third
         // corner they continue to the edge at its lower end, on planes above that corner to the edge at its
         // upper end.
-        const auto link = [&](std::uint32_t from, std::uint32_t upper_rank, std::uint32_t lower_rank,
-                              std::uint32_t third_rank, std::uint32_t at_lower, std::uint32_t at_upper) {
+        const auto link = [&](std::uint32_t from, std::uint32_t number_here, std::uint32_t upper_rank,
+                              std::uint32_t lower_rank, std::uint32_t third_rank, std::uint32_t at_lower,
+                              std::uint32_t at_upper) {
             if (upper_rank <= lower_rank)
                 return;
             assert(from != no_node); // planes cut the edge
-            Node& leaving = nodes_[from];
+            CutNode& leaving = nodes_[from];
             const bool above_lower = lower_rank < third_rank;
             const bool below_upper = third_rank < upper_rank;
             leaving.next_low = above_lower ? at_lower : at_upper;
             leaving.next_high = below_upper ? at_upper : at_lower;
             leaving.split = above_lower && below_upper ? third_rank : lower_rank;
-            leaving.triangle = static_cast<std::uint32_t>(number);
+            leaving.side = side + number_here;
             assert(leaving.next_low != no_node && leaving.next_high != no_node);
         };
-        link(node01, rank[0], rank[1], rank[2], node12, node20);
-        link(node12, rank[1], rank[2], rank[0], node20, node01);
-        link(node20, rank[2], rank[0], rank[1], node01, node12);
+        link(node01, 0, rank[0], rank[1], rank[2], node12, node20);
+        link(node12, 1, rank[1], rank[2], rank[0], node20, node01);
+        link(node20, 2, rank[2], rank[0], rank[1], node01, node12);
     }
 
-    std::uint32_t find_or_add(const Corner& low, const Corner& high, std::uint64_t hash, PlaneSpan span,
-                              bool entered) {
+    std::uint32_t find_or_add(const Corner& from, const Corner& to, std::uint64_t hash, std::uint32_t first,
+                              std::uint32_t last, std::uint32_t side, bool entered) {
         const auto tag = static_cast<std::uint32_t>(hash >> 32);
         Slot& slot = table_[hash & (table_.size() - 1)];
         if (slot.node != 0 && slot.tag == tag) {
-            Node& node = nodes_[slot.node - 1];
+            const std::uint32_t found = slot.node - 1;
+            CutNode& node = nodes_[found];
             const bool other_side = entered ? node.entered == 0 : !node.left();
-            if (other_side && Corners::is(node.ends.low, low) && Corners::is(node.ends.high, high)) {
-                const std::uint32_t found = slot.node - 1;
+            if (other_side && runs_between(ends_(node.side), to, from)) {
                 node.entered |= static_cast<unsigned>(entered);
                 slot.node = 0; // complete: a third triangle at this edge must get a new node
                 return found;
             }
         }
-        assert(span.first < span.last);
+        assert(first < last);
         const std::uint32_t added = take_number();
-        Node& node = nodes_[added];
+        CutNode& node = nodes_[added];
         node.next_low = no_node;
         node.next_high = no_node;
         node.split = 0;
-        node.triangle = 0;
-        node.set_last(span.last);
+        node.side = side;
+        node.first = first;
+        node.set_last(last);
         node.entered = static_cast<unsigned>(entered);
-        Corners::store(low, node.ends.low);
-        Corners::store(high, node.ends.high);
-        spans_[added] = span;
         hashes_[added - block_.begin] = hash;
         slot = {tag, added + 1};
         return added;
+    }
+
+    static bool runs_between(const std::array<typename Ends::Vertex, 2>& ends, const Corner& from,
+                             const Corner& to) {
+        return Corners::is(ends[0], from) && Corners::is(ends[1], to);
     }
 
     std::uint32_t take_number() {
@@ -299,8 +295,8 @@ class alignas(128) Collector {
                 });
     }
 
-    Node* nodes_;
-    PlaneSpan* spans_;
+    CutNode* nodes_;
+    const Ends& ends_;
     const NodePartitions& partitions_;
     CutNodePool& pool_;
     CutNodePool::Block block_;
@@ -313,41 +309,38 @@ class alignas(128) Collector {
 /// Returns whether the links are complete. Each node in use must link, on all of its planes or (where the
 /// mesh ends) on none, to nodes that these planes cut. As many contours must arrive as leave, so that links
 /// are one to one.
-template <class Ends>
-[[maybe_unused]] bool is_complete(const CutGraph<Ends>& graph) {
+[[maybe_unused]] bool is_complete(const CutGraph& graph) {
     std::uint64_t leaving = 0;
     std::uint64_t arriving = 0;
     const auto leads_to = [&](std::uint32_t next, std::uint32_t first, std::uint32_t last) {
         return first >= last || (next < graph.count && graph.nodes[next].entered &&
-                                 graph.spans[next].first <= first && last <= graph.spans[next].last);
+                                 graph.nodes[next].first <= first && last <= graph.nodes[next].last);
     };
     for (std::uint32_t id = 0; id < graph.count; ++id) {
-        const CutNode<Ends>& node = graph.nodes[id];
-        const PlaneSpan span = graph.spans[id];
-        if (node.last != span.last || (node.in_use() && span.first >= span.last))
+        const CutNode& node = graph.nodes[id];
+        if (!node.in_use())
+            continue;
+        const std::uint32_t last = node.last;
+        if (node.first >= last)
             return false;
         if (node.left()) {
-            leaving += span.last - span.first;
-            const std::uint32_t split = std::clamp(node.split, span.first, span.last);
-            if (!leads_to(node.next_low, span.first, split) || !leads_to(node.next_high, split, span.last))
+            leaving += last - node.first;
+            const std::uint32_t split = std::clamp(node.split, node.first, last);
+            if (!leads_to(node.next_low, node.first, split) || !leads_to(node.next_high, split, last))
                 return false;
         }
         if (node.entered)
-            arriving += span.last - span.first;
+            arriving += last - node.first;
     }
     return leaving == arriving;
 }
 
-template <class Corners>
+template <class Corners, class Ends>
 class Builder {
-    using Ends = typename Corners::Ends;
-    using Node = CutNode<Ends>;
-
   public:
-    Builder(std::uint64_t triangles, const Point3* vertices, Executor& executor, ProgressMeter& progress)
+    Builder(std::uint64_t triangles, Ends ends, Executor& executor, ProgressMeter& progress)
         : triangles_(triangles), executor_(executor), progress_(progress), workers_(executor.workers()),
-          partitions_(triangles * 3 / 2) {
-        graph_.vertices = vertices;
+          partitions_(triangles * 3 / 2), graph_(std::move(ends)) {
         // There are at most three nodes per triangle, and one partly used chunk of numbers per worker.
         block_ = static_cast<std::uint32_t>(
             std::clamp<std::uint64_t>(3 * triangles / workers_ + 3, 3, partitions_.block_size()));
@@ -357,8 +350,7 @@ class Builder {
                         fmt::format("{} triangles are more than can be sliced at once in 32-bit "
                                     "numbers ({})",
                                     triangles, no_node / 3));
-        graph_.nodes = PageArray<Node>(capacity, Fill::zero); // a node of zeros is not in use
-        graph_.spans = PageArray<PlaneSpan>(capacity, Fill::zero);
+        graph_.nodes = PageArray<CutNode>(capacity, Fill::zero); // a node of zeros is not in use
         partitions_.reserve(capacity / block_ + 1, block_);
         pool_.emplace(capacity, block_);
     }
@@ -366,7 +358,7 @@ class Builder {
     /// Collects the `count` triangles of a chunk. May be called by as many threads at once as there are
     /// workers. All chunks together must have the number of triangles of the mesh.
     void add(const Corners& chunk, std::uint64_t first, std::uint64_t count, const RangeVisitor& visit = {}) {
-        std::unique_ptr<Collector<Corners>> collector = take_collector(first);
+        std::unique_ptr<Collector<Corners, Ends>> collector = take_collector(first);
         // Chunks that are visited are added in parts that are still in the cache when they are added.
         const std::uint64_t part = visit ? 1024 : count;
         for (std::uint64_t begin = 0; begin < count; begin += part) {
@@ -381,8 +373,8 @@ class Builder {
     }
 
     /// Must be called after all triangles were added.
-    CutGraph<Ends> finish() {
-        for (const std::unique_ptr<Collector<Corners>>& collector : collectors_)
+    LocatedGraph<Ends> finish() {
+        for (const std::unique_ptr<Collector<Corners, Ends>>& collector : collectors_)
             collector->finish();
         collectors_.clear();
         graph_.count = pool_->used();
@@ -410,14 +402,14 @@ class Builder {
 
     /// Returns a collector that no thread uses; if possible, that of the triangles right before `first`. Its
     /// table has the edges at the border, and is in the cache of the thread if this goes from chunk to chunk.
-    std::unique_ptr<Collector<Corners>> take_collector(std::uint64_t first) {
+    std::unique_ptr<Collector<Corners, Ends>> take_collector(std::uint64_t first) {
         const std::lock_guard lock(mutex_);
         const auto before = std::find_if(collectors_.begin(), collectors_.end(),
                                          [&](const auto& collector) { return collector->end() == first; });
         if (before != collectors_.end())
             std::swap(*before, collectors_.back());
         if (!collectors_.empty()) {
-            std::unique_ptr<Collector<Corners>> collector = std::move(collectors_.back());
+            std::unique_ptr<Collector<Corners, Ends>> collector = std::move(collectors_.back());
             collectors_.pop_back();
             return collector;
         }
@@ -425,8 +417,8 @@ class Builder {
         assert(made_ <= workers_); // there are numbers for this many
         const std::uint64_t expected = triangles_ * 3 / 2;
         const int table_bits = std::clamp(static_cast<int>(std::bit_width(expected)), 4, 15);
-        return std::make_unique<Collector<Corners>>(graph_, partitions_, *pool_, block_,
-                                                    std::size_t{1} << table_bits);
+        return std::make_unique<Collector<Corners, Ends>>(graph_, partitions_, *pool_, block_,
+                                                          std::size_t{1} << table_bits);
     }
 
     void join() {
@@ -434,12 +426,20 @@ class Builder {
         partitions_.join(
             executor_, [](std::uint32_t hash) { return hash; },
             [&](std::uint32_t first, std::uint32_t other, unsigned w) {
-                // The two nodes may be anywhere in memory: prefetch them now and use them later.
+                // The two nodes and their ends may be anywhere in memory: prefetch them now and use them
+                // later.
                 Worker& worker = worker_[w];
                 __builtin_prefetch(&graph_.nodes[first], 1);
                 __builtin_prefetch(&graph_.nodes[other], 1);
-                TriangleIntersection& oldest = worker.intersections[worker.met % worker.intersections.size()];
-                if (worker.met >= worker.intersections.size())
+                const std::size_t pending = worker.intersections.size();
+                if (worker.met >= pending / 2) {
+                    const TriangleIntersection& half =
+                        worker.intersections[(worker.met - pending / 2) % pending];
+                    graph_.ends.prefetch(graph_.nodes[half.first].side);
+                    graph_.ends.prefetch(graph_.nodes[half.other].side);
+                }
+                TriangleIntersection& oldest = worker.intersections[worker.met % pending];
+                if (worker.met >= pending)
                     meet(oldest, worker.non_manifold);
                 oldest = {first, other};
                 ++worker.met;
@@ -457,15 +457,15 @@ class Builder {
     }
 
     void meet(const TriangleIntersection& intersection, std::vector<std::uint32_t>& non_manifold) {
-        Node& a = graph_.nodes[intersection.first];
-        Node& b = graph_.nodes[intersection.other];
+        const CutNode& a = graph_.nodes[intersection.first];
+        const CutNode& b = graph_.nodes[intersection.other];
         if (!a.in_use()) {
             // It is already part of another node, so the edge has at least three halves.
             non_manifold.insert(non_manifold.end(), {a.split, intersection.other});
             return;
         }
         const bool halves = a.entered != b.entered && a.left() != b.left() && a.entered != a.left();
-        if (!halves || !(a.ends == b.ends)) {
+        if (!halves || !(graph_.vertices(intersection.first) == graph_.vertices(intersection.other))) {
             non_manifold.insert(non_manifold.end(), {intersection.first, intersection.other});
         } else if (a.entered) {
             unite(intersection.first, intersection.other);
@@ -477,16 +477,16 @@ class Builder {
     /// Other nodes link to the entered half, so this half stays and takes the links of the other half. The
     /// other half is then not in use; its `split` becomes the number of the node that it is now part of.
     void unite(std::uint32_t entered_half, std::uint32_t left_half) {
-        Node& entered = graph_.nodes[entered_half];
-        Node& left = graph_.nodes[left_half];
+        CutNode& entered = graph_.nodes[entered_half];
+        CutNode& left = graph_.nodes[left_half];
         assert(entered.entered && !entered.left() && left.left() && !left.entered);
         assert(entered.last == left.last);
         entered.next_low = left.next_low;
         entered.next_high = left.next_high;
         entered.split = left.split;
-        entered.triangle = left.triangle;
+        entered.side = left.side;
         left.next_low = left.next_high = no_node;
-        graph_.drop(left_half);
+        left.last = 0;
         left.split = entered_half;
     }
 
@@ -495,22 +495,21 @@ class Builder {
     ProgressMeter& progress_;
     unsigned workers_;
     NodePartitions partitions_;
-    CutGraph<Ends> graph_;
+    LocatedGraph<Ends> graph_;
     std::uint32_t block_ = 0;         // node numbers that a collector takes at once
     std::optional<CutNodePool> pool_; // of the node numbers
     std::mutex mutex_;
-    std::vector<std::unique_ptr<Collector<Corners>>> collectors_; // those that no thread uses
-    unsigned made_ = 0;                                           // collectors
+    std::vector<std::unique_ptr<Collector<Corners, Ends>>> collectors_; // those that no thread uses
+    unsigned made_ = 0;                                                 // collectors
     std::vector<Worker> worker_;
     std::vector<std::uint32_t> non_manifold_; // nodes that share their ends, unordered, with repetitions
 };
 
 /// Builds the graph of a mesh in memory. `corners(begin, end)` returns a chunk of its triangles.
-template <class Corners, class Chunk>
-CutGraph<typename Corners::Ends> build(std::uint64_t triangles, const Point3* vertices, const Chunk& corners,
-                                       Executor& executor, ProgressMeter& progress,
-                                       const RangeVisitor& visit) {
-    Builder<Corners> builder(triangles, vertices, executor, progress);
+template <class Corners, class Ends, class Chunk>
+LocatedGraph<Ends> build(std::uint64_t triangles, Ends ends, const Chunk& corners, Executor& executor,
+                         ProgressMeter& progress, const RangeVisitor& visit) {
+    Builder<Corners, Ends> builder(triangles, std::move(ends), executor, progress);
     const std::uint64_t size =
         std::clamp<std::uint64_t>(triangles / (std::uint64_t{executor.workers()} * 8), 4096, 1U << 16);
     executor.for_chunks(triangles, size, [&](std::uint64_t begin, std::uint64_t end, unsigned) {
@@ -519,49 +518,30 @@ CutGraph<typename Corners::Ends> build(std::uint64_t triangles, const Point3* ve
     return builder.finish();
 }
 
-template <class Corners>
-CutGraph<typename Corners::Ends> build(const TriangleSoup& soup, const Ranks& ranks, Executor& executor,
-                                       ProgressMeter& progress, const RangeVisitor& visit) {
+template <class Corners, class Ends>
+LocatedGraph<Ends> build(const TriangleSoup& soup, const Ranks& ranks, Executor& executor,
+                         ProgressMeter& progress, const RangeVisitor& visit) {
     const auto corners = [&](std::uint64_t begin, std::uint64_t end) {
         return Corners(soup.part(begin, end), ranks);
     };
-    return build<Corners>(soup.size(), nullptr, corners, executor, progress, visit);
-}
-
-template <class Corners>
-CutGraph<typename Corners::Ends> build(const TriangleStream& stream, const Ranks& ranks, Executor& executor,
-                                       ProgressMeter& progress) {
-    Builder<Corners> builder(stream.triangles, nullptr, executor, progress);
-    stream.pass(executor.workers(), [&](const TriangleSoup& chunk, std::uint64_t first) {
-        builder.add(Corners(chunk, ranks), first, chunk.size());
-    });
-    return builder.finish();
+    return build<Corners>(soup.size(), Ends(soup), corners, executor, progress, visit);
 }
 
 } // namespace
 
-CutGraph<FloatEnds> build_cut_graph(const TriangleSoup& unplaced, const Ranks& ranks, Executor& executor,
-                                    ProgressMeter& progress, const RangeVisitor& visit) {
-    return build<FloatCorners>(unplaced, ranks, executor, progress, visit);
+LocatedGraph<SoupEnds> build_cut_graph(const TriangleSoup& unplaced, const Ranks& ranks, Executor& executor,
+                                       ProgressMeter& progress, const RangeVisitor& visit) {
+    return build<FloatCorners, SoupEnds>(unplaced, ranks, executor, progress, visit);
 }
 
-CutGraph<FloatEnds> build_cut_graph(const TriangleStream& unplaced, const Ranks& ranks, Executor& executor,
-                                    ProgressMeter& progress) {
-    return build<FloatCorners>(unplaced, ranks, executor, progress);
+LocatedGraph<PlacedEnds> build_placed_cut_graph(const TriangleSoup& soup, const Ranks& ranks,
+                                                Executor& executor, ProgressMeter& progress,
+                                                const RangeVisitor& visit) {
+    return build<PlacedCorners, PlacedEnds>(soup, ranks, executor, progress, visit);
 }
 
-CutGraph<DoubleEnds> build_placed_cut_graph(const TriangleSoup& soup, const Ranks& ranks, Executor& executor,
-                                            ProgressMeter& progress, const RangeVisitor& visit) {
-    return build<PlacedCorners>(soup, ranks, executor, progress, visit);
-}
-
-CutGraph<DoubleEnds> build_placed_cut_graph(const TriangleStream& stream, const Ranks& ranks,
-                                            Executor& executor, ProgressMeter& progress) {
-    return build<PlacedCorners>(stream, ranks, executor, progress);
-}
-
-CutGraph<IndexEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks, Executor& executor,
-                                    ProgressMeter& progress, const RangeVisitor& visit) {
+LocatedGraph<IndexedEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks, Executor& executor,
+                                          ProgressMeter& progress, const RangeVisitor& visit) {
     PageArray<std::uint32_t> vertex_ranks(mesh.vertices.size());
     executor.for_chunks(mesh.vertices.size(), 1U << 14,
                         [&](std::uint64_t begin, std::uint64_t end, unsigned) {
@@ -571,7 +551,7 @@ CutGraph<IndexEnds> build_cut_graph(const IndexedMesh& mesh, const Ranks& ranks,
     const auto corners = [&](std::uint64_t begin, std::uint64_t end) {
         return IndexedCorners(std::span(mesh.triangles).subspan(begin, end - begin), vertex_ranks);
     };
-    return build<IndexedCorners>(mesh.triangles.size(), mesh.vertices.data(), corners, executor, progress,
+    return build<IndexedCorners>(mesh.triangles.size(), IndexedEnds(mesh), corners, executor, progress,
                                  visit);
 }
 

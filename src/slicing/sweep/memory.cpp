@@ -12,8 +12,7 @@ std::uint64_t RangeMemory::bytes(const RangeNeeds& range) const noexcept {
     // node. The marks of its own that a worker has take at most as much.
     constexpr std::uint64_t joining = 8 + 12;
     const std::uint64_t walking = 8 + 4 * (std::uint64_t{threads} + 1);
-    const std::uint64_t node = (placed ? sizeof(CutNode<DoubleEnds>) : sizeof(CutNode<FloatEnds>)) +
-                               sizeof(PlaneSpan) + std::max(joining, walking);
+    const std::uint64_t node = sizeof(CutNode) + std::max(joining, walking);
     // A point and the text that a sink makes of it.
     constexpr std::uint64_t point = sizeof(Point2) + 40;
     const std::uint64_t in_flight =

@@ -119,13 +119,15 @@ inline std::vector<std::pair<std::size_t, std::size_t>> match(const std::vector<
 /// nodes not in use are ignored. Returns the number of non-manifold edges. O(nodes of the graph + c log c)
 /// for c nodes in `non_manifold`; only called if there are any.
 template <class Ends>
-std::uint64_t pair_non_manifold_edges(CutGraph<Ends>& graph, std::vector<std::uint32_t> non_manifold,
+std::uint64_t pair_non_manifold_edges(LocatedGraph<Ends>& graph, std::vector<std::uint32_t> non_manifold,
                                       Executor& executor) {
     using pairing::Ray;
-    using Node = CutNode<Ends>;
+    using Edge = EdgeEnds<typename Ends::Vertex>;
 
     const auto ends_order = [&](std::uint32_t a, std::uint32_t b) {
-        return std::memcmp(&graph.nodes[a].ends, &graph.nodes[b].ends, sizeof(Ends));
+        const Edge of_a = graph.vertices(a);
+        const Edge of_b = graph.vertices(b);
+        return std::memcmp(&of_a, &of_b, sizeof(Edge));
     };
     std::sort(non_manifold.begin(), non_manifold.end(), [&](std::uint32_t a, std::uint32_t b) {
         const int order = ends_order(a, b);
@@ -134,9 +136,10 @@ std::uint64_t pair_non_manifold_edges(CutGraph<Ends>& graph, std::vector<std::ui
     non_manifold.erase(std::unique(non_manifold.begin(), non_manifold.end()), non_manifold.end());
     executor.check_cancelled();
 
-    const auto third = [&](const Ends& edge, const Ends& other) {
+    const auto third = [&](const Edge& edge, std::uint32_t beside) {
+        const Edge other = graph.vertices(beside);
         const bool low_is_shared = other.low == edge.low || other.low == edge.high;
-        return low_is_shared ? graph.high(other) : graph.low(other);
+        return graph.ends.point(low_is_shared ? other.high : other.low);
     };
 
     // The triangle that arrives at a node is stored in the node that links to it: one pass over all nodes
@@ -152,12 +155,12 @@ std::uint64_t pair_non_manifold_edges(CutGraph<Ends>& graph, std::vector<std::ui
     std::vector<std::vector<Arrival>> found(executor.workers());
     executor.for_chunks(graph.count, 1U << 16, [&](std::uint64_t begin, std::uint64_t end, unsigned worker) {
         for (std::uint64_t id = begin; id < end; ++id) {
-            const Node& node = graph.nodes[id];
+            const CutNode& node = graph.nodes[id];
             if (!node.in_use() || !node.left())
                 continue;
             for (const std::uint32_t next : {node.next_low, node.next_high})
                 if (is_non_manifold[next])
-                    found[worker].push_back({next, static_cast<std::uint32_t>(id), node.triangle});
+                    found[worker].push_back({next, static_cast<std::uint32_t>(id), node.triangle()});
         }
     });
     std::vector<Arrival> arrivals;
@@ -173,7 +176,7 @@ std::uint64_t pair_non_manifold_edges(CutGraph<Ends>& graph, std::vector<std::ui
 
     std::uint64_t edges = 0;
     std::vector<Ray> rays;
-    std::vector<Node> links;
+    std::vector<CutNode> links;
     for (std::size_t begin = 0; begin < non_manifold.size();) {
         if (edges % 1024 == 0)
             executor.check_cancelled();
@@ -181,18 +184,22 @@ std::uint64_t pair_non_manifold_edges(CutGraph<Ends>& graph, std::vector<std::ui
         while (end < non_manifold.size() && ends_order(non_manifold[begin], non_manifold[end]) == 0)
             ++end;
 
-        const Ends edge = graph.nodes[non_manifold[begin]].ends;
-        PlaneSpan span{};
+        const Edge edge = graph.vertices(non_manifold[begin]);
+        const EdgeEnds<Point3> ends = graph.points(non_manifold[begin]);
+        std::uint32_t first = 0; // the planes that cut the edge
+        std::uint32_t last = 0;
         rays.clear();
         links.clear();
         std::vector<std::uint32_t> spare; // nodes without an arriving contour, for the unpaired links
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t id = non_manifold[i];
-            Node& node = graph.nodes[id];
-            if (node.in_use())
-                span = graph.spans[id];
+            CutNode& node = graph.nodes[id];
+            if (node.in_use()) {
+                first = node.first;
+                last = node.last;
+            }
             if (node.left()) {
-                rays.push_back({false, 0, third(edge, graph.nodes[node.next_low].ends), node.triangle,
+                rays.push_back({false, 0, third(edge, node.next_low), node.triangle(),
                                 static_cast<std::uint32_t>(links.size())});
                 links.push_back(node);
             }
@@ -200,28 +207,27 @@ std::uint64_t pair_non_manifold_edges(CutGraph<Ends>& graph, std::vector<std::ui
                 const auto arrival =
                     std::lower_bound(arrivals.begin(), arrivals.end(), Arrival{id, 0, 0}, by_node);
                 assert(arrival != arrivals.end() && arrival->node == id);
-                rays.push_back(
-                    {true, 0, third(edge, graph.nodes[arrival->from].ends), arrival->triangle, id});
+                rays.push_back({true, 0, third(edge, arrival->from), arrival->triangle, id});
             } else {
                 spare.push_back(id);
             }
             node.next_low = node.next_high = no_node;
         }
         for (Ray& ray : rays)
-            ray.angle = pairing::ray_angle(graph.low(edge), graph.high(edge), ray.third);
+            ray.angle = pairing::ray_angle(ends.low, ends.high, ray.third);
         std::sort(rays.begin(), rays.end(), pairing::before);
 
         std::vector<bool> placed(links.size());
         const auto position = [&](std::uint32_t node, std::uint32_t link) {
             assert(!placed[link]);
-            const Node& from = links[link];
-            Node& to = graph.nodes[node];
+            const CutNode& from = links[link];
+            CutNode& to = graph.nodes[node];
             to.next_low = from.next_low;
             to.next_high = from.next_high;
             to.split = from.split;
-            to.triangle = from.triangle;
-            to.set_last(span.last);
-            graph.spans[node] = span;
+            to.side = from.side;
+            to.first = first;
+            to.set_last(last);
             placed[link] = true;
         };
         for (const auto& [arriving, leaving] : pairing::match(rays))
@@ -234,7 +240,7 @@ std::uint64_t pair_non_manifold_edges(CutGraph<Ends>& graph, std::vector<std::ui
             }
         }
         for (const std::uint32_t id : spare)
-            graph.drop(id);
+            graph.nodes[id].last = 0;
         edges += rays.size() > 2;
         begin = end;
     }

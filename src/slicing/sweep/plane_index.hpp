@@ -16,34 +16,32 @@
 
 namespace lamella {
 
-/// The spans of all nodes, in classes by length: class c has those that 2^c to 2^(c + 1) - 1 planes cut. In a
-/// class they are sorted by their first plane, so those that a plane may cut follow one another.
+/// The planes of all nodes, in classes by length: class c has those that 2^c to 2^(c + 1) - 1 planes cut. In
+/// a class they are sorted by their first plane, so those that a plane may cut follow one another.
 class PlaneIndex {
   public:
     /// O(nodes + planes).
-    template <class Ends>
-    PlaneIndex(const CutGraph<Ends>& graph, std::uint32_t planes) {
+    PlaneIndex(const CutGraph& graph, std::uint32_t planes) {
         std::vector<std::uint32_t> next(planes + std::size_t{1}); // the position of the next node that begins
         std::array<std::size_t, classes> sizes{};
-        for (std::uint32_t node = 0; node < graph.count; ++node) {
-            const PlaneSpan span = graph.spans[node];
-            if (span.first == span.last)
+        for (const CutNode& node : graph.nodes.span().first(graph.count)) {
+            if (!node.in_use())
                 continue;
-            assert(span.first < span.last && span.last <= planes);
-            ++next[span.first + std::size_t{1}];
-            ++sizes[class_of(span)];
+            assert(node.first < node.last && node.last <= planes);
+            ++next[node.first + std::size_t{1}];
+            ++sizes[class_of(node)];
         }
         for (std::uint32_t plane = 0; plane < planes; ++plane)
             next[plane + std::size_t{1}] += next[plane];
         PageArray<std::uint32_t> sorted(next.back());
         for (std::uint32_t node = 0; node < graph.count; ++node)
-            if (const PlaneSpan span = graph.spans[node]; span.first != span.last)
-                sorted[next[span.first]++] = node;
+            if (graph.nodes[node].in_use())
+                sorted[next[graph.nodes[node].first]++] = node;
         for (std::size_t c = 0; c < classes; ++c)
             nodes_[c].reserve(sizes[c]);
-        for (const std::uint32_t node : sorted.span()) {
-            const PlaneSpan span = graph.spans[node];
-            nodes_[class_of(span)].push_back({span, node});
+        for (const std::uint32_t id : sorted.span()) {
+            const CutNode& node = graph.nodes[id];
+            nodes_[class_of(node)].push_back({node.first, node.last, id});
         }
     }
 
@@ -52,24 +50,26 @@ class PlaneIndex {
         found.clear();
         for (std::size_t c = 0; c < classes; ++c) {
             const std::uint64_t longest = (std::uint64_t{2} << c) - 1;
-            auto entry = std::lower_bound(
-                nodes_[c].begin(), nodes_[c].end(), plane,
-                [&](const Entry& e, std::uint32_t p) { return e.span.first + longest <= p; });
-            for (; entry != nodes_[c].end() && entry->span.first <= plane; ++entry)
-                if (entry->span.last > plane)
+            auto entry =
+                std::lower_bound(nodes_[c].begin(), nodes_[c].end(), plane,
+                                 [&](const Entry& e, std::uint32_t p) { return e.first + longest <= p; });
+            for (; entry != nodes_[c].end() && entry->first <= plane; ++entry)
+                if (entry->last > plane)
                     found.push_back(entry->node);
         }
     }
 
   private:
+    /// The planes [first, last) cut the node.
     struct Entry {
-        PlaneSpan span;
+        std::uint32_t first;
+        std::uint32_t last;
         std::uint32_t node;
     };
     static constexpr std::size_t classes = 31; // planes have numbers of 31 bits
 
-    [[nodiscard]] static std::size_t class_of(PlaneSpan span) noexcept {
-        return static_cast<std::size_t>(std::bit_width(span.last - span.first)) - 1;
+    [[nodiscard]] static std::size_t class_of(const CutNode& node) noexcept {
+        return static_cast<std::size_t>(std::bit_width(std::uint32_t{node.last} - node.first)) - 1;
     }
 
     std::array<std::vector<Entry>, classes> nodes_;

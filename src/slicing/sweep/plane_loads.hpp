@@ -31,8 +31,7 @@ struct PlaneLoads {
 };
 
 /// Divides the nodes into chunks, at most one per worker and each large enough for a thread, and counts them.
-template <class Ends>
-std::vector<NodeRange> count_nodes(const CutGraph<Ends>& graph, std::uint32_t planes, Executor& executor) {
+inline std::vector<NodeRange> count_nodes(const CutGraph& graph, std::uint32_t planes, Executor& executor) {
     constexpr std::uint64_t worth_a_thread = 1U << 15; // nodes
     const std::uint64_t shares =
         std::clamp<std::uint64_t>(graph.count / worth_a_thread, 1, executor.workers());
@@ -44,11 +43,10 @@ std::vector<NodeRange> count_nodes(const CutGraph<Ends>& graph, std::uint32_t pl
         share.begins.assign(planes + std::size_t{1}, 0);
         share.ends.assign(planes + std::size_t{1}, 0);
         for (std::uint32_t id = share.begin; id < share.end; ++id) {
-            const PlaneSpan span = graph.spans[id];
-            assert(span.last <= planes);
-            const bool used = span.last != 0;
-            share.begins[span.first] += used;
-            share.ends[span.last] += used;
+            const CutNode& node = graph.nodes[id];
+            assert(node.last <= planes);
+            share.begins[node.first] += node.in_use();
+            share.ends[node.last] += node.in_use();
         }
     });
     return result;

@@ -137,7 +137,7 @@ class PreparedPlanes final : public LevelPlanes {
         index_.find(plane, work.nodes);
         const Ranks ranks(plan_of({&z, 1}, rule_));
         const Executor executor({.threads = 1});
-        Walk<Ends> walk(graph_, work.marks);
+        Walk walk(graph_, work.marks);
         walk.begin_task({plane, plane + 1}, work.nodes);
         walk.walk(plane, {}, [&](const NodeSequence& sequence) {
             Scratch& scratch = work.scratch;
@@ -171,7 +171,7 @@ class PreparedPlanes final : public LevelPlanes {
 
     std::vector<double> heights_;
     PlaneRule rule_;
-    CutGraph<Ends> graph_;
+    LocatedGraph<Ends> graph_;
     PlaneIndex index_;
     mutable std::mutex mutex_;
     mutable std::vector<std::unique_ptr<Workspace>> idle_;
@@ -186,14 +186,14 @@ std::unique_ptr<const LevelPlanes> prepare(const Mesh& mesh, PlaneRule rule, con
     };
     std::unique_ptr<const LevelPlanes> planes;
     if (mesh.indexed() != nullptr)
-        planes = prepared.template operator()<IndexEnds>(
+        planes = prepared.template operator()<IndexedEnds>(
             [&](const Ranks& ranks) { return build_cut_graph(*mesh.indexed(), ranks, executor, progress); });
     else if (mesh.soup()->has_placement())
-        planes = prepared.template operator()<DoubleEnds>([&](const Ranks& ranks) {
+        planes = prepared.template operator()<PlacedEnds>([&](const Ranks& ranks) {
             return build_placed_cut_graph(*mesh.soup(), ranks, executor, progress);
         });
     else
-        planes = prepared.template operator()<FloatEnds>(
+        planes = prepared.template operator()<SoupEnds>(
             [&](const Ranks& ranks) { return build_cut_graph(*mesh.soup(), ranks, executor, progress); });
     progress.finish();
     return planes;

@@ -22,8 +22,7 @@ namespace lamella {
 class StartIndex {
   public:
     /// Requires that the nodes were counted in `shares`, added up in `loads` and divided into `tasks`.
-    template <class Ends>
-    StartIndex(const CutGraph<Ends>& graph, const std::vector<NodeRange>& shares, const PlaneLoads& loads,
+    StartIndex(const CutGraph& graph, const std::vector<NodeRange>& shares, const PlaneLoads& loads,
                const std::vector<SweepTask>& tasks, Executor& executor)
         : starts_before_(loads.begun), starts_(loads.begun.back()) {
         // Each plane's task.
@@ -36,13 +35,13 @@ class StartIndex {
         carried_ = PageArray<std::uint32_t>(carried_before_.back());
         executor.for_chunks(shares.size(), 1, [&](std::uint64_t s, std::uint64_t, unsigned) {
             for (std::uint32_t id = shares[s].begin; id < shares[s].end; ++id) {
-                const PlaneSpan span = graph.spans[id];
-                if (span.last == 0)
+                const CutNode& node = graph.nodes[id];
+                if (!node.in_use())
                     continue;
-                assert(span.first < span.last);
-                starts_[positions.starts[s][span.first]++] = id;
-                for (std::uint32_t t = task_of[span.first] + 1;
-                     t < tasks.size() && tasks[t].planes.begin < span.last; ++t)
+                assert(node.first < node.last);
+                starts_[positions.starts[s][node.first]++] = id;
+                for (std::uint32_t t = task_of[node.first] + 1;
+                     t < tasks.size() && tasks[t].planes.begin < node.last; ++t)
                     carried_[positions.carried[s][t]++] = id;
             }
         });

@@ -44,7 +44,7 @@ template <class Ends>
 class alignas(128) Sweep {
   public:
     /// Requires that all tasks are shared if `first` is, and that none has a larger group.
-    Sweep(const CutGraph<Ends>& graph, const SharedMarks& marks, const StartIndex& starts,
+    Sweep(const LocatedGraph<Ends>& graph, const SharedMarks& marks, const StartIndex& starts,
           const PlaneLoads& loads, const Ranks& ranks, const Plan& plan, const SweepTask& first,
           Executor& executor, const LayerSink& sink, OrderedStage& delivery)
         : graph_(graph), starts_(starts), ranks_(ranks), plan_(plan), sink_(sink), delivery_(delivery),
@@ -144,7 +144,7 @@ class alignas(128) Sweep {
         entries_.add(runs_.all(), runs_, plane);
     }
 
-    const CutGraph<Ends>& graph_;
+    const LocatedGraph<Ends>& graph_;
     const StartIndex& starts_;
     const Ranks& ranks_;
     const Plan& plan_;
@@ -159,7 +159,8 @@ class alignas(128) Sweep {
 };
 
 template <class Ends>
-void sweep_graph(const SliceJob& job, const CutGraph<Ends>& graph, const Ranks& ranks, Executor& executor) {
+void sweep_graph(const SliceJob& job, const LocatedGraph<Ends>& graph, const Ranks& ranks,
+                 Executor& executor) {
     const Stopwatch slicing;
     ProgressMeter progress(job.execution, Stage::slice, ranks.count());
     OrderedStage delivery(executor, progress);
@@ -198,8 +199,7 @@ void slice_by_sweep(const SliceJob& job) {
     Executor executor(job.execution);
     const Stopwatch linking;
     const Ranks ranks(job.plan);
-    ProgressMeter progress(job.execution, Stage::link,
-                           job.stream != nullptr ? job.stream->triangles : job.mesh.size());
+    ProgressMeter progress(job.execution, Stage::link, job.mesh.size());
     const auto linked = [&](const auto& graph) -> const auto& {
         progress.finish();
         job.report.link_seconds = linking.seconds();
@@ -210,12 +210,7 @@ void slice_by_sweep(const SliceJob& job) {
         visit = [&job](std::uint64_t begin, std::uint64_t end) {
             (*job.visitor)(job.mesh, begin, end);
         };
-    if (job.stream != nullptr && job.stream->placed)
-        sweep_graph(job, linked(build_placed_cut_graph(*job.stream, ranks, executor, progress)), ranks,
-                    executor);
-    else if (job.stream != nullptr)
-        sweep_graph(job, linked(build_cut_graph(*job.stream, ranks, executor, progress)), ranks, executor);
-    else if (job.mesh.indexed() != nullptr)
+    if (job.mesh.indexed() != nullptr)
         sweep_graph(job, linked(build_cut_graph(*job.mesh.indexed(), ranks, executor, progress, visit)),
                     ranks, executor);
     else if (job.mesh.soup()->has_placement())

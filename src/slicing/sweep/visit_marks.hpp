@@ -24,9 +24,8 @@ using SharedMarks = PageArray<std::atomic<std::uint32_t>>;
 /// that the memory does not grow by all nodes with each worker.
 class VisitMarks {
   public:
-    /// Requires one shared mark, initially 0, and one span per node; both must outlive this object.
-    VisitMarks(const SharedMarks& shared, const PageArray<PlaneSpan>& spans)
-        : shared_(shared), spans_(spans) {}
+    /// Requires one shared mark, initially 0, per node; both must outlive this object.
+    VisitMarks(const SharedMarks& shared, const PageArray<CutNode>& nodes) : shared_(shared), nodes_(nodes) {}
 
     /// Begins a task at a plane. `carried` are all nodes that begin before it and are visited in the task.
     void begin_task(std::uint32_t first_plane, std::span<const std::uint32_t> carried) {
@@ -58,15 +57,11 @@ class VisitMarks {
             shared_[node].store(end, std::memory_order_relaxed);
     }
 
-    void prefetch(std::uint32_t node) const {
-        __builtin_prefetch(&shared_[node], 1);
-        if (first_plane_ != 0)
-            __builtin_prefetch(&spans_[node]);
-    }
+    void prefetch(std::uint32_t node) const { __builtin_prefetch(&shared_[node], 1); }
 
   private:
     [[nodiscard]] bool is_carried(std::uint32_t node) const {
-        return first_plane_ != 0 && spans_[node].first < first_plane_;
+        return first_plane_ != 0 && nodes_[node].first < first_plane_;
     }
 
     /// Returns the slot of a carried node, or while nodes are entered, a free slot for it.
@@ -81,7 +76,7 @@ class VisitMarks {
     }
 
     const SharedMarks& shared_;
-    const PageArray<PlaneSpan>& spans_;
+    const PageArray<CutNode>& nodes_;
     std::uint32_t first_plane_ = 0;
     bool hashed_ = false;
     std::vector<std::uint32_t> keys_;  ///< per slot: the carried node, or no_node

@@ -32,7 +32,8 @@ template <class Ends>
 class Walk {
   public:
     /// Requires marks of all nodes, initially 0, which the walks of all workers share.
-    Walk(const CutGraph<Ends>& graph, const SharedMarks& marks) : graph_(graph), marks_(marks, graph.spans) {}
+    Walk(const LocatedGraph<Ends>& graph, const SharedMarks& marks)
+        : graph_(graph), marks_(marks, graph.nodes) {}
 
     /// Must be called before the first plane of a task. Requires tasks in ascending order, and in `carried`
     /// all nodes that reach into the task from below; it must live until the first plane is walked.
@@ -168,8 +169,9 @@ class Walk {
             return false;
         }
         marks_.mark(id, plane + 1);
-        const CutNode<Ends>& node = graph_.nodes[id];
-        assert(node.in_use() && graph_.spans[id].first <= plane && plane < node.last);
+        const CutNode& node = graph_.nodes[id];
+        assert(node.in_use() && node.first <= plane && plane < node.last);
+        graph_.ends.prefetch(node.side); // needed when the run is measured
         walker.add(id);
         walker.valid_until = std::min<std::uint32_t>(walker.valid_until, node.last);
         std::uint32_t next = node.next_high;
@@ -184,7 +186,6 @@ class Walk {
         walker.node = next;
         marks_.prefetch(next);
         __builtin_prefetch(&graph_.nodes[next]);
-        __builtin_prefetch(&graph_.nodes[next].ends);
         return true;
     }
 
@@ -262,7 +263,7 @@ class Walk {
         found(sequence);
     }
 
-    const CutGraph<Ends>& graph_;
+    const LocatedGraph<Ends>& graph_;
     PlaneRange planes_;                      // planes of the task
     std::span<const std::uint32_t> carried_; // until they are walked
     VisitMarks marks_;

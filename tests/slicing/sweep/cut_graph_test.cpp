@@ -65,17 +65,18 @@ void with_graph(const IndexedMesh& mesh, const Plan& plan, unsigned threads, con
 }
 
 template <class Ends>
-Edge edge_of(const CutGraph<Ends>& graph, std::uint32_t node) {
-    return {graph.low(graph.nodes[node].ends), graph.high(graph.nodes[node].ends)};
+Edge edge_of(const LocatedGraph<Ends>& graph, std::uint32_t node) {
+    const EdgeEnds<Point3> ends = graph.points(node);
+    return {ends.low, ends.high};
 }
 
 /// Everything that contours follow, independent of how nodes are numbered.
 template <class Ends>
-std::vector<Link> links_of(const CutGraph<Ends>& graph) {
+std::vector<Link> links_of(const LocatedGraph<Ends>& graph) {
     std::vector<Link> links;
     for (std::uint32_t id = 0; id < graph.count; ++id) {
-        const CutNode<Ends>& node = graph.nodes[id];
-        for (std::uint32_t plane = graph.spans[id].first; plane < graph.spans[id].last; ++plane)
+        const CutNode& node = graph.nodes[id];
+        for (std::uint32_t plane = graph.nodes[id].first; plane < graph.nodes[id].last; ++plane)
             if (node.next(plane) != no_node)
                 links.emplace_back(plane, edge_of(graph, id), edge_of(graph, node.next(plane)));
     }
@@ -99,35 +100,31 @@ struct Census {
 
 /// Checks what holds for every graph, and counts.
 template <class Ends>
-Census census(const CutGraph<Ends>& graph, const Ranks& ranks) {
+Census census(const LocatedGraph<Ends>& graph, const Ranks& ranks) {
     Census out;
     out.nonmanifold = graph.nonmanifold_edges;
     std::vector<std::vector<std::uint32_t>> alive(ranks.count());
     for (std::uint32_t id = 0; id < graph.count; ++id) {
-        const CutNode<Ends>& node = graph.nodes[id];
-        const PlaneSpan span = graph.spans[id];
-        EXPECT_EQ(node.last, span.last);
-        if (!node.in_use()) {
-            EXPECT_EQ(span.first, 0U);
+        const CutNode& node = graph.nodes[id];
+        if (!node.in_use())
             continue;
-        }
-        EXPECT_LT(span.first, span.last);
-        EXPECT_LE(span.last, ranks.count());
-        EXPECT_EQ(span.first, ranks(graph.low(node.ends).z));
-        EXPECT_EQ(node.last, ranks(graph.high(node.ends).z));
+        EXPECT_LT(node.first, node.last);
+        EXPECT_LE(node.last, ranks.count());
+        EXPECT_EQ(node.first, ranks(edge_of(graph, id).first.z));
+        EXPECT_EQ(node.last, ranks(edge_of(graph, id).second.z));
         EXPECT_EQ(node.next_low == no_node, node.next_high == no_node);
         EXPECT_TRUE(node.left() || node.entered) << "a node that no triangle made";
         if (node.left()) {
-            EXPECT_LE(span.first, node.split);
+            EXPECT_LE(node.first, node.split);
             EXPECT_LT(node.split, node.last);
         }
-        for (std::uint32_t plane = span.first; plane < span.last && plane < ranks.count(); ++plane)
+        for (std::uint32_t plane = node.first; plane < node.last && plane < ranks.count(); ++plane)
             alive[plane].push_back(id);
     }
     for (std::uint32_t plane = 0; plane < ranks.count(); ++plane) {
         std::vector<std::uint32_t> reached;
         for (const std::uint32_t id : alive[plane]) {
-            const CutNode<Ends>& node = graph.nodes[id];
+            const CutNode& node = graph.nodes[id];
             const std::uint32_t next = node.next(plane);
             ++out.alive;
             out.not_entered += node.entered == 0;
@@ -138,7 +135,7 @@ Census census(const CutGraph<Ends>& graph, const Ranks& ranks) {
             EXPECT_LT(next, graph.count);
             if (next >= graph.count)
                 continue;
-            const PlaneSpan there = graph.spans[next];
+            const CutNode& there = graph.nodes[next];
             EXPECT_TRUE(there.first <= plane && plane < there.last)
                 << "a link into nothing on plane " << plane;
             EXPECT_TRUE(graph.nodes[next].entered);
@@ -231,8 +228,8 @@ TEST(CutGraph, OfATetrahedronIsAsDrawnByHand) {
             EXPECT_TRUE(seen.insert(here).second) << "one node for each edge";
             ASSERT_TRUE(expected.contains(here));
             const Expected& want = expected.at(here);
-            EXPECT_EQ(graph.spans[id].first, want.first);
-            EXPECT_EQ(graph.spans[id].last, want.last);
+            EXPECT_EQ(graph.nodes[id].first, want.first);
+            EXPECT_EQ(graph.nodes[id].last, want.last);
             EXPECT_EQ(node.split, want.split);
             EXPECT_EQ(node.entered, 1U);
             ASSERT_TRUE(node.left());
@@ -392,8 +389,8 @@ TEST(CutGraph, NamesTheTriangleThatAContourLeavesThrough) {
             const auto& node = graph.nodes[id];
             if (!node.in_use())
                 continue;
-            ASSERT_LT(node.triangle, triangles.size());
-            const Triangle3f& t = triangles[node.triangle];
+            ASSERT_LT(node.triangle(), triangles.size());
+            const Triangle3f& t = triangles[node.triangle()];
             bool runs_down = false;
             for (std::size_t k = 0; k < 3; ++k)
                 runs_down |= t[k].z > t[(k + 1) % 3].z && edge(t[k], t[(k + 1) % 3]) == edge_of(graph, id);

@@ -14,7 +14,7 @@
 
 namespace lamella::test {
 
-inline CutGraph<FloatEnds> graph_of(const TriangleSoup& soup, const Ranks& ranks) {
+inline LocatedGraph<SoupEnds> graph_of(const TriangleSoup& soup, const Ranks& ranks) {
     const Execution execution{.threads = 1};
     Executor executor(execution);
     ProgressMeter progress(execution, Stage::link, soup.size());
@@ -22,19 +22,19 @@ inline CutGraph<FloatEnds> graph_of(const TriangleSoup& soup, const Ranks& ranks
 }
 
 /// Returns the nodes in use that begin on the plane, ascending.
-inline std::vector<std::uint32_t> nodes_beginning_on(const CutGraph<FloatEnds>& graph, std::uint32_t plane) {
+inline std::vector<std::uint32_t> nodes_beginning_on(const CutGraph& graph, std::uint32_t plane) {
     std::vector<std::uint32_t> nodes;
     for (std::uint32_t id = 0; id < graph.count; ++id)
-        if (graph.nodes[id].in_use() && graph.spans[id].first == plane)
+        if (graph.nodes[id].in_use() && graph.nodes[id].first == plane)
             nodes.push_back(id);
     return nodes;
 }
 
 /// Returns the nodes that the plane cuts, ascending.
-inline std::vector<std::uint32_t> nodes_alive_on(const CutGraph<FloatEnds>& graph, std::uint32_t plane) {
+inline std::vector<std::uint32_t> nodes_alive_on(const CutGraph& graph, std::uint32_t plane) {
     std::vector<std::uint32_t> nodes;
     for (std::uint32_t id = 0; id < graph.count; ++id)
-        if (graph.spans[id].first <= plane && plane < graph.spans[id].last)
+        if (graph.nodes[id].first <= plane && plane < graph.nodes[id].last)
             nodes.push_back(id);
     return nodes;
 }

@@ -19,9 +19,9 @@ namespace {
 /// Calls look(outline, planes, scratch) for each contour of a mesh over the planes that its nodes serve.
 template <class Look>
 void for_outlines(const TriangleSoup& soup, const Ranks& ranks, const Look& look) {
-    const CutGraph<FloatEnds> graph = test::graph_of(soup, ranks);
+    const LocatedGraph<SoupEnds> graph = test::graph_of(soup, ranks);
     const SharedMarks marks(graph.count, Fill::zero);
-    Walk<FloatEnds> walk(graph, marks);
+    Walk walk(graph, marks);
     walk.begin_task({0, ranks.count()}, {});
     Scratch scratch;
     for (std::uint32_t plane = 0; plane < ranks.count(); ++plane)

@@ -20,7 +20,7 @@ std::vector<std::uint32_t> ascending(std::span<const std::uint32_t> nodes) {
 
 TEST(StartIndex, NamesTheNodesThatBeginOnAPlaneAndThoseThatReachIntoATask) {
     const Ranks ranks(test::even_planes(-10, 10, 50));
-    const CutGraph<FloatEnds> graph = test::graph_of(shuffled(make_sphere(10, 5), 3), ranks);
+    const LocatedGraph<SoupEnds> graph = test::graph_of(shuffled(make_sphere(10, 5), 3), ranks);
     const std::vector<SweepTask> tasks{{{0, 1}, 50}, {{1, 17}, 50}, {{17, 40}, 50}, {{40, 50}, 50}};
     for (const unsigned threads : {1U, 3U}) {
         Executor executor({.threads = threads});
@@ -32,7 +32,7 @@ TEST(StartIndex, NamesTheNodesThatBeginOnAPlaneAndThoseThatReachIntoATask) {
         for (std::size_t t = 0; t < tasks.size(); ++t) {
             std::vector<std::uint32_t> from_below;
             for (const std::uint32_t node : test::nodes_alive_on(graph, tasks[t].planes.begin))
-                if (graph.spans[node].first < tasks[t].planes.begin)
+                if (graph.nodes[node].first < tasks[t].planes.begin)
                     from_below.push_back(node);
             EXPECT_EQ(ascending(index.carried(t)), from_below);
         }
@@ -41,7 +41,7 @@ TEST(StartIndex, NamesTheNodesThatBeginOnAPlaneAndThoseThatReachIntoATask) {
 
 TEST(PlaneLoads, CountTheNodesAliveOnEachPlane) {
     const Ranks ranks(test::even_planes(-10, 10, 50));
-    const CutGraph<FloatEnds> graph = test::graph_of(make_sphere(10, 4), ranks);
+    const LocatedGraph<SoupEnds> graph = test::graph_of(make_sphere(10, 4), ranks);
     Executor executor({.threads = 2});
     const PlaneLoads loads = loads_of(count_nodes(graph, 50, executor), 50);
     std::uint64_t all = 0;

@@ -14,17 +14,17 @@ namespace lamella::visit_marks_cases {
 namespace {
 
 /// The nodes alive on a plane that begin before it.
-std::vector<std::uint32_t> carried_into(const CutGraph<FloatEnds>& graph, std::uint32_t plane) {
+std::vector<std::uint32_t> carried_into(const CutGraph& graph, std::uint32_t plane) {
     std::vector<std::uint32_t> carried = test::nodes_alive_on(graph, plane);
-    std::erase_if(carried, [&](std::uint32_t node) { return graph.spans[node].first >= plane; });
+    std::erase_if(carried, [&](std::uint32_t node) { return graph.nodes[node].first >= plane; });
     return carried;
 }
 
 /// Compares the marks of two workers with one array for each: on the planes below `border`, and from it on.
-void expect_marks_of_their_own(const CutGraph<FloatEnds>& graph, std::uint32_t border, std::uint32_t end) {
+void expect_marks_of_their_own(const CutGraph& graph, std::uint32_t border, std::uint32_t end) {
     const SharedMarks shared(graph.count, Fill::zero);
-    VisitMarks below(shared, graph.spans);
-    VisitMarks above(shared, graph.spans);
+    VisitMarks below(shared, graph.nodes);
+    VisitMarks above(shared, graph.nodes);
     const std::vector<std::uint32_t> carried = carried_into(graph, border);
     ASSERT_FALSE(carried.empty());
     below.begin_task(0, {});
@@ -54,20 +54,20 @@ void expect_marks_of_their_own(const CutGraph<FloatEnds>& graph, std::uint32_t b
 
 TEST(VisitMarks, OfNodesThatReachIntoATaskAreThoseOfItsWorkerAlone) {
     const Ranks ranks(test::even_planes(-10, 10, 40));
-    const CutGraph<FloatEnds> few_carried = test::graph_of(make_sphere(10, 4), ranks);
+    const LocatedGraph<SoupEnds> few_carried = test::graph_of(make_sphere(10, 4), ranks);
     ASSERT_LT(carried_into(few_carried, 20).size(), few_carried.count / 4);
     expect_marks_of_their_own(few_carried, 20, 40);
     const Ranks of_prism(test::even_planes(0, 20, 40));
-    const CutGraph<FloatEnds> all_carried = test::graph_of(make_cylinder(10, 20, 8192), of_prism);
+    const LocatedGraph<SoupEnds> all_carried = test::graph_of(make_cylinder(10, 20, 8192), of_prism);
     ASSERT_GE(carried_into(all_carried, 25).size(), all_carried.count / 4);
     expect_marks_of_their_own(all_carried, 25, 40);
 }
 
 TEST(VisitMarks, OfAnEarlierTaskAreForgotten) {
     const Ranks ranks(test::even_planes(-10, 10, 40));
-    const CutGraph<FloatEnds> graph = test::graph_of(make_sphere(10, 4), ranks);
+    const LocatedGraph<SoupEnds> graph = test::graph_of(make_sphere(10, 4), ranks);
     const SharedMarks shared(graph.count, Fill::zero);
-    VisitMarks marks(shared, graph.spans);
+    VisitMarks marks(shared, graph.nodes);
     for (const std::uint32_t begin : {10U, 20U, 30U}) {
         const std::vector<std::uint32_t> carried = carried_into(graph, begin);
         marks.begin_task(begin, carried);

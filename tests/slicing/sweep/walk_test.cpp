@@ -20,7 +20,7 @@ struct Found {
 };
 
 /// What the walk finds on a plane, from the nodes that begin there; nobody looks at it again where it serves.
-std::vector<Found> walk_plane(Walk<FloatEnds>& walk, const CutGraph<FloatEnds>& graph, std::uint32_t plane) {
+std::vector<Found> walk_plane(Walk<SoupEnds>& walk, const CutGraph& graph, std::uint32_t plane) {
     std::vector<Found> found;
     walk.walk(plane, test::nodes_beginning_on(graph, plane), [&](const NodeSequence& sequence) {
         found.push_back(
@@ -33,9 +33,9 @@ std::vector<Found> walk_plane(Walk<FloatEnds>& walk, const CutGraph<FloatEnds>& 
 
 TEST(Walk, FindsTheContourOfAPrismOnceForAllItsPlanes) {
     const Ranks ranks(test::even_planes(0, 10, 20));
-    const CutGraph<FloatEnds> graph = test::graph_of(make_box(20, 30, 10), ranks);
+    const LocatedGraph<SoupEnds> graph = test::graph_of(make_box(20, 30, 10), ranks);
     const SharedMarks marks(graph.count, Fill::zero);
-    Walk<FloatEnds> walk(graph, marks);
+    Walk walk(graph, marks);
     walk.begin_task({0, 20}, {});
     const std::vector<Found> found = walk_plane(walk, graph, 0);
     ASSERT_EQ(found.size(), 1U);
@@ -48,9 +48,9 @@ TEST(Walk, FindsTheContourOfAPrismOnceForAllItsPlanes) {
 
 TEST(Walk, WalksAContourAgainAfterSoManyPlanesThatWhatIsKeptOfItIsBounded) {
     const Ranks ranks(test::even_planes(0, 10, 1000));
-    const CutGraph<FloatEnds> graph = test::graph_of(make_box(20, 30, 10), ranks);
+    const LocatedGraph<SoupEnds> graph = test::graph_of(make_box(20, 30, 10), ranks);
     const SharedMarks marks(graph.count, Fill::zero);
-    Walk<FloatEnds> walk(graph, marks);
+    Walk walk(graph, marks);
     walk.begin_task({0, 1000}, {});
     std::uint32_t served = 0;
     for (std::uint32_t plane = 0; plane < 1000; ++plane)
@@ -65,9 +65,9 @@ TEST(Walk, WalksAContourAgainAfterSoManyPlanesThatWhatIsKeptOfItIsBounded) {
 
 TEST(Walk, FollowsTheLinksOfThePlane) {
     const Ranks ranks(test::even_planes(-10, 10, 16));
-    const CutGraph<FloatEnds> graph = test::graph_of(make_sphere(10, 3), ranks);
+    const LocatedGraph<SoupEnds> graph = test::graph_of(make_sphere(10, 3), ranks);
     const SharedMarks marks(graph.count, Fill::zero);
-    Walk<FloatEnds> walk(graph, marks);
+    Walk walk(graph, marks);
     walk.begin_task({0, 16}, {});
     for (std::uint32_t plane = 0; plane < 16; ++plane) {
         for (const Found& one : walk_plane(walk, graph, plane)) {
@@ -81,10 +81,10 @@ TEST(Walk, FollowsTheLinksOfThePlane) {
 
 TEST(Walk, JoinsWhatManyWalkersFoundOfOneContour) {
     const Ranks ranks(test::even_planes(0, 3, 3));
-    const CutGraph<FloatEnds> graph =
+    const LocatedGraph<SoupEnds> graph =
         test::graph_of(shuffled(make_sheet({.holes = 1, .segments = 4000}), 7), ranks);
     const SharedMarks marks(graph.count, Fill::zero);
-    Walk<FloatEnds> walk(graph, marks);
+    Walk walk(graph, marks);
     walk.begin_task({0, 3}, {});
     std::vector<std::uint32_t> visited;
     const std::vector<Found> found = walk_plane(walk, graph, 0);
@@ -98,9 +98,9 @@ TEST(Walk, JoinsWhatManyWalkersFoundOfOneContour) {
 
 TEST(Walk, LooksAtTheNodesOfAChainAgainWhereItsSequenceEnds) {
     const Ranks ranks(test::even_planes(0, 3, 30));
-    const CutGraph<FloatEnds> graph = test::graph_of(TriangleSoup(test::box_without_a_side()), ranks);
+    const LocatedGraph<SoupEnds> graph = test::graph_of(TriangleSoup(test::box_without_a_side()), ranks);
     const SharedMarks marks(graph.count, Fill::zero);
-    Walk<FloatEnds> walk(graph, marks);
+    Walk walk(graph, marks);
     walk.begin_task({0, 30}, {});
     std::vector<bool> known(30, false);
     for (std::uint32_t plane = 0; plane < 30; ++plane) {
@@ -118,9 +118,9 @@ TEST(Walk, LooksAtTheNodesOfAChainAgainWhereItsSequenceEnds) {
 
 TEST(Walk, TakesUpInTheMiddleWhatReachesIntoATask) {
     const Ranks ranks(test::even_planes(0, 10, 20));
-    const CutGraph<FloatEnds> graph = test::graph_of(make_box(20, 30, 10), ranks);
+    const LocatedGraph<SoupEnds> graph = test::graph_of(make_box(20, 30, 10), ranks);
     const SharedMarks marks(graph.count, Fill::zero);
-    Walk<FloatEnds> walk(graph, marks);
+    Walk walk(graph, marks);
     const std::vector<std::uint32_t> carried = test::nodes_alive_on(graph, 7);
     walk.begin_task({7, 20}, carried);
     std::size_t contours = 0;
