@@ -3,7 +3,7 @@
 usage: launch.py TIMEOUT_SECONDS MEMORY_BYTES LOG COMMAND...
 
 A process inherits the peak memory of the process that it was forked from, so a large driver cannot measure a small
-child. Prints one JSON object: seconds, user, system, peak_rss_bytes, timed_out, status (as of waitpid).
+child. Prints one JSON object: seconds, user, system, peak_rss_bytes, fresh_bytes, timed_out, status (as of waitpid).
 """
 
 import json
@@ -13,12 +13,15 @@ import signal
 import sys
 import time
 
+LARGE_PAGE = 2 << 20
+
 
 def main():
     timeout, memory, log, command = float(sys.argv[1]), int(sys.argv[2]), sys.argv[3], sys.argv[4:]
     signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGCHLD])
     # A request to stop must also reach the child.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+    large_pages = large_page_faults()
     started = time.perf_counter()
     child = os.fork()
     if child == 0:
@@ -34,8 +37,20 @@ def main():
     finally:
         if not reaped:
             os.killpg(child, signal.SIGKILL)
+    large_pages = min(large_page_faults() - large_pages, usage.ru_minflt)
+    fresh = large_pages * LARGE_PAGE + (usage.ru_minflt - large_pages) * resource.getpagesize()
     print(json.dumps({"seconds": ended - started, "user": usage.ru_utime, "system": usage.ru_stime,
-                      "peak_rss_bytes": usage.ru_maxrss * 1024, "timed_out": timed_out, "status": status}))
+                      "peak_rss_bytes": usage.ru_maxrss * 1024, "fresh_bytes": fresh, "timed_out": timed_out,
+                      "status": status}))
+
+
+def large_page_faults():
+    """Returns how many large pages the system has provided so far, to all processes; 0 where it does not tell."""
+    try:
+        with open("/proc/vmstat", encoding="ascii") as counts:
+            return next((int(line.split()[1]) for line in counts if line.startswith("thp_fault_alloc ")), 0)
+    except OSError:
+        return 0
 
 
 def run(command, memory, log):

@@ -17,6 +17,7 @@ class Outcome:
     user: float
     system: float
     peak_rss_bytes: int  # at least about 7 MB, the size of the launcher
+    fresh_bytes: int  # of pages that the system provided: the page faults times the size of their pages
     ended: str  # "ok", "timeout", "killed by SIGSEGV", "exit code 3"
     text: str  # standard output and error
 
@@ -42,7 +43,7 @@ def run(command, timeout, log, memory=None):
     told = json.loads(subprocess.run(launcher, capture_output=True, text=True, check=True).stdout)
     text = Path(log).read_text(encoding="utf-8", errors="replace")
     return Outcome(told["seconds"], told["user"], told["system"], told["peak_rss_bytes"],
-                   how_it_ended(told["status"], told["timed_out"]), text)
+                   told["fresh_bytes"], how_it_ended(told["status"], told["timed_out"]), text)
 
 
 def how_it_ended(status, timed_out):

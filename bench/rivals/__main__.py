@@ -27,7 +27,7 @@ def main(arguments):
     folder.mkdir(parents=True, exist_ok=True)
     here = machine.describe(options.lamella)
     threads = len(os.sched_getaffinity(0))
-    comparison = Comparison(options.lamella, folder, options.timeout, threads)
+    comparison = Comparison(options.lamella, options.older, folder, options.timeout, threads)
     cells = []
     for part in chosen:
         cells += comparison.run(part, [rival for rival, _ in present], announce)
@@ -46,6 +46,7 @@ def main(arguments):
 def parse(arguments):
     parser = argparse.ArgumentParser(prog="python3 -m bench.rivals", description=__doc__.splitlines()[0])
     parser.add_argument("--lamella", default="build/lamella", help="the program (default: %(default)s)")
+    parser.add_argument("--older", metavar="PROGRAM", help="an older lamella, to be measured in turn with this one")
     parser.add_argument("--libraries", default="build-bench/bench/rivals",
                         help="folder of the built cgal_slicer (default: %(default)s)")
     parser.add_argument("--out", default="out/rivals", help="folder of the report (default: %(default)s)")

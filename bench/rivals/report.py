@@ -5,7 +5,7 @@ import dataclasses
 from bench.harness import chart
 from bench.harness.page import Chart, Page, Table, brief
 
-OURS = ("lamella", "lamella-1")
+OURS = ("lamella", "lamella-1", "older-lamella", "older-lamella-1")
 TELLING = ("rook", "lattice", "sheet-1225")
 
 
@@ -13,6 +13,7 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
     """`rivals` are those that ran, with their versions: [(rival, version)]; `absent`: {title: reason}."""
     page = Page("Lamella beside other slicers")
     titles = {"lamella": f"Lamella, {counted(threads)}", "lamella-1": "Lamella, 1 thread",
+              "older-lamella": f"older Lamella, {counted(threads)}", "older-lamella-1": "older Lamella, 1 thread",
               **{rival.name: rival.title for rival, _ in rivals}}
     part_titles = {part.name: part.title for part in parts}
     page.say(
@@ -35,8 +36,11 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
              "writes a CLI file; the table below lists the outputs of the others. Slicers for printers continue to "
              "tool paths, with one wall and no infill, as in the paper. **Cutting alone** is the time that they report "
              "for their first stage, which for some includes cleaning up the contours; for Lamella, it is the time "
-             "from the mesh in memory to the layers in memory. Times of short runs are medians. Memory is the peak "
-             "resident size; it is never below about 7 MB, the size of the program that starts the others.",
+             "from the mesh in memory to the layers in memory. Times of short runs are medians. **User** is the "
+             "processor time of the program itself, **system** that of the operating system for it; most of that goes "
+             "into the memory that it provides. **Peak** is the largest resident size; it is never below about 7 MB, the "
+             "size of the program that starts the others. **Fresh** is the memory that the operating system provided during "
+             "the whole run: page faults times the size of their pages.",
              "**Equal** means that every layer has the same number of contours, and that areas and lengths agree to "
              "one in 100,000. Otherwise the column lists the differences: layers without a partner at the same height, "
              "numbers of contours in all layers, and the sums of the differences of areas and lengths, relative to "
@@ -58,20 +62,21 @@ def counted(threads):
 
 
 def part_table(cells, titles):
-    table = Table(["slicer", "whole process s", "to Lamella's", "cutting alone s", "to Lamella's", "processor s",
-                   "peak MB", "same layers"])
+    table = Table(["slicer", "whole process s", "to Lamella's", "cutting alone s", "to Lamella's", "user s",
+                   "system s", "peak MB", "fresh MB", "same layers"])
     ours = cells[0]
     for cell in cells:
         if cell.seconds is None or not cell.ok:
             said = f"{ending(cell)}" + ("" if cell.seconds is None else f" after {seconds(cell.seconds)}")
-            table.add(titles[cell.slicer], said, "", "", "", "", megabytes(cell.peak_rss_bytes),
+            table.add(titles[cell.slicer], said, "", "", "", "", "", megabytes(cell.peak_rss_bytes), "",
                       f"it says: {cell.last_words}" if cell.last_words else "")
             continue
         values = [seconds(cell.seconds), ratio(cell.seconds, ours.seconds), seconds(cell.slicing_seconds),
                   ratio(cell.slicing_seconds, ours.slicing_seconds)]
         if not cell.counts:
             values = [f"({value})" if value else "" for value in values]
-        table.add(titles[cell.slicer], *values, seconds(cell.processor_seconds), megabytes(cell.peak_rss_bytes),
+        table.add(titles[cell.slicer], *values, seconds(cell.user_seconds), seconds(cell.system_seconds),
+                  megabytes(cell.peak_rss_bytes), megabytes(cell.fresh_bytes),
                   cell.agreement.text() if cell.agreement else "-")
     return table
 
