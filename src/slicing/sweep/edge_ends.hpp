@@ -5,6 +5,7 @@
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
+#include "lamella/mesh/transform.hpp"
 #include "lamella/mesh/triangle_soup.hpp"
 
 #include <array>
@@ -27,36 +28,45 @@ struct EdgeEnds {
 // t + i for the side of triangle t that begins at its corner i. Vertices are the same if and only if they are
 // equal.
 
+/// Reads single corners of a soup as they are stored.
+class SoupCorners {
+  public:
+    explicit SoupCorners(TriangleSoup soup)
+        : soup_(std::move(soup)), data_(soup_.data()), stride_(soup_.stride()) {}
+
+    [[nodiscard]] Point3f operator()(std::uint32_t triangle, std::uint32_t corner) const noexcept {
+        Point3f p;
+        std::memcpy(&p, data_ + triangle * stride_ + sizeof p * corner, sizeof p);
+        return {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F}; // -0 becomes +0
+    }
+    void prefetch(std::uint32_t triangle) const noexcept {
+        const std::byte* const first = data_ + triangle * stride_;
+        __builtin_prefetch(first);
+        __builtin_prefetch(first + sizeof(Triangle3f) - 1);
+    }
+
+  private:
+    TriangleSoup soup_;
+    const std::byte* data_;
+    std::size_t stride_;
+};
+
 /// Ends in a soup without a placement: the coordinates themselves.
 class SoupEnds {
   public:
     using Vertex = Point3f;
 
-    explicit SoupEnds(TriangleSoup soup)
-        : soup_(std::move(soup)), data_(soup_.data()), stride_(soup_.stride()) {}
+    explicit SoupEnds(const TriangleSoup& soup) : corners_(soup) {}
 
     [[nodiscard]] std::array<Vertex, 2> operator()(std::uint32_t side) const noexcept {
-        const std::byte* const triangle = data_ + (side / 3) * stride_;
         const std::uint32_t corner = side % 3;
-        return {vertex(triangle, corner), vertex(triangle, corner == 2 ? 0 : corner + 1)};
+        return {corners_(side / 3, corner), corners_(side / 3, corner == 2 ? 0 : corner + 1)};
     }
     [[nodiscard]] static Point3 point(const Vertex& v) noexcept { return {v.x, v.y, v.z}; }
-    void prefetch(std::uint32_t side) const noexcept {
-        const std::byte* const triangle = data_ + (side / 3) * stride_;
-        __builtin_prefetch(triangle);
-        __builtin_prefetch(triangle + sizeof(Triangle3f) - 1);
-    }
+    void prefetch(std::uint32_t side) const noexcept { corners_.prefetch(side / 3); }
 
   private:
-    static Vertex vertex(const std::byte* triangle, std::uint32_t corner) noexcept {
-        Vertex v;
-        std::memcpy(&v, triangle + sizeof v * corner, sizeof v);
-        return {v.x + 0.0F, v.y + 0.0F, v.z + 0.0F}; // -0 becomes +0
-    }
-
-    TriangleSoup soup_;
-    const std::byte* data_;
-    std::size_t stride_;
+    SoupCorners corners_;
 };
 
 /// Ends in a soup with a placement: the coordinates after it.
@@ -64,20 +74,26 @@ class PlacedEnds {
   public:
     using Vertex = Point3;
 
-    explicit PlacedEnds(TriangleSoup soup) : soup_(std::move(soup)) {}
+    explicit PlacedEnds(const TriangleSoup& soup)
+        : corners_(soup), placement_(soup.placement()), second_(soup.mirrored() ? 2 : 1) {}
 
     [[nodiscard]] std::array<Vertex, 2> operator()(std::uint32_t side) const noexcept {
-        const Triangle3 triangle = soup_.placed(side / 3);
         const std::uint32_t corner = side % 3;
-        return {triangle[corner], triangle[corner == 2 ? 0 : corner + 1]};
+        return {placed(side / 3, corner), placed(side / 3, corner == 2 ? 0 : corner + 1)};
     }
     [[nodiscard]] static Point3 point(const Vertex& v) noexcept { return v; }
-    void prefetch(std::uint32_t side) const noexcept {
-        __builtin_prefetch(soup_.data() + (side / 3) * soup_.stride());
-    }
+    void prefetch(std::uint32_t side) const noexcept { corners_.prefetch(side / 3); }
 
   private:
-    TriangleSoup soup_;
+    /// Returns the corner that TriangleSoup::placed returns with this index.
+    [[nodiscard]] Point3 placed(std::uint32_t triangle, std::uint32_t corner) const noexcept {
+        const Point3f p = corners_(triangle, corner == 0 ? 0 : corner == 1 ? second_ : 3 - second_);
+        return placement_(Point3{p.x, p.y, p.z});
+    }
+
+    SoupCorners corners_;
+    Transform placement_;
+    std::uint32_t second_; ///< the stored corner that is the second one
 };
 
 /// Ends in an indexed mesh, which must outlive this: the indices.
