@@ -123,14 +123,10 @@ Json vectors_json(bool strategy, const VectorVerification& found) {
             {"misoriented", found.misoriented},
             {"outside", found.outside},
             {"too_short", found.too_short},
-            {"misplaced", found.misplaced},
-            {"miscovered", found.miscovered},
-            {"wrong_contours", found.wrong_contours},
             {"inverted_rings", found.inverted_rings},
             {"inverted_mm3", found.inverted_mm3},
             {"height_overlaps", found.height_overlaps},
             {"unbounded", found.unbounded},
-            {"cover", found.cover ? Json(*found.cover) : Json()},
             {"unreached_layers", found.unreached_layers},
             {"unreached_mm2", strategy ? Json(found.unreached_mm2) : Json()},
             {"heights", heights_json(found.heights)},
@@ -145,9 +141,6 @@ std::string vectors_text(const std::string& mesh, bool strategy, const VectorVer
         text += fmt::format("  {}\n", finding);
     text += fmt::format("  {}, {} along contours and {} of hatches\n", counted(found.layers, "layer"),
                         counted(found.contour_vectors, "vector"), grouped(found.hatch_vectors));
-    if (found.cover)
-        text += fmt::format("  lines times their distance cover {:.2f} % of what they are to fill\n",
-                            100 * *found.cover);
     if (strategy && found.unreached_mm2 >= 5e-4)
         text += fmt::format("  {:.4g} mm2 of the material are reached by no vector\n", found.unreached_mm2);
     if (!hint.empty())
@@ -159,7 +152,7 @@ std::string vectors_text(const std::string& mesh, bool strategy, const VectorVer
                             mesh.empty() ? "the outermost contours of their part" : one_line(mesh),
                             strategy ? ", as far from its edges as the strategy says"
                                      : "; --scan or --strategy FILE would check their distance from its "
-                                       "edges and what they cover, too");
+                                       "edges and what they reach, too");
     else if (found.ok() && all > 0)
         text += "  whether they lie within the material was not checked; --mesh part.stl would do so\n";
     return text;
@@ -283,7 +276,7 @@ int run_verify(const VerifyArguments& arguments, const Context& context) {
         ok = ok && found.ok();
         object["vectors"] = vectors_json(strategy.has_value(), found);
         const auto disagree = [](const VectorVerification& one) {
-            return one.outside > 0 || one.miscovered > 0 || one.wrong_contours > 0;
+            return one.outside > 0 || one.unreached_layers > 0;
         };
         std::string hint;
         if (cut_is_assumed && disagree(found))

@@ -111,14 +111,10 @@ class VectorVerification:
     misoriented: int  #: rings whose orientation contradicts their nesting
     outside: int  #: vectors that leave the material, or are closer to its edges than the strategy allows
     too_short: int  #: hatch lines shorter than the shortest of the strategy
-    misplaced: int  #: hatch lines whose position or direction differs from the strategy, or in other exposures
-    miscovered: int  #: planes of a part whose lines cover more or less area than they must
-    wrong_contours: int  #: contours missing on a plane, or whose area differs from that of the material at their depth
     inverted_rings: int  #: rings of the mesh's sections that bound no material and have no vectors; 0 without a mesh
     inverted_volume: float  #: mm^3, volume that these rings enclose
     height_overlaps: int  #: layers that begin within the height of another one
     gaps: int  #: between layers, where the mesh has material; 0 without a mesh
-    cover: Optional[float]  #: ratio of the area covered by lines to the area that they must fill; with a strategy
     unreached_layers: int  #: planes with more material that no vector reaches than the strategy accepts
     unreached_mm2: float  #: area of all such material; 0 without a strategy
     unbounded: int  #: vectors whose material is unknown

@@ -417,16 +417,12 @@ std::pair<py::dict, py::list> vectors_verified(const py::object& source, const P
     fields["misoriented"] = found.misoriented;
     fields["outside"] = found.outside;
     fields["too_short"] = found.too_short;
-    fields["misplaced"] = found.misplaced;
-    fields["miscovered"] = found.miscovered;
     fields["unreached_layers"] = found.unreached_layers;
     fields["unreached_mm2"] = found.unreached_mm2;
-    fields["wrong_contours"] = found.wrong_contours;
     fields["inverted_rings"] = found.inverted_rings;
     fields["inverted_volume"] = found.inverted_mm3;
     fields["height_overlaps"] = found.height_overlaps;
     fields["gaps"] = found.heights ? found.heights->gaps : 0;
-    fields["cover"] = found.cover;
     fields["unbounded"] = found.unbounded;
     fields["findings"] = found.findings;
     return {fields, message_texts(warnings)};

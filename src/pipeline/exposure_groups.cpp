@@ -61,8 +61,8 @@ std::vector<ExposureGroup> groups_of(const LayerFile& file, bool all_together, E
 PlaneGroup on_plane(const ExposureGroup& group, const LayerFile& file, const ScanVectors& vectors) {
     PlaneGroup exposures;
     for (const std::size_t i : group.exposures)
-        exposures.push_back({*file.parts[i].exposure, vectors.polylines[i], vectors.hatches[i].span(),
-                             i == group.outermost});
+        exposures.push_back(
+            {*file.parts[i].exposure, vectors.polylines[i], vectors.hatches[i].span(), i == group.outermost});
     return exposures;
 }
 
@@ -87,22 +87,6 @@ double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept
     const ContourRule& contours = contours_of(strategy, exposure.region);
     return exposure.kind == VectorKind::contour ? contour_depth(contours, std::max(1U, exposure.contour))
                                                 : hatch_depth(contours, hatch_of(strategy, exposure.region));
-}
-
-double deepest_line(const Exposure& exposure, const ScanStrategy& strategy) noexcept {
-    const ContourRule& contours = contours_of(strategy, exposure.region);
-    double depth = depth_of(exposure, strategy);
-    if (exposure.contour != 0 && exposure.contour < contours.count)
-        return depth; // number 0 means that the number is unknown
-    const auto too_thin_for = [&](const HatchRule& hatch) {
-        depth = std::max(depth, hatch_depth(contours, hatch) + surely_hatched(hatch) / 2);
-    };
-    too_thin_for(hatch_of(strategy, exposure.region));
-    if (exposure.region != ScanRegion::support)
-        for (const SkinRule* const skin : {&strategy.upskin, &strategy.downskin})
-            if (skin->layers > 0)
-                too_thin_for(skin->hatch);
-    return depth;
 }
 
 } // namespace lamella

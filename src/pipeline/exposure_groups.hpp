@@ -46,7 +46,5 @@ using PlaneGroup = std::vector<PlaneExposure>;
 
 /// Returns the required distance of the vectors of an exposure from the outline of the part.
 [[nodiscard]] double depth_of(const Exposure& exposure, const ScanStrategy& strategy) noexcept;
-/// Returns the largest distance of the lines of a contour from the outline of the part.
-[[nodiscard]] double deepest_line(const Exposure& exposure, const ScanStrategy& strategy) noexcept;
 
 } // namespace lamella

@@ -1,4 +1,3 @@
-#include "lamella/contour/measure.hpp"
 #include "lamella/pipeline/verify.hpp"
 #include "lamella/polygon/boolean.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
@@ -11,7 +10,6 @@
 #include "pipeline/layer_check.hpp"
 #include "pipeline/layer_heights.hpp"
 #include "pipeline/moved_cuts.hpp"
-#include "pipeline/prescribed_lines.hpp"
 #include "pipeline/vector_cover.hpp"
 #include "pipeline/vector_findings.hpp"
 #include "polygon/edge_tree.hpp"
@@ -23,8 +21,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
-#include <map>
 #include <span>
 
 namespace lamella {
@@ -33,12 +29,10 @@ namespace {
 
 class VectorCheck {
   public:
-    /// `before` is the number of layers of the plan before the first checked one. `rounding` is the tolerance
-    /// of ends.
-    VectorCheck(const VerifyOptions& options, double rounding, std::uint64_t before,
-                const LayerLimits& limits)
+    /// `rounding` is the tolerance of ends.
+    VectorCheck(const VerifyOptions& options, double rounding, const LayerLimits& limits)
         : options_(options), rounding_(rounding), tolerance_(rounding + options.steps.simplify_mm),
-          before_(before), limits_(limits) {}
+          limits_(limits) {}
 
     void check(const PlaneGroup& group, const MaterialBounds& bounds, PlaneFindings& found) const {
         std::uint64_t all = 0;
@@ -61,55 +55,9 @@ class VectorCheck {
             return;
         }
         find_outside(group, bounds, found);
-        if (options_.strategy) {
-            check_cover(group, bounds, *options_.strategy, tolerance_, limits_, found);
+        if (options_.strategy)
             check_reach(group, bounds, *options_.strategy, options_.granted(), options_.steps.simplify_mm,
                         limits_, found);
-        }
-    }
-
-    /// Checks that each contour that the strategy prescribes for a part is present and encloses the area at
-    /// its depth.
-    void check_rows(const PlaneGroup& group, const MaterialBounds& bounds, PlaneFindings& found) const {
-        if (bounds.sections.empty() || bounds.sections.front().open_chains() > 0)
-            return;
-        const ContourRule& rule = contours_of(*options_.strategy, group.front().exposure.region);
-        const Layer& header = group.front().polylines;
-        for (std::uint32_t number = 1; number <= rule.count; ++number) {
-            LayerMeasure row;
-            Point2 at;
-            for (const PlaneExposure& part : group) {
-                const Exposure& exposure = part.exposure;
-                if (exposure.kind != VectorKind::contour || std::max(1U, exposure.contour) != number)
-                    continue;
-                row.add(measure(part.polylines));
-                if (!part.polylines.points.empty())
-                    at = part.polylines.points[0];
-            }
-            double least = std::numeric_limits<double>::infinity();
-            double greatest = -least;
-            const auto agrees = [&] {
-                return least <= row.area_mm2 && row.area_mm2 <= greatest;
-            };
-            for (const double limit : limits_of_mitres(OffsetCorners{}.mitre_limit, options_.granted())) {
-                for (const Layer& section : bounds.sections) {
-                    const LayerMeasure expected =
-                        measure(moved_inwards(section, contour_depth(rule, number) - bounds.depth, limits_,
-                                              {.mitre_limit = limit}));
-                    const double slack = 4 * tolerance_ * (expected.perimeter_mm + row.perimeter_mm);
-                    least = std::min(least, expected.area_mm2 - slack);
-                    greatest = std::max(greatest, expected.area_mm2 + slack);
-                    if (row.contours == 0 && !section.points.empty())
-                        at = section.points[0];
-                }
-                if (agrees())
-                    break;
-            }
-            if (agrees())
-                continue;
-            ContourRow& wrong = found.rows[number];
-            (row.contours == 0 ? wrong.missing : wrong.elsewhere).add(header, at);
-        }
     }
 
   private:
@@ -123,31 +71,17 @@ class VectorCheck {
         return found;
     }
 
-    /// Returns whether the strategy prescribes lines for an exposure.
-    [[nodiscard]] bool asks_for_lines(const Exposure& exposure) const noexcept {
-        const ScanStrategy& strategy = *options_.strategy;
-        return exposure.kind == VectorKind::hatch &&
-               (exposure.region != ScanRegion::upskin || strategy.upskin.layers > 0) &&
-               (exposure.region != ScanRegion::downskin || strategy.downskin.layers > 0);
-    }
-
+    /// Finds hatch lines that are too short.
     void check_lines(const Exposure& exposure, const Layer& layer, std::span<const Point2> hatches,
                      PlaneFindings& found) const {
-        const HatchRule& rule = hatch_of(*options_.strategy, exposure.region);
         // Lines of a contour run along the middle of thin walls.
         if (exposure.kind == VectorKind::contour &&
             contours_of(*options_.strategy, exposure.region).thin_walls == ThinWalls::line)
             return;
-        const bool asked = asks_for_lines(exposure);
-        const PrescribedLines lines(rule, before_ + layer.index, rounding_);
-        for (std::size_t i = 0; i + 1 < hatches.size(); i += 2) {
-            const Point2& a = hatches[i];
-            const Point2& b = hatches[i + 1];
-            if (distance(a, b) < rule.shortest - 2 * rounding_)
-                found.too_short.add(layer, a);
-            if (!asked || !lines.have(a, b))
-                found.misplaced.add(layer, a);
-        }
+        const double shortest = hatch_of(*options_.strategy, exposure.region).shortest - 2 * rounding_;
+        for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
+            if (distance(hatches[i], hatches[i + 1]) < shortest)
+                found.too_short.add(layer, hatches[i]);
     }
 
     void find_outside(const PlaneGroup& group, const MaterialBounds& bounds, PlaneFindings& found) const {
@@ -160,14 +94,8 @@ class VectorCheck {
         for (const PlaneExposure& part : group) {
             const double depth =
                 options_.strategy ? depth_of(part.exposure, *options_.strategy) - bounds.depth : 0;
-            // Lines of a contour run along the middle of walls that are too thin for the contour. Lines of
-            // the innermost contour also run along the middle of areas that are too thin for a hatch.
+            // Lines of a contour run along the middle of walls that are too thin for the contour.
             const bool in_walls = part.exposure.kind == VectorKind::contour;
-            if (in_walls && options_.strategy)
-                find_in_thick(edges,
-                              std::max(0.0, deepest_line(part.exposure, *options_.strategy) - bounds.depth) +
-                                  grown + tolerance_,
-                              part.polylines, part.hatches, found.misplaced);
             if (part.outermost && !options_.mesh)
                 continue;
             const Layer& vectors = part.polylines;
@@ -184,18 +112,6 @@ class VectorCheck {
             const std::span<const Point2> hatches = part.hatches;
             for (std::size_t i = 0; i + 1 < hatches.size(); i += 2)
                 lines.mark(hatches[i], hatches[i + 1]);
-        }
-    }
-
-    /// Finds lines whose midpoints are farther within the material than `depth`.
-    static void find_in_thick(const EdgeTree& edges, double depth, const Layer& layer,
-                              std::span<const Point2> hatches, LocatedCount& found) {
-        for (std::size_t i = 0; i + 1 < hatches.size(); i += 2) {
-            const Point2& a = hatches[i];
-            const Point2& b = hatches[i + 1];
-            const Point2 middle{a.x + (b.x - a.x) / 2, a.y + (b.y - a.y) / 2};
-            if (edges.winding(middle) > 0 && edges.distance_squared(middle, depth * depth) > depth * depth)
-                found.add(layer, a);
         }
     }
 
@@ -229,7 +145,6 @@ class VectorCheck {
     const VerifyOptions& options_;
     double rounding_;  ///< tolerance of ends of lines
     double tolerance_; ///< tolerance of edges of the material, including simplification
-    std::uint64_t before_;
     LayerLimits limits_;
 };
 
@@ -240,7 +155,7 @@ struct KindOfFinding {
     FindingWords words;
 };
 
-std::array<KindOfFinding, 9> kinds_of_findings(bool strategy) {
+std::array<KindOfFinding, 7> kinds_of_findings(bool strategy) {
     return {
         {{&PlaneFindings::open_chains, &VectorVerification::open_chains, open_chains_words},
          {&PlaneFindings::crossings, &VectorVerification::crossings, crossings_words},
@@ -255,14 +170,6 @@ std::array<KindOfFinding, 9> kinds_of_findings(bool strategy) {
           &VectorVerification::too_short,
           {"hatch line is shorter than the strategy says;",
            "hatch lines are shorter than the strategy says;"}},
-         {&PlaneFindings::misplaced,
-          &VectorVerification::misplaced,
-          {"hatch line lies beside those of the strategy, has another angle or another exposure;",
-           "hatch lines lie beside those of the strategy, have another angle or another exposure;"}},
-         {&PlaneFindings::miscovered,
-          &VectorVerification::miscovered,
-          {"layer has lines that cover more or less than they should fill;",
-           "layers have lines that cover more or less than they should fill;"}},
          {&PlaneFindings::unreached,
           &VectorVerification::unreached_layers,
           {"layer has more material that no vector reaches than the strategy accepts;",
@@ -271,16 +178,6 @@ std::array<KindOfFinding, 9> kinds_of_findings(bool strategy) {
           &VectorVerification::inverted_rings,
           {"ring of the mesh bounds no material and has no vectors, as triangles face inwards;",
            "rings of the mesh bound no material and have no vectors, as triangles face inwards;"}}}};
-}
-
-void append_row(std::uint32_t number, const ContourRow& row, std::vector<std::string>& findings) {
-    const auto append_finding_of = [&](const LocatedCount& finding, const char* what) {
-        if (finding.total > 0)
-            findings.push_back(fmt::format("contour {} {} on {}, the first is {}", number, what,
-                                           counted(finding.total, "layer"), finding.position));
-    };
-    append_finding_of(row.missing, "is missing");
-    append_finding_of(row.elsewhere, "encloses another area than the material has at its depth");
 }
 
 } // namespace
@@ -293,9 +190,6 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
             check(layer);
     Executor executor(file.for_planes(execution));
     const std::vector<ExposureGroup> groups = groups_of(file, options.mesh.has_value(), executor);
-    // Requirements on contours apply to each part. A mesh does not distinguish parts.
-    const std::vector<ExposureGroup> of_parts =
-        options.strategy ? groups_of(file, false, executor) : std::vector<ExposureGroup>();
     VectorVerification result;
     const auto check_number = [&] {
         result.none = options.strategy && result.contour_vectors + result.hatch_vectors == 0;
@@ -320,18 +214,16 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
     const double rounding = std::sqrt(2.0) * options.granted().step_at(largest) + 0x1p-34 * largest;
 
     const LayerLimits limits = layer_limits(execution, options.max_memory, executor.workers());
-    const VectorCheck checked(
-        options, rounding,
-        options.strategy ? layers_below(file, groups, *options.strategy, rounding, executor) : 0, limits);
+    const VectorCheck checked(options, rounding, limits);
     std::vector<PlaneFindings> checks(planes.size());
     ProgressMeter progress(execution, Stage::polygon, planes.size());
     std::vector<std::vector<Layer>> sections; // of a range of planes, with a mesh
     std::uint64_t first = 0;                  // of the range
     const auto check_plane = [&](std::uint64_t i) {
         const ScanVectors vectors = file.plane(i);
-        const auto bounds_of = [&](const ExposureGroup& group, bool by_mesh) {
+        const auto bounds_of = [&](const ExposureGroup& group) {
             MaterialBounds bounds;
-            if (by_mesh)
+            if (options.mesh)
                 bounds.sections = sections[i - first];
             else if (group.outermost)
                 bounds = {{vectors.polylines[*group.outermost]},
@@ -341,8 +233,7 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
             return bounds;
         };
         for (const ExposureGroup& group : groups)
-            checked.check(on_plane(group, file, vectors), bounds_of(group, options.mesh.has_value()),
-                          checks[i]);
+            checked.check(on_plane(group, file, vectors), bounds_of(group), checks[i]);
         if (options.mesh) {
             const InvertedRings inverted =
                 inverted_rings(sections[i - first].front(), options.granted(), InversionSearch::full, limits);
@@ -350,9 +241,6 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
                 checks[i].inverted.add(planes[i], inverted.at, inverted.rings);
             checks[i].inverted_mm3 = inverted.area_mm2 * planes[i].thickness();
         }
-        for (const ExposureGroup& group : of_parts)
-            checked.check_rows(on_plane(group, file, vectors),
-                               bounds_of(group, options.mesh && of_parts.size() == 1), checks[i]);
         progress.add(1);
     };
     std::vector<PlaneRange> ranges{{0, static_cast<std::uint32_t>(planes.size())}};
@@ -379,27 +267,14 @@ VectorVerification verify_vectors(const LayerFile& file, const VerifyOptions& op
         result.*kind.total = all.total;
         append_finding(all, kind.words, result.findings);
     }
-    std::map<std::uint32_t, ContourRow> rows;
-    double covered_mm2 = 0;
-    double filled_mm2 = 0;
     for (const PlaneFindings& check : checks) {
-        for (const auto& row : check.rows)
-            rows[row.first].add(row.second);
         result.contour_vectors += check.contour_vectors;
         result.hatch_vectors += check.hatch_vectors;
         result.unbounded += check.unbounded;
         result.inverted_mm3 += check.inverted_mm3;
-        covered_mm2 += check.covered_mm2;
-        filled_mm2 += check.filled_mm2;
         result.unreached_mm2 += check.unreached_mm2;
     }
     check_number();
-    if (options.strategy && filled_mm2 > 0)
-        result.cover = covered_mm2 / filled_mm2;
-    for (const auto& row : rows) {
-        result.wrong_contours += row.second.missing.total + row.second.elsewhere.total;
-        append_row(row.first, row.second, result.findings);
-    }
     result.height_overlaps = overlapping_heights(planes, options.granted(), result.findings);
     if (options.mesh)
         result.heights =

@@ -209,9 +209,7 @@ def test_files_of_vectors_are_verified(tmp_path):
     found = lamella.verify_vectors(path, cube, strategy=strategy)
     assert found.ok and found.findings == [] and found.layers == 5
     assert found.contour_vectors == 5 * 8 and found.hatch_vectors == sum(len(s.layers[0].hatches) for s in scanned)
-    assert found.cover == pytest.approx(1, abs=0.1)
     assert found.unreached_layers == 0 and found.unreached_mm2 == 0
-    assert lamella.verify_vectors(path).cover is None
     assert lamella.verify_vectors(path, (corners * 0.9, faces)).outside > 0
     assert lamella.verify_vectors(path, (corners * 0.9999, faces), tolerance=0.01).outside == 0
     assert not lamella.verify_vectors(path, cube, strategy={"contours": {"beam_offset": 0.2}}).ok

@@ -48,9 +48,8 @@ struct VerifyOptions {
     /// Number of hatch lines of the layers, which `verify` reports as not checked.
     std::uint64_t hatch_lines = 0;
     /// Strategy by which scan vectors were made. If a strategy is set, vectors must keep its distances from
-    /// the edges of the material. Each of its contours must be present at the right depth. Hatch lines must
-    /// be at least `shortest` long, with the angles and distances of the strategy. The length of lines times
-    /// their distance must equal the area that they fill.
+    /// the edges of the material, hatch lines must be at least `shortest` long, and vectors must reach all of
+    /// the material that the strategy does not accept as bare.
     std::optional<ScanStrategy> strategy = {};
     /// Limit of the memory for crossings, offsets and unions of layers; see layer_limits.
     std::uint64_t max_memory = 0;
@@ -156,31 +155,11 @@ struct VectorVerification {
     /// Number of vectors that leave the material, or are closer to its edges than the strategy allows.
     std::uint64_t outside = 0;
     std::uint64_t too_short = 0; ///< number of hatch lines below `shortest`
-    /// Number of hatch lines with a direction other than that of their layer and region, or not at a multiple
-    /// of the hatch distance; also of all hatch lines in contour exposures, and in skins that the strategy
-    /// does not have. Directions depend on the index of a layer in the whole plan. If a file begins with a
-    /// later layer, the index is assumed for which most lines of the lowest layers are right.
-    std::uint64_t misplaced = 0;
-    /// Number of planes of a part (with a mesh: of all parts together) whose lines cover more or less than
-    /// the area that they must fill. The tolerance is the sum of
-    /// - a strip along the edges of that area and of skins, as wide as half the hatch distance plus the
-    ///   shortest line;
-    /// - the overlaps of stripes, islands and skins;
-    /// - deviations by `simplify_mm` and rounding.
-    std::uint64_t miscovered = 0;
-    /// Ratio of the area covered by lines to the area that they must fill, over all layers; set with a
-    /// strategy.
-    std::optional<double> cover;
     /// Number of planes of a part (with a mesh: of all parts together) with more material that no vector
     /// reaches than the strategy accepts; and the unreached area of these planes. Without a mesh, material is
     /// the area within the outermost contour.
     std::uint64_t unreached_layers = 0;
     double unreached_mm2 = 0;
-    /// Number of contours that are missing on a plane of a part, or whose area differs from that of the
-    /// material at their depth. The tolerance is four times the deviation by rounding and `simplify_mm`,
-    /// times the sum of the perimeters of contour and material. If a mesh has several parts, contours are
-    /// compared with the outermost contours of each part.
-    std::uint64_t wrong_contours = 0;
     /// With a mesh: number of rings of its sections that bound no material (see `inverted_rings`) and
     /// therefore have no vectors; and the volume that they enclose.
     std::uint64_t inverted_rings = 0;
@@ -197,8 +176,7 @@ struct VectorVerification {
 
     [[nodiscard]] bool ok() const noexcept {
         return !none && open_chains == 0 && crossings == 0 && misoriented == 0 && outside == 0 &&
-               too_short == 0 && misplaced == 0 && unreached_layers == 0 && miscovered == 0 &&
-               wrong_contours == 0 && inverted_rings == 0 && height_overlaps == 0 &&
+               too_short == 0 && unreached_layers == 0 && inverted_rings == 0 && height_overlaps == 0 &&
                (!heights || heights->gaps == 0);
     }
 };
