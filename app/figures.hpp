@@ -4,7 +4,8 @@
 // from this definition.
 
 #include "lamella/mesh/self_intersections.hpp"
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/file_job.hpp"
+#include "lamella/pipeline/file_result.hpp"
 
 #include "command.hpp"
 #include "messages.hpp"

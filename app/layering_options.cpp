@@ -50,20 +50,20 @@ void check_ways(const LayeringOptions& options) {
     const Given heights{"--heights", !options.heights.empty()};
     const Given adaptive{"--adaptive", options.adaptive.has_value()};
     const Given varying{"layers of varying height", heights.given || adaptive.given};
-    struct Way {
+    struct Choice {
         Given option;
         std::vector<Given> without;
         std::string_view reason;
     };
-    const std::array<Way, 4> ways{
+    const std::array<Choice, 4> choices{
         {{z_list, {layer_height, first_height, heights, adaptive}, "the list says where to cut"},
          {heights, {adaptive}, "each says how high layers are"},
          {adaptive, {layer_height}, "layers differ in height then"},
          {first_height, {varying}, "--heights can say how high the first one is"}}};
-    for (const Way& way : ways)
-        for (const Given& other : way.without)
-            check_conflict(way.option.given, other.given,
-                           fmt::format("{} and {}", way.option.name, other.name), way.reason);
+    for (const Choice& choice : choices)
+        for (const Given& other : choice.without)
+            check_conflict(choice.option.given, other.given,
+                           fmt::format("{} and {}", choice.option.name, other.name), choice.reason);
 }
 
 Cut cut_of(const LayeringOptions& options, std::uint64_t max_memory) {

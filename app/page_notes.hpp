@@ -4,7 +4,7 @@
 
 #include "lamella/mesh/diagnose.hpp"
 #include "lamella/mesh/inspect.hpp"
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/file_result.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/read/mesh_file.hpp"
 #include "lamella/write/layer_page.hpp"

@@ -2,7 +2,7 @@
 
 // Options for repairs of unsound meshes and layers, and reports of the repairs.
 
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/file_result.hpp"
 
 #include "command.hpp"
 

@@ -2,7 +2,8 @@
 
 // Warnings of a run.
 
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/file_job.hpp"
+#include "lamella/pipeline/file_result.hpp"
 
 #include <span>
 #include <string>

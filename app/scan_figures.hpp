@@ -2,7 +2,7 @@
 
 // The figures of scan vectors.
 
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/file_result.hpp"
 
 #include "figures.hpp"
 

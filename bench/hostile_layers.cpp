@@ -7,7 +7,7 @@
 #include "experiment.hpp"
 
 #include <fmt/format.h>
-#include <lamella/io.hpp>
+#include <lamella/formats.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "system/byte_source.hpp"
 
 #include <benchmark/benchmark.h>
-#include <lamella/io.hpp>
+#include <lamella/formats.hpp>
 
 #include <cmath>
 #include <filesystem>

@@ -3,7 +3,7 @@
 // Mitred offsets by other libraries. All functions return the area of a layer offset by a distance; libraries
 // with a mitre limit use Lamella's default.
 
-#include <lamella/io.hpp>
+#include <lamella/formats.hpp>
 
 namespace lamella::bench {
 

@@ -4,7 +4,7 @@
 
 #include "experiment.hpp"
 
-#include <lamella/io.hpp>
+#include <lamella/jobs.hpp>
 
 #include <string>
 #include <vector>

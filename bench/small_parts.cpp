@@ -5,7 +5,7 @@
 #include "parts/shapes.hpp"
 
 #include <fmt/format.h>
-#include <lamella/io.hpp>
+#include <lamella/formats.hpp>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>

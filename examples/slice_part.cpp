@@ -1,4 +1,4 @@
-#include <lamella/io.hpp>
+#include <lamella/jobs.hpp>
 
 int main() {
     const lamella::Plate plate = lamella::load_plate(std::array{lamella::PlateInput{.path = "part.stl"}});

@@ -1,5 +1,5 @@
-// The whole library in a hundred lines, one step per group of lamella/io.hpp, in its order.
-#include <lamella/io.hpp>
+// The whole library in a hundred lines, one step per group of lamella/jobs.hpp, in its order.
+#include <lamella/jobs.hpp>
 
 #include <iostream>
 #include <new>

@@ -4,7 +4,7 @@
 //
 // HEIGHTS has one z a line; RESULT is JSON as the other slicers write it.
 
-#include "lamella/io.hpp"
+#include "lamella/formats.hpp"
 
 #include <fmt/format.h>
 

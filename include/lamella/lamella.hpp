@@ -1,7 +1,7 @@
 #pragma once
 
-// The engine: meshes of arrays in, layers and scan vectors out. The engine opens no file; `lamella/io.hpp`
-// does. The groups below stand in the order in which a program calls them.
+// The engine: meshes of arrays in, layers and scan vectors out. The engine opens no file;
+// `lamella/formats.hpp` does. The groups below stand in the order in which a program calls them.
 //
 // Lengths are millimetres. Failures are lamella::Error, or std::bad_alloc if memory runs out. Nothing here
 // prints, exits or keeps global state. No result depends on the number of threads.

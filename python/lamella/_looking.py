@@ -1,4 +1,4 @@
-"""Pictures of layers: SVG for notebooks, pages, and drawings by matplotlib, which is imported on first use."""
+"""Images of layers: SVG for notebooks, pages, and drawings by matplotlib, which is imported on first use."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from . import _arguments as check
 if TYPE_CHECKING:
     from ._lamella import Layer, Stack
 
-LARGE_PIXELS = 360  # the longer side of a picture of a layer
+LARGE_PIXELS = 360  # the longer side of an image of a layer
 SMALL_PIXELS = 120  # and of each of those of a stack
 SMALL_PICTURES = 5
-MOST_POINTS = 20_000  # in one picture; where there are more, they are rounded to a coarser grid
+MOST_POINTS = 20_000  # in one image; where there are more, they are rounded to a coarser grid
 MATERIAL = "lightsteelblue"
 OUTLINE = "steelblue"
 
@@ -36,17 +36,17 @@ def layer_svg(layer: Layer) -> str:
 
 
 def stack_html(stack: Stack) -> str:
-    """Returns a line of text and pictures of a few layers, all at the same scale."""
+    """Returns a line of text and images of a few layers, all at the same scale."""
     count = len(stack)
     text = html.escape(repr(stack).strip("<>"))
     chosen = [stack[i] for i in sorted({round(i) for i in np.linspace(0, count - 1, SMALL_PICTURES)})] if count else []
     window = window_of(chosen)
-    pictures = "".join(
+    images = "".join(
         f'<figure style="display:inline-block;margin:4px;text-align:center">{_svg(layer, window, SMALL_PIXELS)}'
         f"<figcaption>z = {layer.z:.6g} mm</figcaption></figure>"
         for layer in chosen
     )
-    return f"<div><p>{text}</p>{pictures}</div>"
+    return f"<div><p>{text}</p>{images}</div>"
 
 
 def _svg(layer: Layer, window: Optional[Window], pixels: int) -> str:
@@ -57,7 +57,7 @@ def _svg(layer: Layer, window: Optional[Window], pixels: int) -> str:
     extent = max(float((high - low).max()), 1e-9)
     scale = (pixels - 8) / extent
     width, height = (int(np.ceil(side * scale)) + 8 for side in high - low)
-    # Half pixels of the picture show all that can be seen; many small contours need coarser ones, and noise is thinned.
+    # Half pixels of the image show all that can be seen; many small contours need coarser ones, and noise is thinned.
     for grid in (0.5, 1, 2, 4):
         contours = [_on_grid(contour, low, high, scale, grid) for contour in layer]
         points = sum(map(len, contours)) + 2 * len(layer.hatches)
@@ -143,7 +143,7 @@ def plot_layer(layer: Layer, axes: Any) -> Any:
 
 
 def plot_values(vectors: npt.NDArray[np.float64], values: npt.NDArray[Any], label: str, z: float, axes: Any) -> Any:
-    """Draws lines in colours that tell their values."""
+    """Draws lines in colours that show their values."""
     axes = _axes(axes)
     from matplotlib.collections import LineCollection
 

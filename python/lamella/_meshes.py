@@ -383,7 +383,7 @@ def inspect(
     threads: int = 0,
     progress: Optional[Progress] = None,
 ) -> Inspection:
-    """Counts the defects of a mesh, and tells where they are. Nothing is repaired.
+    """Counts the defects of a mesh, and reports where they are. Nothing is repaired.
 
     part: a path, bytes, or a file object that is open for reading bytes; a Mesh, a pair of arrays (vertices (n, 3) in
         millimetres, faces (m, 3)), an array of triangles (m, 3, 3), or anything with .vertices and .faces, .vertices and

@@ -41,7 +41,7 @@ class ContourDefect(NamedTuple):
 
 
 def _show_signature(cls: type) -> None:
-    """Tells editors the arguments of a class of the extension, which its metaclass hides."""
+    """Shows editors the arguments of a class of the extension, which its metaclass hides."""
     signature = inspect.signature(getattr(cls, "__init__"))
     setattr(cls, "__signature__", signature.replace(parameters=list(signature.parameters.values())[1:]))
 
@@ -166,7 +166,7 @@ class Layer(_lamella.Layer):
 
         resolution: the rounding of the file that the layer comes from, in millimetres, which is Stack.resolution. Rings so
             thin that rounding can invert them may have either orientation.
-        crossings: lists at most this many crossings; a DefectWarning tells if there are more.
+        crossings: lists at most this many crossings; a DefectWarning reports if there are more.
         """
         found, total, or_more = self._diagnosed(
             check.distance("resolution", resolution), check.whole("crossings", crossings)

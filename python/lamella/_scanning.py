@@ -78,14 +78,14 @@ class ScanLayer:
         jump[1:] = np.linalg.norm(lines[1:, 0] - lines[:-1, 1], axis=1)
         last = np.ones(len(lines), dtype=bool)  # of its polyline
         last[:-1] = (jump[1:] > 0) | (exposure[1:] != exposure[:-1])
-        spent = np.zeros(len(lines))  # a speed of 0 is one that the file does not tell; such moves take no time
+        spent = np.zeros(len(lines))  # a speed of 0 is one that the file does not contain; such moves take no time
         for length, by in ((np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1), speed), (jump, jump_speed)):
             spent += np.divide(length, by, out=np.zeros(len(lines)), where=by > 0)
         return np.cumsum(spent + 1e-6 * (last * mark_delay + (jump > 0) * jump_delay))
 
     def plot(self, axes: Any = None, *, by: Literal["exposure", "region", "order", "time"] = "exposure") -> Any:
         """Draws the vectors into axes of matplotlib, new ones if none are given, and returns the axes. `by` chooses the
-        colours: one for each exposure, one for each region, or one that tells the order or the time of the lines. Needs
+        colours: one for each exposure, one for each region, or one that shows the order or the time of the lines. Needs
         matplotlib."""
         check.choice("by", by, ("exposure", "region", "order", "time"))
         if by == "order":

@@ -346,8 +346,7 @@ void bind_meshes(py::module_& module) {
                 const GilRelease released;
                 return volume(self.mesh());
             },
-            "The volume in cubic millimetres: meaningful for a closed mesh, negative for one turned inside "
-            "out.")
+            "The volume in cubic millimetres: meaningful for a closed mesh, negative if it is inside out.")
         .def_property_readonly(
             "matrix", [](const SourceMesh& self) { return matrix_of(self.origin().matrix); },
             "Its transform since it was read or made: a (4, 4) matrix.")

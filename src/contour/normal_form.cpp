@@ -69,20 +69,20 @@ std::size_t smallest_rotation_with_repeats(std::span<const Point2> ring, std::si
 class Rotated {
   public:
     Rotated(std::span<const Point2> contour, std::size_t start)
-        : header_(contour.subspan(start)), tail_(contour.first(start)) {}
+        : front_(contour.subspan(start)), back_(contour.first(start)) {}
 
-    [[nodiscard]] std::size_t size() const { return header_.size() + tail_.size(); }
+    [[nodiscard]] std::size_t size() const { return front_.size() + back_.size(); }
     const Point2& operator[](std::size_t i) const {
-        return i < header_.size() ? header_[i] : tail_[i - header_.size()];
+        return i < front_.size() ? front_[i] : back_[i - front_.size()];
     }
     Point2* copy_to(Point2* out) const {
-        out = std::copy(header_.begin(), header_.end(), out);
-        return std::copy(tail_.begin(), tail_.end(), out);
+        out = std::copy(front_.begin(), front_.end(), out);
+        return std::copy(back_.begin(), back_.end(), out);
     }
 
   private:
-    std::span<const Point2> header_;
-    std::span<const Point2> tail_;
+    std::span<const Point2> front_;
+    std::span<const Point2> back_;
 };
 
 template <class Contour>

@@ -61,15 +61,15 @@ class CellGrid {
                 along[i] = {points[i].*axis, i};
             std::sort(along.begin(), along.end());
             // All points within the tolerance of a point are in its own interval or in an adjacent one.
-            std::uint64_t stretch = 1;
+            std::uint64_t interval = 1;
             double start = along.empty() ? 0 : along.front().first;
             for (const auto& [x, i] : along) {
                 if (x - start > tolerance * (1 + 1e-9)) {
-                    ++stretch;
+                    ++interval;
                     start = x;
                 }
                 Position& position = positions_[i];
-                position = {position.first << 32 | position.second >> 32, stretch << 32 | i};
+                position = {position.first << 32 | position.second >> 32, interval << 32 | i};
             }
         }
         std::sort(positions_.begin(), positions_.end());

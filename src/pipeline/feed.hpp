@@ -3,9 +3,9 @@
 // Supplies the triangles of a job to the slicer.
 
 #include "lamella/core/execution.hpp"
+#include "lamella/pipeline/file_job.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/processes.hpp"
-#include "lamella/pipeline/slice_file.hpp"
 #include "lamella/read/mesh_input.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/slicing/slice.hpp"

@@ -3,7 +3,7 @@
 // Limits and estimates of the memory of a job.
 
 #include "lamella/mesh/mesh.hpp"
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/file_job.hpp"
 #include "lamella/read/mesh_input.hpp"
 
 #include <algorithm>

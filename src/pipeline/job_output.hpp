@@ -3,8 +3,8 @@
 // Output of the layers of a job.
 
 #include "lamella/contour/layer.hpp"
+#include "lamella/pipeline/file_result.hpp"
 #include "lamella/pipeline/processes.hpp"
-#include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/plan.hpp"
 #include "lamella/write/layer_page.hpp"
 #include "lamella/write/layer_writer.hpp"

@@ -3,9 +3,9 @@
 // Plans the planes of a job, and divides them among processes and shards.
 
 #include "lamella/core/execution.hpp"
+#include "lamella/pipeline/file_job.hpp"
 #include "lamella/pipeline/plate.hpp"
 #include "lamella/pipeline/processes.hpp"
-#include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/plan.hpp"
 
 #include "pipeline/feed.hpp"

@@ -4,7 +4,7 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/core/commit.hpp"
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/file_result.hpp"
 #include "lamella/polygon/inverted_rings.hpp"
 #include "lamella/scan/scan.hpp"
 #include "lamella/slicing/plan.hpp"

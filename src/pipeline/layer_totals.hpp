@@ -4,8 +4,8 @@
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/findings/findings.hpp"
+#include "lamella/pipeline/file_result.hpp"
 #include "lamella/pipeline/processes.hpp"
-#include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/plan.hpp"
 
 #include "pipeline/layer_job.hpp"

@@ -267,7 +267,7 @@ class CrossingSearch {
     /// Tests the segments that were set aside against all others that may cross them.
     void search_side_by_side(const Box2& cell, std::span<const SegmentId> ids,
                              const std::vector<bool>& set_aside) {
-        const auto turned = [](const Segment& s) {
+        const auto swapped = [](const Segment& s) {
             return segment_between({s.lo.y, s.lo.x}, {s.hi.y, s.hi.x});
         };
         std::vector<LineTree::Item> flat;
@@ -277,7 +277,7 @@ class CrossingSearch {
             if (std::abs(s.hi.y - s.lo.y) <= s.hi.x - s.lo.x)
                 flat.push_back({s, i});
             else
-                steep.push_back({turned(s), i});
+                steep.push_back({swapped(s), i});
         }
         const LineTree flat_ones(cell.x0, cell.x1, flat);
         const LineTree steep_ones(cell.y0, cell.y1, steep);
@@ -290,7 +290,7 @@ class CrossingSearch {
                     test(cell, ids[i], ids[other]);
             };
             flat_ones.for_close_to(local(segments_[ids[i]]), visit);
-            steep_ones.for_close_to(turned(local(segments_[ids[i]])), visit);
+            steep_ones.for_close_to(swapped(local(segments_[ids[i]])), visit);
         }
     }
 

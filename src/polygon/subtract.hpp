@@ -10,7 +10,7 @@ namespace lamella {
 
 /// Returns the layer minus the material of a body that may be flush with its walls. Works like `combine`, but
 /// sides of the layer and of the body that are closer than rounding to the grid can move them, about three
-/// units, count as running along each other. Otherwise, a wall and a body in the same plane, turned and
+/// units, count as running along each other. Otherwise, a wall and a body in the same plane, rotated and
 /// rounded, would leave a film of 1e-16 mm between a hole and the wall on some layers, and a notch on others.
 [[nodiscard]] Layer subtract_body(const Layer& layer, const Layer& body, const LayerLimits& limits = {});
 

@@ -50,17 +50,17 @@ inline constexpr const char* common_layer_directions =
 class Decimals {
   public:
     void note(double number) noexcept {
-        if (locations_ == steps.size() - 1 || is_whole(number / steps[locations_]))
+        if (places_ == steps.size() - 1 || is_whole(number / steps[places_]))
             return;
         std::size_t needed = 0;
         while (needed < steps.size() - 1 && !is_whole(number / steps[needed]))
             ++needed;
-        locations_ = std::max(locations_, needed);
+        places_ = std::max(places_, needed);
     }
     /// Adds the numbers of another piece of the file.
-    void add(const Decimals& other) noexcept { locations_ = std::max(locations_, other.locations_); }
+    void add(const Decimals& other) noexcept { places_ = std::max(places_, other.places_); }
     /// Returns the unit of the last decimal: 1, 0.1 and so on; 0 if there are more decimals than supported.
-    [[nodiscard]] double step() const noexcept { return steps[locations_]; }
+    [[nodiscard]] double step() const noexcept { return steps[places_]; }
 
   private:
     static constexpr std::array steps{1.0, 0.1, 0.01, 0.001, 1e-4, 1e-5, 0.0};
@@ -71,7 +71,7 @@ class Decimals {
         return std::abs(number - ((number + no_fractions) - no_fractions)) <= 1e-5;
     }
 
-    std::size_t locations_ = 0;
+    std::size_t places_ = 0;
 };
 
 /// Exposure settings of the non-standard commands of CLI+. They apply to the vectors that follow, until they

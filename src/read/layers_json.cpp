@@ -155,8 +155,8 @@ class JsonPieceReader {
         bool half = false;
         text_.array([&] {
             const double value = length(text_);
-            constexpr std::size_t stretch = std::size_t{1} << 22;
-            if (text_.at() - reported_ > stretch) {
+            constexpr std::size_t chunk = std::size_t{1} << 22;
+            if (text_.at() - reported_ > chunk) {
                 executor_.check_cancelled();
                 report_progress();
             }

@@ -106,10 +106,10 @@ class MeshDocumentReader {
     /// Counts memory; must be called before it is allocated. All threads share the limits, so the limits are
     /// updated only once for several elements.
     void count(std::uint64_t bytes, std::uint64_t triangles = 0) {
-        constexpr std::uint64_t stretch = 1 << 16;
+        constexpr std::uint64_t enough = 1 << 16;
         open_triangles_ += triangles;
         open_bytes_ += bytes;
-        if (open_bytes_ >= stretch || open_triangles_ >= stretch)
+        if (open_bytes_ >= enough || open_triangles_ >= enough)
             count_open();
     }
 

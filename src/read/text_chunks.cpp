@@ -9,10 +9,10 @@
 namespace lamella {
 
 std::uint64_t line_of(const ByteSource& source, std::size_t offset) {
-    constexpr std::size_t stretch = std::size_t{1} << 24;
+    constexpr std::size_t chunk = std::size_t{1} << 24;
     std::uint64_t line = 1;
-    for (std::size_t at = 0; at < offset; at += stretch) {
-        const std::size_t bytes = std::min(stretch, offset - at);
+    for (std::size_t at = 0; at < offset; at += chunk) {
+        const std::size_t bytes = std::min(chunk, offset - at);
         line += line_at(source.text().substr(at, bytes + 1), bytes) - 1;
         release(source, source.bytes.subspan(at, bytes));
     }

@@ -84,16 +84,16 @@ struct Axis {
 
 class Outlines {
   public:
-    Outlines(const Layer& positions, double width, double thinnest, const LayerBudget& budget)
-        : positions_(positions), budget_(budget), width_(width), thinnest_(thinnest),
-          unit_(unit_of(positions, width)), cells_(unit_) {
+    Outlines(const Layer& material, double width, double thinnest, const LayerBudget& budget)
+        : material_(material), budget_(budget), width_(width), thinnest_(thinnest),
+          unit_(unit_of(material, width)), cells_(unit_) {
         // Both sides of each area have touching circles, from which the lines are built.
         constexpr std::uint64_t bytes_each = 3 * sizeof(Touching) + 2 * sizeof(Point2);
-        budget.need(4 * static_cast<std::uint64_t>(measure(positions).perimeter_mm / unit_) +
-                        positions.points.size(),
+        budget.need(4 * static_cast<std::uint64_t>(measure(material).perimeter_mm / unit_) +
+                        material.points.size(),
                     bytes_each, "places along thin walls");
-        for (std::size_t ring = 0; ring < positions.rings; ++ring) {
-            const std::span<const Point2> points = positions.contour(ring);
+        for (std::size_t ring = 0; ring < material.rings; ++ring) {
+            const std::span<const Point2> points = material.contour(ring);
             for (std::size_t i = 0; i < points.size(); ++i) {
                 const Edge edge{points[i], points[i + 1 < points.size() ? i + 1 : 0]};
                 const std::size_t pieces = 1 + static_cast<std::size_t>(distance(edge.a, edge.b) / unit_ * 2);
@@ -125,7 +125,7 @@ class Outlines {
     /// Returns the middle axes of the samples of each ring, in connected sections.
     [[nodiscard]] std::vector<Axis> axes() const {
         std::vector<Axis> all;
-        for (std::size_t ring = 0; ring < positions_.rings; ++ring)
+        for (std::size_t ring = 0; ring < material_.rings; ++ring)
             add_axes(touching_of(ring), all);
         return all;
     }
@@ -137,15 +137,15 @@ class Outlines {
     };
 
     /// Returns the width, or more if that would make too many pieces.
-    [[nodiscard]] static double unit_of(const Layer& positions, double width) noexcept {
+    [[nodiscard]] static double unit_of(const Layer& material, double width) noexcept {
         constexpr double most_pieces = 1 << 19;
-        return std::max({width, measure(positions).perimeter_mm / most_pieces,
-                         largest_coordinate(positions.points.span()) * 0x1p-40});
+        return std::max({width, measure(material).perimeter_mm / most_pieces,
+                         largest_coordinate(material.points.span()) * 0x1p-40});
     }
 
     [[nodiscard]] std::vector<std::optional<Touching>> touching_of(std::size_t ring) const {
         std::vector<std::optional<Touching>> found;
-        const std::span<const Point2> points = positions_.contour(ring);
+        const std::span<const Point2> points = material_.contour(ring);
         for (std::size_t i = 0; i < points.size(); ++i) {
             const Point2& a = points[i];
             const Point2 edge = minus(points[i + 1 < points.size() ? i + 1 : 0], a);
@@ -240,7 +240,7 @@ class Outlines {
         all.push_back(std::move(axis));
     }
 
-    const Layer& positions_;
+    const Layer& material_;
     const LayerBudget& budget_;
     double width_;
     double thinnest_;
@@ -360,12 +360,12 @@ double length_of(const std::vector<Point2>& points) noexcept {
 
 } // namespace
 
-std::vector<std::vector<Point2>> middle_lines(const Layer& positions, double width, double thinnest,
+std::vector<std::vector<Point2>> middle_lines(const Layer& material, double width, double thinnest,
                                               const LayerBudget& budget) {
-    if (positions.rings == 0 || !(width > 0))
+    if (material.rings == 0 || !(width > 0))
         return {};
     constexpr double straight = 0.01;
-    const Outlines outlines(positions, width, thinnest, budget);
+    const Outlines outlines(material, width, thinnest, budget);
     std::vector<std::vector<Point2>> lines;
     for (const Axis& axis : without_copies(outlines.axes(), 1.5 * outlines.step())) {
         std::vector<Point2> points;

@@ -95,10 +95,10 @@ class Slopes {
         const std::size_t last = step_at(high);
         // Two overlapping intervals of 2^k steps cover all steps of the triangle; spread() distributes their
         // values.
-        const std::size_t stretch = std::bit_floor(last - first + 1);
-        std::vector<std::atomic<float>>& level = levels_[static_cast<std::size_t>(std::countr_zero(stretch))];
+        const std::size_t length = std::bit_floor(last - first + 1);
+        std::vector<std::atomic<float>>& level = levels_[static_cast<std::size_t>(std::countr_zero(length))];
         raise(level[first], steepness);
-        raise(level[last + 1 - stretch], steepness);
+        raise(level[last + 1 - length], steepness);
     }
 
     void spread() noexcept {

@@ -223,11 +223,11 @@ void copy_out(const ByteSource& source, std::uint64_t offset, std::span<std::byt
         fail_cut_off(source, offset + got);
 }
 
-void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept {
+void release(const ByteSource& source, std::span<const std::byte> range) noexcept {
     if (!source.on_disk)
         return;
-    const auto end = static_cast<std::size_t>(stretch.data() - source.bytes.data()) + stretch.size();
-    release_mapped(source.bytes.first(end), stretch);
+    const auto end = static_cast<std::size_t>(range.data() - source.bytes.data()) + range.size();
+    release_mapped(source.bytes.first(end), range);
 }
 
 Execution releasing(const ByteSource& source, const Execution& execution) {

@@ -64,7 +64,7 @@ void copy_out(const ByteSource& source, std::uint64_t offset, std::span<std::byt
 
 /// Frees the memory of a range of bytes that are on disk; if accessed again, they are read from disk again.
 /// Files larger than memory can thus be traversed. Does nothing for bytes in memory.
-void release(const ByteSource& source, std::span<const std::byte> stretch) noexcept;
+void release(const ByteSource& source, std::span<const std::byte> range) noexcept;
 
 /// Returns an execution whose progress also releases the bytes that were read. For readers that go from front
 /// to back and report the bytes they have read; any others read released bytes from the disk again.

@@ -53,13 +53,13 @@ class SlcWriter final : public SequentialWriter {
         return table;
     }
 
-    std::string layer_header(const PlanePosition& offset) override {
+    std::string layer_header(const PlanePosition& plane) override {
         std::string bytes;
-        if (offset.position == 0)
-            bytes = sampling_table(offset.bottom, offset.top - offset.bottom);
-        heights_.add(single(offset.bottom), offset.bottom, "bottom", offset.index);
-        bytes += bytes_of(single(offset.bottom));
-        last_ = offset;
+        if (plane.position == 0)
+            bytes = sampling_table(plane.bottom, plane.top - plane.bottom);
+        heights_.add(single(plane.bottom), plane.bottom, "bottom", plane.index);
+        bytes += bytes_of(single(plane.bottom));
+        last_ = plane;
         return bytes;
     }
 

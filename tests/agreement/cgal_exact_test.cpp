@@ -13,7 +13,7 @@
 #include <CGAL/Polygon_set_2.h>
 #include <CGAL/Surface_mesh.h>
 #include <gtest/gtest.h>
-#include <lamella/io.hpp>
+#include <lamella/formats.hpp>
 
 #include <algorithm>
 #include <array>

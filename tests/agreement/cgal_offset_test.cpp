@@ -12,7 +12,7 @@
 #include <CGAL/Polygon_with_holes_2.h>
 #include <CGAL/minkowski_sum_2.h>
 #include <gtest/gtest.h>
-#include <lamella/io.hpp>
+#include <lamella/formats.hpp>
 
 #include <cmath>
 #include <cstddef>

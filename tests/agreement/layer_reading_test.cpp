@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-#include <lamella/io.hpp>
+#include <lamella/formats.hpp>
 
 #include <cmath>
 #include <cstddef>

@@ -2,7 +2,7 @@
 
 #include <Model/COM/NMR_DLLInterfaces.h>
 #include <gtest/gtest.h>
-#include <lamella/io.hpp>
+#include <lamella/formats.hpp>
 
 #include <array>
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
-#include <lamella/io.hpp>
+#include <lamella/jobs.hpp>
 
 #include <algorithm>
 #include <cmath>

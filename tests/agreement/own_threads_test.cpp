@@ -4,7 +4,7 @@
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
-#include <lamella/io.hpp>
+#include <lamella/jobs.hpp>
 
 #include <fstream>
 #include <functional>

@@ -8,7 +8,7 @@
 #include "fixtures/skip_if_slowed.hpp"
 
 #include <gtest/gtest.h>
-#include <lamella/io.hpp>
+#include <lamella/jobs.hpp>
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
-#include <lamella/io.hpp>
+#include <lamella/formats.hpp>
 
 #include <algorithm>
 #include <cmath>

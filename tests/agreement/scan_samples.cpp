@@ -3,7 +3,7 @@
 
 #include "parts/shapes.hpp"
 
-#include <lamella/io.hpp>
+#include <lamella/formats.hpp>
 
 #include <cstdio>
 #include <exception>

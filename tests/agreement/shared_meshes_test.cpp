@@ -6,7 +6,7 @@
 #include "parts/shapes.hpp"
 
 #include <gtest/gtest.h>
-#include <lamella/io.hpp>
+#include <lamella/jobs.hpp>
 
 #include <array>
 #include <cmath>

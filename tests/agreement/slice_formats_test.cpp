@@ -5,7 +5,7 @@
 #include "temporary_folder.hpp"
 
 #include <gtest/gtest.h>
-#include <lamella/io.hpp>
+#include <lamella/jobs.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 
 // Contracts of the readers for any input.
 
-#include <lamella/io.hpp>
+#include <lamella/jobs.hpp>
 
 #include <cmath>
 #include <cstddef>

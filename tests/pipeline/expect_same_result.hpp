@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/file_result.hpp"
 
 #include <gtest/gtest.h>
 

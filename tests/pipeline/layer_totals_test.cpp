@@ -1,5 +1,5 @@
 #include "lamella/contour/normal_form.hpp"
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/file_result.hpp"
 
 #include "expect_same_result.hpp"
 #include "fixtures/layers.hpp"

@@ -12,7 +12,7 @@ sys.dont_write_bytecode = True
 import check_levels  # noqa: E402
 
 SOUND = {
-    "include/lamella/io.hpp": '#include "lamella/core/point.hpp"\n',
+    "include/lamella/formats.hpp": '#include "lamella/core/point.hpp"\n',
     "include/lamella/core/point.hpp": "#include <limits>\n",
     "include/lamella/mesh/soup.hpp": '#include "lamella/core/point.hpp"\n',
     "include/lamella/slicing/slice.hpp": '#include "lamella/mesh/soup.hpp"\n',
@@ -28,9 +28,9 @@ SOUND = {
     "src/slicing/sweep/walk.hpp": "",
     "src/slicing/sweep/walk.cpp": '#include "slicing/sweep/walk.hpp"\n',
     "src/polygon/grid.hpp": "",
-    "app/main.cpp": "#include <lamella/io.hpp>\n#include <CLI/CLI.hpp>\n",
+    "app/main.cpp": "#include <lamella/formats.hpp>\n#include <CLI/CLI.hpp>\n",
     "bench/kernels.cpp": '#include "slicing/sweep.hpp"\n',
-    "tests/fixtures/solids.hpp": "#include <lamella/io.hpp>\n",
+    "tests/fixtures/solids.hpp": "#include <lamella/formats.hpp>\n",
     "tests/slicing/sweep_test.cpp": '#include "slicing/sweep.hpp"\n#include "fixtures/solids.hpp"\n',
 }
 
@@ -129,7 +129,7 @@ class CheckFloors(unittest.TestCase):
         self.assertEqual(self.findings({"tests/slicing/sweep/walk_test.cpp": '#include "slicing/sweep/walk.hpp"\n'}), [])
 
     def test_finds_a_module_that_includes_a_main_header(self):
-        self.assert_found({"src/slicing/a.cpp": '#include "lamella/io.hpp"\n'}, "src/slicing/a.cpp:1:", "main header")
+        self.assert_found({"src/slicing/a.cpp": '#include "lamella/formats.hpp"\n'}, "src/slicing/a.cpp:1:", "main header")
 
     def test_finds_a_consumer_that_opens_a_private_header(self):
         for name in ("app/a.cpp", "bench/a.cpp", "examples/a.cpp", "tests/app/a.cpp"):

@@ -119,7 +119,7 @@ def write_pages(include, folder):
     """Writes index.md and a page for each module; returns their names in the order of TITLES."""
     folder.mkdir(parents=True, exist_ok=True)
     index = ["# C++ reference", "",
-             "The public headers, by module. `lamella/lamella.hpp` includes those of the engine, `lamella/io.hpp` all. Everything is in the "
+             "The public headers, by module. `lamella/lamella.hpp` includes those of the engine, `lamella/formats.hpp` also those of the formats, `lamella/jobs.hpp` all. Everything is in the "
              "namespace `lamella`, except for the interface in C. Lengths are millimetres.", ""]
     pages = []
     for module, title in TITLES.items():

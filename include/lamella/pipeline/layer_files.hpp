@@ -4,8 +4,8 @@
 
 #include "lamella/contour/measure.hpp"
 #include "lamella/core/execution.hpp"
+#include "lamella/pipeline/file_result.hpp"
 #include "lamella/pipeline/layer_findings.hpp"
-#include "lamella/pipeline/slice_file.hpp"
 #include "lamella/polygon/layer_steps.hpp"
 #include "lamella/read/layer_file.hpp"
 

@@ -5,7 +5,7 @@
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/rounding.hpp"
 #include "lamella/core/execution.hpp"
-#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/file_result.hpp"
 #include "lamella/read/layer_file.hpp"
 #include "lamella/scan/strategy.hpp"
 #include "lamella/write/layer_writer.hpp"

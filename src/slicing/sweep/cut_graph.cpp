@@ -387,15 +387,15 @@ class Builder {
 
   private:
     /// Two nodes of equal hash.
-    struct TriangleIntersection {
+    struct NodePair {
         std::uint32_t first; ///< the same in all pairs with one hash
         std::uint32_t other;
     };
 
     struct Worker {
-        std::array<TriangleIntersection, 16>
-            intersections; ///< pending ones, as a ring buffer: the oldest is at `met` modulo its size
-        std::size_t met = 0;
+        std::array<NodePair, 16>
+            pairs; ///< pending ones, as a ring buffer: the oldest is at `found` modulo its size
+        std::size_t found = 0;
         std::vector<std::uint32_t>
             non_manifold; ///< nodes that share their hash with others, with repetitions
     };
@@ -431,23 +431,22 @@ class Builder {
                 Worker& worker = worker_[w];
                 __builtin_prefetch(&graph_.nodes[first], 1);
                 __builtin_prefetch(&graph_.nodes[other], 1);
-                const std::size_t pending = worker.intersections.size();
-                if (worker.met >= pending / 2) {
-                    const TriangleIntersection& half =
-                        worker.intersections[(worker.met - pending / 2) % pending];
+                const std::size_t pending = worker.pairs.size();
+                if (worker.found >= pending / 2) {
+                    const NodePair& half = worker.pairs[(worker.found - pending / 2) % pending];
                     graph_.ends.prefetch(graph_.nodes[half.first].side);
                     graph_.ends.prefetch(graph_.nodes[half.other].side);
                 }
-                TriangleIntersection& oldest = worker.intersections[worker.met % pending];
-                if (worker.met >= pending)
-                    meet(oldest, worker.non_manifold);
+                NodePair& oldest = worker.pairs[worker.found % pending];
+                if (worker.found >= pending)
+                    join_pair(oldest, worker.non_manifold);
                 oldest = {first, other};
-                ++worker.met;
+                ++worker.found;
             });
         for (Worker& worker : worker_) {
-            const std::size_t positions = worker.intersections.size();
-            for (std::size_t i = worker.met < positions ? 0 : worker.met - positions; i < worker.met; ++i)
-                meet(worker.intersections[i % positions], worker.non_manifold);
+            const std::size_t pending = worker.pairs.size();
+            for (std::size_t i = worker.found < pending ? 0 : worker.found - pending; i < worker.found; ++i)
+                join_pair(worker.pairs[i % pending], worker.non_manifold);
             non_manifold_.insert(non_manifold_.end(), worker.non_manifold.begin(), worker.non_manifold.end());
         }
         // A half may have been recorded before it became part of another node, which then replaces it.
@@ -456,21 +455,21 @@ class Builder {
                 id = graph_.nodes[id].split;
     }
 
-    void meet(const TriangleIntersection& intersection, std::vector<std::uint32_t>& non_manifold) {
-        const CutNode& a = graph_.nodes[intersection.first];
-        const CutNode& b = graph_.nodes[intersection.other];
+    void join_pair(const NodePair& pair, std::vector<std::uint32_t>& non_manifold) {
+        const CutNode& a = graph_.nodes[pair.first];
+        const CutNode& b = graph_.nodes[pair.other];
         if (!a.in_use()) {
             // It is already part of another node, so the edge has at least three halves.
-            non_manifold.insert(non_manifold.end(), {a.split, intersection.other});
+            non_manifold.insert(non_manifold.end(), {a.split, pair.other});
             return;
         }
         const bool halves = a.entered != b.entered && a.left() != b.left() && a.entered != a.left();
-        if (!halves || !(graph_.vertices(intersection.first) == graph_.vertices(intersection.other))) {
-            non_manifold.insert(non_manifold.end(), {intersection.first, intersection.other});
+        if (!halves || !(graph_.vertices(pair.first) == graph_.vertices(pair.other))) {
+            non_manifold.insert(non_manifold.end(), {pair.first, pair.other});
         } else if (a.entered) {
-            unite(intersection.first, intersection.other);
+            unite(pair.first, pair.other);
         } else {
-            unite(intersection.other, intersection.first);
+            unite(pair.other, pair.first);
         }
     }
 

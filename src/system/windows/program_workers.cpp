@@ -14,7 +14,7 @@ namespace lamella {
 
 namespace {
 
-/// Tells a worker the handles that it inherits: its input, its output, and an event that asks it to stop.
+/// Passes a worker the handles that it inherits: its input, its output, and an event that asks it to stop.
 constexpr const wchar_t* handles_variable = L"LAMELLA_WORKER_HANDLES";
 
 struct WorkerHandles {

@@ -1,4 +1,4 @@
-#include <lamella/io.hpp>
+#include <lamella/jobs.hpp>
 
 #include <iostream>
 #include <string>

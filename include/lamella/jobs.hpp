@@ -1,0 +1,24 @@
+#pragma once
+
+// The jobs of the program, in bounded memory, by one process or many, on top of the formats. This program slices a
+// mesh file into a slice file:
+//
+//     #include <lamella/jobs.hpp>
+//
+//     const lamella::Plate plate = lamella::load_plate(std::array{lamella::PlateInput{.path = "part.stl"}});
+//     const lamella::Box3& box = plate.box;
+//     const lamella::Plan plan = lamella::plan_uniform(box.min.z, box.max.z, {.layer_height = 0.1});
+//     const lamella::LayerStack layers = lamella::slice(plate, plan);
+//     lamella::write_layers("part.cli", layers);
+
+#include "lamella/formats.hpp"
+
+// Plates of parts; slice or scan files, join shards, verify and compare.
+#include "lamella/pipeline/compare_files.hpp"
+#include "lamella/pipeline/layer_files.hpp"
+#include "lamella/pipeline/layer_findings.hpp"
+#include "lamella/pipeline/merge.hpp"
+#include "lamella/pipeline/plate.hpp"
+#include "lamella/pipeline/scan_layers.hpp"
+#include "lamella/pipeline/slice_file.hpp"
+#include "lamella/pipeline/verify.hpp"
