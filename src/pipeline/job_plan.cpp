@@ -1,6 +1,7 @@
 #include "pipeline/job_plan.hpp"
 
 #include "lamella/core/error.hpp"
+#include "lamella/pipeline/slice_file.hpp"
 #include "lamella/slicing/layering.hpp"
 
 #include "core/byte_amount.hpp"
