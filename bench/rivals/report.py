@@ -42,9 +42,9 @@ def build_page(cells, parts, rivals, absent, machine, timeout, threads):
              "size of the program that starts the others. **Fresh** is the memory that the operating system provided during "
              "the whole run: page faults times the size of their pages.",
              "**Equal** means that every layer has the same number of contours, and that areas and lengths agree to "
-             "one in 100,000. Otherwise the column lists the differences: layers without a partner at the same height, "
-             "numbers of contours in all layers, and the sums of the differences of areas and lengths, relative to "
-             "their sums. A time counts if at most one layer (or 1% of them) is missing, and contours, areas and "
+             "one in 100,000, as far as a slicer has them. Otherwise the column lists the layers that only one of the two has, "
+             "the numbers of contours of the slicer and of Lamella, and the sums of the differences of areas and of "
+             "lengths, relative to Lamella's sums. A time counts if at most one layer (or 1% of them) is missing, and contours, areas and "
              "lengths agree within 1%. Tool paths run inside the contour and close gaps by design; contour areas are "
              "reconstructed from them.")
     table = Table(["slicer", "version", "threads", "writes", "compared"], texts=5)

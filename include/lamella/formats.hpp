@@ -1,7 +1,7 @@
 #pragma once
 
-// The formats: read and write meshes and layers, show layers as pages and images. `lamella/jobs.hpp` adds the jobs of
-// the program.
+// The formats: read and write meshes and layers, show layers as pages and images. `lamella/jobs.hpp` adds the
+// jobs of the program.
 //
 // The only global state is the list of temporary names in use (see remove_unfinished).
 

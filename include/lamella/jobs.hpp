@@ -1,7 +1,7 @@
 #pragma once
 
-// The jobs of the program, in bounded memory, by one process or many, on top of the formats. This program slices a
-// mesh file into a slice file:
+// This header adds the jobs of the program to the formats; slice_file works in bounded memory, in one process
+// or in many. These lines slice a small file in memory:
 //
 //     #include <lamella/jobs.hpp>
 //

@@ -92,7 +92,7 @@ struct FileResult {
                               ///< all processes; 0: not divided
     /// One for each process, in their order.
     std::vector<ProcessFigures> processes;
-    SliceReport report; ///< counts of contours and chains are those after contour gaps were closed
+    SliceReport report; ///< figures of slicing; contours and chains are counted after gaps were closed
     std::optional<LayerChanges> changes; ///< changes by FileJob::steps; none if there are no steps
     /// Figures of scan vectors, over all layers and parts, in the order of execution, supports last; with
     /// FileJob::scan. One beam exposes the parts of a layer one after the other. Jumps between layers are not
@@ -110,7 +110,7 @@ struct FileResult {
     std::uint64_t bytes = 0; ///< number of bytes written
     /// Losses in the slice file that its format causes; one line each (LayerWriter::warnings).
     std::vector<std::string> warnings;
-    /// Losses in the page, likewise.
+    /// Losses in the page (FileJob::report); one line each.
     std::vector<std::string> report_warnings;
 
     /// Statistics of each layer in ascending z, and the volume as the sum of area times thickness; with

@@ -60,8 +60,8 @@ struct PlatePart {
     double dy = 0;
     Box3 box;
     bool support = false; ///< scanned with the parameters for supports; otherwise treated as a part
-    /// Index of the first part of the same object, such as a 3MF object made of components. Parts of an object
-    /// that overlap are united before scan vectors are made.
+    /// Index of the first part of the same object, such as a 3MF object made of components. Parts of an
+    /// object that overlap are united before scan vectors are made.
     std::size_t object = 0;
 };
 

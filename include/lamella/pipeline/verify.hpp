@@ -38,7 +38,7 @@ struct VerifyOptions {
     /// sections of `plate`, or of `mesh` if there is no plate, are closed in the same way.
     std::optional<double> close_gaps_mm = {};
     /// Steps applied to the layers of the mesh, as one part. Deviations by `simplify_mm` are tolerated. If
-    /// neither gaps are closed nor steps taken, areas are computed with section_areas.
+    /// there are no steps, no closed gaps and no negative volumes, areas are summed over the triangles.
     LayerSteps steps = {};
     /// Rounding of coordinates and heights by the format. The tolerance of areas is proportional to it and to
     /// the layer's perimeter. Rings so thin that rounding can invert them may have either orientation.
@@ -99,8 +99,8 @@ struct Verification {
     std::vector<OpenLayer> open_layers; ///< in the order of the layers
     /// Pairs of segments that cross properly; touching is allowed.
     std::uint64_t crossings = 0;
-    /// Number of rings that contradict their nesting: clockwise rings outside of material, and all rings
-    /// within these.
+    /// Number of rings that contradict their nesting: clockwise rings outside of material, and rings
+    /// directly within these.
     std::uint64_t misoriented = 0;
     /// Number of counter-clockwise rings within the material of other rings. Such rings are not an error,
     /// because overlapping bodies have them; a hole with the wrong orientation looks the same.
@@ -109,8 +109,8 @@ struct Verification {
     /// Largest difference between the area of a layer without open chains and that of the mesh's section. Set
     /// with VerifyOptions::mesh if there is such a layer.
     std::optional<double> max_area_error_mm2;
-    /// True if each area agrees with that of the mesh's section within its tolerance, which is the rounding
-    /// of the format and of sums, times the perimeter.
+    /// True if each area agrees with that of the mesh's section. The tolerance is the perimeter times the
+    /// distance by which rounding and `simplify_mm` may have moved a point, plus the rounding of sums.
     bool areas_agree = true;
     /// Number of layers whose area agrees but whose centroid differs from that of the mesh's section; with
     /// VerifyOptions::mesh. A layer that is rotated about its centroid is not detected.

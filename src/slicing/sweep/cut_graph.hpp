@@ -88,11 +88,11 @@ struct LocatedGraph : CutGraph {
 /// Builds the cut graph in one pass over the triangles. Triangles that no plane cuts and triangles with two
 /// equal corners are skipped. A non-manifold edge becomes one node for each pair of an arriving and a leaving
 /// triangle. The pairs follow from the geometry around the edge, for any order of the triangles: each contour
-/// bounds one wedge of material, and contours never cross there. The graph keeps a soup, but not an indexed
-/// mesh; this must outlive it.
+/// bounds one wedge of material, and contours never cross there. The graph keeps a soup; an indexed mesh
+/// must outlive the graph.
 ///
-/// `visit`, if given, sees each triangle once, right before it is added: the triangles [begin, end), from any
-/// thread.
+/// If `visit` is given, it is called for each range of triangles [begin, end), from any thread, right before
+/// they are added.
 ///
 /// Throws Error{limit} if the nodes cannot be numbered in 32 bits (about 2^32 / 3 triangles or more),
 /// Error{cancelled}. Expected O(n) for n triangles, worst case O(n log n); parallel.

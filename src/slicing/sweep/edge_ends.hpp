@@ -1,7 +1,7 @@
 #pragma once
 
-// Where the ends of edges are. If the triangles are in memory, they are read from there: an edge is a side of
-// a triangle. Otherwise they are stored once per edge.
+// The ends of edges. A node of the cut graph does not hold them: its edge is a side of a triangle, and its
+// ends are read from the mesh when they are needed.
 
 #include "lamella/core/point.hpp"
 #include "lamella/mesh/indexed_mesh.hpp"
@@ -25,10 +25,10 @@ struct EdgeEnds {
 };
 
 // Each class returns the vertices at both ends of a side, in the order of the triangle. Sides have numbers: 3
-// t + i for the side of triangle t that begins at its corner i. Vertices are the same if and only if they are
-// equal.
+// t + i for the side of triangle t that begins at its corner i. Two sides share a vertex if and only if these
+// are equal.
 
-/// Reads single corners of a soup as they are stored.
+/// Reads single corners of a soup, before its placement; -0 becomes +0.
 class SoupCorners {
   public:
     explicit SoupCorners(TriangleSoup soup)
