@@ -423,7 +423,7 @@ std::vector<PlaneRange> Feed::bring(const Plan& plan, std::span<const PlaneRange
                                     const Execution& execution) {
     assert(division.size() == processes_.size());
     const PlaneRange mine = division[processes_.process()];
-    if (at_once())
+    if (in_memory())
         return mine.size() > 0 ? std::vector{mine} : std::vector<PlaneRange>{};
     in_agreement(*among_, [&] {
         ranges_ = ranges_of(plan, mine, thread_count(execution));

@@ -54,8 +54,8 @@ class Feed {
     [[nodiscard]] Plate* meshes() noexcept { return files_.empty() ? &plate_ : nullptr; }
     /// True if the memory of the job is too small for the meshes.
     [[nodiscard]] bool in_ranges() const noexcept { return in_ranges_; }
-    /// True if this process slices all triangles, and need not count them before.
-    [[nodiscard]] bool at_once() const noexcept { return files_.empty(); }
+    /// True if the meshes are in memory. They are then sliced at once, and need not be counted before.
+    [[nodiscard]] bool in_memory() const noexcept { return files_.empty(); }
 
     /// Number of triangles of a shape with finite coordinates, over all processes.
     [[nodiscard]] std::uint64_t triangles(std::size_t shape) const;

@@ -190,7 +190,7 @@ std::vector<PlaneRange> divide(const FileJob& job, const JobPlan& planes, Feed& 
     if (job.shard && (job.shard->number < 1 || job.shard->number > job.shard->count))
         throw Error(ErrorKind::usage, fmt::format("there is no shard {} of {}; they are counted from 1",
                                                   job.shard->number, job.shard->count));
-    if (!job.shard && processes.size() == 1 && feed.at_once())
+    if (!job.shard && processes.size() == 1 && feed.in_memory())
         return {written};
     const RangeSurvey survey(part_of(feed.count(planes.plan, execution), written));
     std::vector<PlaneRange> division;

@@ -260,11 +260,11 @@ Sliced slice_ranges(Feed& feed, const Plan& plan, std::span<const PlaneRange> sl
     const std::vector<PlaneRange> ranges = feed.bring(plan, sliced, execution);
     done.ranges = ranges.size();
     const std::uint64_t points_in_flight = feed.memory().points_in_flight(
-        feed.at_once() && feed.plate().shapes.size() == 1 ? feed.triangles(0) : 0);
+        feed.in_memory() && feed.plate().shapes.size() == 1 ? feed.triangles(0) : 0);
     in_agreement(processes, [&] {
         const Stopwatch slicing;
         for (std::size_t s = 0; s < ranges.size(); ++s) {
-            const bool whole = ranges.size() == 1 && feed.at_once();
+            const bool whole = ranges.size() == 1 && feed.in_memory();
             const Plan planes = part_of(plan, ranges[s]);
             const SliceOptions options{
                 .execution = whole ? execution : in_range(ranges[s], sliced[processes.process()], execution),

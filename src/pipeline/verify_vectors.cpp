@@ -10,8 +10,8 @@
 #include "pipeline/layer_check.hpp"
 #include "pipeline/layer_heights.hpp"
 #include "pipeline/moved_cuts.hpp"
-#include "pipeline/vector_cover.hpp"
 #include "pipeline/vector_findings.hpp"
+#include "pipeline/vector_reach.hpp"
 #include "polygon/edge_tree.hpp"
 #include "scan/hatch.hpp"
 

@@ -179,7 +179,7 @@ TEST_F(FeedOfOneFile, ReadsItToMemoryIfItFits) {
     const Box3 box = load_plate(job_.inputs).box;
     Feed feed(job_, engines().front(), alone(), {});
     ASSERT_NE(feed.meshes(), nullptr);
-    EXPECT_TRUE(feed.at_once());
+    EXPECT_TRUE(feed.in_memory());
     EXPECT_FALSE(feed.in_ranges());
     EXPECT_EQ(feed.plate().box, box);
     EXPECT_EQ(feed.triangles(0), body_.size());

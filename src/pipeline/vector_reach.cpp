@@ -1,4 +1,4 @@
-#include "pipeline/vector_cover.hpp"
+#include "pipeline/vector_reach.hpp"
 
 #include "lamella/polygon/fill.hpp"
 
