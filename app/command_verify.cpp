@@ -311,8 +311,9 @@ Command verify_command() {
             "that mesh, which is computed directly from its triangles; a layer that is rotated about its "
             "centre is not found. Scan vectors are checked, too: they must lie inside the mesh or, without "
             "--mesh, inside the outermost contour of their part. With --strategy or --scan, the check "
-            "also covers their distance from the edge, missing contours, the spacing, angle and length of "
-            "hatch lines, and whether these fill the area. Exit code 4: the check failed.",
+            "also covers their distance from the edge, the length of hatch lines, and whether vectors reach "
+            "all "
+            "of the material. Exit code 4: the check failed.",
         .operands = {{.placeholder = "FILE",
                       .help = "the slice file; - is standard input",
                       .set =

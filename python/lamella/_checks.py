@@ -145,8 +145,8 @@ def verify_vectors(
 ) -> VectorVerification:
     """Checks a file of scan vectors: the contours of each exposure must be closed, oriented and without crossings, and
     all vectors must be within the mesh or, without a mesh, within the outermost contours of their part. If the strategy
-    by which they were made is given, also checks their distance from the edges, that each contour is present, the
-    distance, angle and least length of hatch lines, and that these fill the material.
+    by which they were made is given, also checks their distance from the edges, the least length of hatch lines, and
+    that vectors reach all of the material.
 
     file: a path, bytes or a file object, as for `read`: scan vectors by `lamella slice --scan`, `lamella scan` or another program.
     mesh: the mesh or the plate that was sliced, as for `slice`, with the same `direction`, `transform` and `unit_mm`.

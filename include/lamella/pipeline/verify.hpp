@@ -2,7 +2,7 @@
 
 // Checks of layers: contours must be closed, oriented and without crossings, and must have the areas of the
 // mesh. Checks of scan vectors: they must lie within the material, at the required distance from its edges,
-// and must fill it.
+// and must reach all of it.
 
 #include "lamella/contour/layer.hpp"
 #include "lamella/contour/open_gaps.hpp"
